@@ -1,0 +1,55 @@
+# Every command sets up what it needs: a bare machine with Python 3.11 and make is enough.
+PYTHON ?= python3.11
+VENV   := .venv
+BIN    := $(VENV)/bin
+# Wheels only: a package without one is an error at once, not a compiler's message after minutes.
+PIP    := $(BIN)/python -m pip --disable-pip-version-check install -qq --only-binary :all: -c constraints.txt
+
+.DEFAULT_GOAL := help
+.PHONY: help solve test check format bench
+
+help:  ## this list
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-8s %s\n", $$1, $$2}'
+
+solve: $(VENV)/.installed  ## plan problems/four_objects.yaml, write plan.json
+	$(BIN)/tamp-solve domains/cupboard.pddl problems/four_objects.yaml --out plan.json
+	@echo "The plan is $(CURDIR)/plan.json. Check it: $(BIN)/tamp-verify plan.json"
+
+test: $(VENV)/.developing  ## run all tests
+	$(BIN)/pytest -n 2
+
+check: $(VENV)/.developing  ## ruff, pyright, import-linter
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+format: $(VENV)/.developing  ## mend what ruff can mend
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/.developing  ## the quick benchmarks, a table each
+	$(BIN)/python -m benchmarks.cold_start
+	$(BIN)/python -m benchmarks.solve one_object four_objects --seeds 5
+	$(BIN)/python -m benchmarks.collision --states 5000 --edges 500 --scenes 5
+	$(BIN)/python -m benchmarks.inverse_kinematics --poses 500
+	$(BIN)/python -m benchmarks.motion
+	$(BIN)/python -m benchmarks.search
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null || { \
+	  echo "tamp needs Python 3.11, and '$(PYTHON)' is not it (pybullet has wheels for Python up to 3.11 only)."; \
+	  echo "Install it (Debian 12: apt install python3.11-venv; elsewhere: pyenv, uv python install 3.11),"; \
+	  echo "or say where it is: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)"; exit 1; }
+	@$(PYTHON) -m venv $(VENV) || { \
+	  echo "'$(PYTHON) -m venv' failed: on Debian and Ubuntu, apt install python3.11-venv"; rm -rf $(VENV); exit 1; }
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "installing tamp into $(VENV) (about a minute)"
+	$(PIP) -e .
+	@touch $@
+
+$(VENV)/.developing: pyproject.toml constraints.txt | $(BIN)/python
+	@echo "installing tamp and its developers' tools into $(VENV) (about a minute)"
+	$(PIP) -e .[dev]
+	@touch $@ $(VENV)/.installed
