@@ -1,0 +1,73 @@
+"""Domain files: text in, a checked Domain out."""
+
+from __future__ import annotations
+
+from collections.abc import Set
+from dataclasses import replace
+from pathlib import Path
+
+from tamp.pddl.declarations import check_requirements, parse_functions, parse_objects, parse_predicates, parse_types
+from tamp.pddl.effects import TOTAL_COST, Effects, parse_effects
+from tamp.pddl.formulas import parse_formula, scope_of
+from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error
+from tamp.pddl.rules import parse_rule, rule_head
+from tamp.pddl.sections import Section, items_of, keyword_values, read_sections
+from tamp.pddl.stratification import strata
+from tamp.pddl.structs import Action, And, Domain, Predicate
+from tamp.pddl.typed import parameters, refuse_duplicates
+
+SECTIONS = (
+    ":requirements", ":types", ":constants", ":predicates", ":functions", ":action", ":derived", ":axiom",
+)  # fmt: skip
+ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
+
+
+def parse_domain(text: str, file: str | Path | None = None) -> Domain:
+    """Read a PDDL domain.
+
+    Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
+
+    Raises:
+        InputError: With file, line and column of what is wrong.
+    """
+    name, sections = read_sections(text, "domain", SECTIONS, file)
+    check_requirements(items_of(sections, ":requirements"))
+    types, more_parents = parse_types(items_of(sections, ":types"))
+    constants = parse_objects(items_of(sections, ":constants"), types, "a constant")
+    predicates = parse_predicates(items_of(sections, ":predicates"), types)
+    functions = parse_functions(items_of(sections, ":functions"), types)
+    for function in functions.values():
+        if function.name in predicates and function.place:
+            raise error(function.place, f"'{function.name}' is already a predicate")
+    # Domains written for PDDLStream increase the total cost without declaring it.
+    counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
+    functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
+    file_name = None if file is None else str(file)
+    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, more_parents)
+
+    rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
+    derived_names = {rule_head(section, names) for section in rules}
+    derived = tuple(parse_rule(section, names) for section in rules)
+    strata(derived)
+    acts = [section for section in sections if section.keyword.text == ":action"]
+    actions = tuple(_action(section, names, derived_names, counts_costs) for section in acts)
+    refuse_duplicates((as_symbol(section.items[0], "a name") for section in acts), "action")
+    return replace(names, actions=actions, derived=derived)
+
+
+def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bool) -> Action:
+    if not section.items:
+        raise error(section.group, "an action has no name")
+    name = as_name(section.items[0], "an action's name")
+    values = keyword_values(section.items[1:], f"action '{name.text}'", ACTION_KEYWORDS)
+    listed = as_group(values[":parameters"], "a list of parameters").items if ":parameters" in values else ()
+    scope, bound = scope_of(names).with_variables(parameters(listed, names.types))
+    precondition = parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    effects = parse_effects(values[":effect"], scope, derived) if ":effect" in values else Effects()
+    # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every action counts one.
+    cost = effects.cost if effects.cost is not None else (0.0 if counts_costs else 1.0)
+    return Action(name.text, bound, precondition, tuple(effects.simple), cost, section.group.place)
+
+
+def _mentions(node: Node, word: str) -> bool:
+    return isinstance(node, Group) and (node.head == word or any(_mentions(item, word) for item in node.items))

@@ -1,0 +1,78 @@
+"""Rules of derived predicates: `(:derived (on ?o ?s) CONDITION)`, and the older `:axiom`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tamp.pddl.formulas import parse_formula, scope_of
+from tamp.pddl.nodes import Group, Node, as_group, as_symbol, error, show
+from tamp.pddl.sections import Section, keyword_values
+from tamp.pddl.structs import Atom, Derived, Domain, Parameter
+from tamp.pddl.typed import parameters, typed_list
+
+AXIOM_KEYWORDS = (":parameters", ":context", ":implies")
+
+
+def rule_head(section: Section, names: Domain) -> str:
+    """The name of the predicate that a rule defines, checked to be declared."""
+    head, _ = _parts(section)
+    symbol = as_symbol(head.items[0], "a predicate") if head.items else None
+    if symbol is None:
+        raise error(head, "expected a fact such as (on ?a ?b), found '()'")
+    if symbol.text not in names.predicates:
+        choices = names.predicates
+        raise error(symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices)
+    return symbol.text
+
+
+def parse_rule(section: Section, names: Domain) -> Derived:
+    """Read one rule. A variable without a type in the head has the type that the predicate declares for it."""
+    head, body = _parts(section)
+    predicate = names.predicates[rule_head(section, names)]
+    listed = parameters(head.items[1:], names.types)
+    if len(listed) != len(predicate.parameters):
+        wanted = len(predicate.parameters)
+        message = f"'{predicate.name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {len(listed)}"
+        form = " ".join((predicate.name, *(parameter.name for parameter in predicate.parameters)))
+        raise error(head, message, remedy=f"Its form is ({form})")
+    outer = _axiom_types(section, names)
+    typed = {entry.name.text for entry in typed_list(head.items[1:], "a variable") if entry.types}
+    own = tuple(
+        parameter if parameter.name in typed else replace(parameter, types=outer.get(parameter.name, declared.types))
+        for parameter, declared in zip(listed, predicate.parameters, strict=True)
+    )
+    scope, bound = scope_of(names).with_variables(own)
+    atom = Atom(predicate.name, tuple(parameter.name for parameter in bound), head.place)
+    return Derived(atom, bound, parse_formula(body, scope), section.group.place)
+
+
+def _parts(section: Section) -> tuple[Group, Node]:
+    """The head and the body of a rule in any of its spellings."""
+    keyword = section.keyword.text
+    if keyword == ":axiom" and section.items and not isinstance(section.items[0], Group):
+        values = keyword_values(section.items, "the axiom", AXIOM_KEYWORDS)
+        for needed in (":context", ":implies"):
+            if needed not in values:
+                raise error(section.group, f"the axiom has no {needed}")
+        return as_group(values[":implies"], "a fact such as (on ?a ?b)"), values[":context"]
+    if len(section.items) != 2:
+        found = len(section.items)
+        raise error(
+            section.group, f"'{keyword}' takes a fact and a condition, found {found} part{'' if found == 1 else 's'}"
+        )
+    head = as_group(section.items[0], "a fact such as (on ?a ?b)")
+    if head.head in ("and", "or", "not", "forall", "exists", "imply"):
+        raise error(head, f"a rule defines one predicate, found {show(head)}")
+    return head, section.items[1]
+
+
+def _axiom_types(section: Section, names: Domain) -> dict[str, tuple[str, ...]]:
+    """Types of the variables in an axiom's own `:parameters`."""
+    if section.keyword.text != ":axiom" or not section.items or isinstance(section.items[0], Group):
+        return {}
+    values = keyword_values(section.items, "the axiom", AXIOM_KEYWORDS)
+    node = values.get(":parameters")
+    if node is None:
+        return {}
+    listed: tuple[Parameter, ...] = parameters(as_group(node, "a list of parameters").items, names.types)
+    return {parameter.name: parameter.types for parameter in listed}

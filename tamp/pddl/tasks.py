@@ -1,0 +1,140 @@
+"""Goals, initial facts and plain PDDL problem files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tamp.pddl.declarations import check_requirements, parse_objects
+from tamp.pddl.effects import TOTAL_COST, parse_number
+from tamp.pddl.formulas import Scope, parse_atom, parse_formula, parse_function_term, scope_of
+from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, show
+from tamp.pddl.sections import Section, items_of, read_sections, single
+from tamp.pddl.sexpr import read, read_one
+from tamp.pddl.structs import Domain, Fact, Formula, Task
+
+SECTIONS = (":domain", ":requirements", ":objects", ":init", ":goal", ":metric")
+
+
+def parse_goal(
+    text: str,
+    domain: Domain,
+    objects: Mapping[str, tuple[str, ...]],
+    file: str | Path | None = None,
+    line_offset: int = 0,
+    column_offset: int = 0,
+) -> Formula:
+    """Read a goal.
+
+    Args:
+        text: One condition, such as "(on mug table)".
+        domain: Whose predicates it uses.
+        objects: Name -> types; an object has all of them.
+        file: For messages: the file that the text is a part of.
+        line_offset: Lines of that file before the text's first line.
+        column_offset: Columns before the text on its first line.
+
+    Raises:
+        InputError: With file, line and column of what is wrong.
+    """
+    node = read_one(
+        text, "one condition, (and ...) for several", file, line_offset=line_offset, column_offset=column_offset
+    )
+    return parse_formula(node, scope_of(domain, objects))
+
+
+def parse_facts(
+    text: str | Sequence[str],
+    domain: Domain,
+    objects: Mapping[str, tuple[str, ...]],
+    file: str | Path | None = None,
+    line_offset: int = 0,
+    column_offset: int = 0,
+) -> frozenset[Fact]:
+    """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of `parse_goal`."""
+    scope = scope_of(domain, objects)
+    texts = (text,) if isinstance(text, str) else text
+    nodes = [n for t in texts for n in read(t, file, line_offset=line_offset, column_offset=column_offset)]
+    return frozenset(_fact(node, scope) for node in nodes)
+
+
+def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Task:
+    """Read a plain PDDL problem file.
+
+    Raises:
+        InputError: With file, line and column of what is wrong.
+    """
+    name, sections = read_sections(text, "problem", SECTIONS, file)
+    check_requirements(items_of(sections, ":requirements"))
+    _check_domain(single(sections, ":domain"), domain)
+    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", domain.constants)
+    scope = scope_of(domain, objects)
+    facts: set[Fact] = set()
+    costs: dict[Fact, float] = {}
+    for node in items_of(sections, ":init"):
+        if isinstance(node, Group) and node.head == "=":
+            term, value = _cost(node, scope)
+            costs[term] = value
+        elif isinstance(node, Group) and node.head == "not":
+            _negative(node, scope)
+        else:
+            facts.add(_fact(node, scope))
+    goal = single(sections, ":goal")
+    if goal is None or len(goal.items) != 1:
+        raise error(goal.group if goal else name, "a problem has one (:goal CONDITION)")
+    _check_metric(single(sections, ":metric"))
+    return Task(name.text, domain, scope.objects, frozenset(facts), parse_formula(goal.items[0], scope), costs)
+
+
+def _fact(node: Node, scope: Scope) -> Fact:
+    group = as_group(node, "a fact such as (on mug table)")
+    if group.head in ("and", "or", "not", "exists", "forall", "imply", "="):
+        raise error(group, f"expected a fact such as (on mug table), found {show(group)}")
+    atom = parse_atom(group, scope)
+    if atom.predicate not in scope.domain.predicates:
+        raise error(group, f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact")
+    if atom.predicate in scope.domain.derived_predicates:
+        raise error(group, f"'{atom.predicate}' is derived: its rules say where it holds, it cannot be a fact")
+    return (atom.predicate, *atom.terms)
+
+
+def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
+    """`(= (distance a b) 3)`."""
+    if len(node.items) != 3:
+        raise error(node, "expected (= (FUNCTION object ...) NUMBER)")
+    term = parse_function_term(node.items[1], scope)
+    number = as_symbol(node.items[2], "a number")
+    value = parse_number(number)
+    if value < 0:
+        raise error(number, f"a cost cannot be negative, found {number.written}")
+    return (term.predicate, *term.terms), value
+
+
+def _negative(node: Group, scope: Scope) -> None:
+    """`(not FACT)` in :init says what is so anyhow; its names are checked."""
+    if len(node.items) != 2:
+        raise error(node, "'not' takes one fact")
+    _fact(node.items[1], scope)
+
+
+def _check_domain(section: Section | None, domain: Domain) -> None:
+    if section is None:
+        return
+    if len(section.items) != 1:
+        raise error(section.group, "a problem has one (:domain NAME)")
+    name = as_name(section.items[0], "the domain's name")
+    if name.text != domain.name:
+        raise error(name, f"the problem is for domain '{name.written}'", found=name.text, choices=(domain.name,))
+
+
+def _check_metric(section: Section | None) -> None:
+    """Only `(:metric minimize (total-cost))` is known, with total-cost also without parentheses."""
+    if section is None:
+        return
+    direction, *rest = section.items or (section.group,)
+    if not (as_symbol(direction, "'minimize'").text == "minimize" and len(rest) == 1):
+        raise error(direction, "expected (:metric minimize (total-cost))")
+    target = rest[0]
+    name = target.head if isinstance(target, Group) and len(target.items) == 1 else None
+    if (name or as_symbol(target, "(total-cost)").text) != TOTAL_COST:
+        raise error(target, f"the metric is (total-cost), found {show(target)}")

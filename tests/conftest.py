@@ -1,0 +1,29 @@
+"""Fixtures that every package's tests share."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+# No deadline: two shared cores and a first compilation make single examples slow. Derandomised: a red run repeats.
+settings.register_profile("tamp", deadline=None, derandomize=True)
+settings.load_profile("tamp")
+
+
+# A shell that runs the tests in the background has them ignore Ctrl-C, and with them every process that they start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The checkout: domains/, problems/ and README.md lie here."""
+    return Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(0)
