@@ -1,0 +1,81 @@
+"""Estimates of the cost from a state to the goal, by name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from tamp.search.relaxation import Relaxation
+from tamp.search.successors import State, Successors
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A heuristic's answer.
+
+    Attributes:
+        value: The estimated cost to the goal, infinite in a dead end.
+        plan: The operators of a relaxed plan, where the heuristic makes one; those applicable are preferred.
+    """
+
+    value: float
+    plan: tuple[int, ...] = ()
+
+
+class Heuristic(Protocol):
+    """Estimates the cost to the goal from a state."""
+
+    def __call__(self, closed: State) -> Estimate:
+        """Estimate; `closed` is the state with its derived facts."""
+        ...
+
+
+def ff(successors: Successors) -> Heuristic:
+    """The cost of a relaxed plan (Hoffmann and Nebel 2001) along hadd's best supporters."""
+    relaxation = Relaxation(successors, steps=True)
+
+    def estimate(closed: State) -> Estimate:
+        exploration = relaxation.explore(closed, additive=True)
+        if exploration.dead:
+            return Estimate(math.inf)
+        value, plan = relaxation.plan(exploration)
+        return Estimate(value, tuple(plan))
+
+    return estimate
+
+
+def hadd(successors: Successors) -> Heuristic:
+    """The sum of the goals' costs, each fact's cost the sum of its preconditions' (Bonet and Geffner 2001)."""
+    relaxation = Relaxation(successors, steps=True)
+
+    def estimate(closed: State) -> Estimate:
+        exploration = relaxation.explore(closed, additive=True)
+        return Estimate(sum((exploration.costs[goal] for goal in exploration.goals), start=0.0))
+
+    return estimate
+
+
+def hmax(successors: Successors) -> Heuristic:
+    """The most expensive goal's cost, each fact's cost the maximum of its preconditions': admissible."""
+    relaxation = Relaxation(successors, steps=False)
+
+    def estimate(closed: State) -> Estimate:
+        exploration = relaxation.explore(closed, additive=False)
+        return Estimate(max((exploration.costs[goal] for goal in exploration.goals), default=0.0))
+
+    return estimate
+
+
+def blind(successors: Successors) -> Heuristic:
+    """Zero in goal states, elsewhere the cheapest operator's cost: admissible."""
+    cheapest = min((successors.cost[i] for i in successors.alive), default=math.inf)
+
+    def estimate(closed: State) -> Estimate:
+        return Estimate(0.0 if successors.holds_goal(closed) else cheapest)
+
+    return estimate
+
+
+HEURISTICS: dict[str, Callable[[Successors], Heuristic]] = {"ff": ff, "hadd": hadd, "hmax": hmax, "blind": blind}
