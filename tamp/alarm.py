@@ -1,0 +1,100 @@
+"""A hard end for computations that do not look at the clock."""
+
+from __future__ import annotations
+
+import gc
+import signal
+import sys
+import threading
+from types import FrameType, TracebackType
+from typing import Any
+
+from tamp.clock import Deadline, OutOfTime
+
+GRACE = 0.1
+"""Seconds after the deadline at which whatever still runs is interrupted."""
+
+AGAIN = 0.25
+"""Seconds until the next interruption, should the first one have been swallowed."""
+
+
+SOON = 0.005
+"""Seconds until the next try, when the first one met a frame in which nothing can be raised."""
+
+CALLER = "algorithms/stream.py"
+"""What calls the functions that may never return; frames above it are not to be interrupted again."""
+
+
+def _swallows(frame: FrameType | None) -> bool:
+    """Whether Python drops what is raised here: in a finaliser, or in what the garbage collector calls."""
+    collecting = {getattr(callback, "__code__", None) for callback in gc.callbacks}
+    while frame is not None:
+        if frame.f_code in collecting or frame.f_code.co_name == "__del__":
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _look_away(frame: FrameType, event: str, argument: object) -> None:
+    """Trace no new frames."""
+
+
+class Alarm:
+    """Raises OutOfTime in a block shortly after the deadline, even inside a function that never returns.
+
+    Works in the main thread of systems with SIGALRM; elsewhere the deadline is only kept by those who look at it. A
+    timer that was running before goes on afterwards, later by the time that the block took.
+
+    Args:
+        deadline: When to ring, but for GRACE.
+    """
+
+    def __init__(self, deadline: Deadline) -> None:
+        self._deadline = deadline
+        self._armed = False
+        self._swallowed = False
+        self._before: tuple[Any, tuple[float, float]] | None = None
+
+    def __enter__(self) -> Alarm:
+        usable = sys.platform != "win32" and threading.current_thread() is threading.main_thread()
+        if usable and self._deadline.seconds < threading.TIMEOUT_MAX:
+            self._before = signal.signal(signal.SIGALRM, self._ring), signal.getitimer(signal.ITIMER_REAL)
+            self._armed = True
+            signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + GRACE, AGAIN)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.disarm()
+
+    def disarm(self) -> None:
+        """Never ring again; may be called twice, since a ring may come on the way out of the block."""
+        self._armed = False
+        if self._swallowed:
+            sys.settrace(None)
+        if self._before is not None:
+            handler, timer = self._before
+            signal.setitimer(signal.ITIMER_REAL, *timer)
+            signal.signal(signal.SIGALRM, handler)
+            self._before = None
+
+    def _ring(self, number: int, frame: FrameType | None) -> None:
+        if not self._armed:
+            return
+        if _swallows(frame):
+            signal.setitimer(signal.ITIMER_REAL, SOON, AGAIN)
+            return
+        if self._swallowed:
+            sys.settrace(_look_away)
+            while frame is not None and not frame.f_code.co_filename.endswith(CALLER):
+                frame.f_trace = self._insist
+                frame = frame.f_back
+        self._swallowed = True
+        raise OutOfTime
+
+    def _insist(self, frame: FrameType, event: str, argument: object) -> Any:
+        """Raise in the handler, too, that catches everything; Python then forgets this trace function by itself."""
+        if event == "line" and self._armed:
+            raise OutOfTime
+        return self._insist

@@ -1,0 +1,103 @@
+"""The adaptive algorithm: search over optimistic facts, bind the plan's stream calls, learn from what fails.
+
+After PDDLStream's adaptive algorithm (Garrett, Lozano-Perez, Kaelbling, ICAPS 2020), in one process, its effort divided
+by counted work instead of the clock, so that the same seed gives the same plan.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from tamp.algorithms.explanation import explain_infeasible
+from tamp.algorithms.incremental import Incremental
+from tamp.algorithms.run import Run
+from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
+from tamp.clock import Deadline, OutOfTime
+
+FIRST_TRIES = 4
+"""Draws a visit of a stream call in a skeleton's first round, one more in each later one: a bad grasp shall not be
+tried with all poses before the next one has its turn."""
+
+ROUND_BUDGET = 200
+"""Draws in a skeleton's first round."""
+
+PATIENCE = 1000
+"""Failures of one thing without a success after which the incremental algorithm is asked; doubled each time."""
+
+SECOND_OPINION = 2
+"""Draws that it gets for each of those failures."""
+
+DRY = 50
+"""Rounds without anything left to draw after which everything is exhausted: prices have moved all that they can."""
+
+
+def solve_adaptive(
+    problem: StreamTask,
+    make_rng: Callable[[str], Any],
+    deadline: Deadline,
+    progress: Progress,
+) -> Result:
+    """Plan.
+
+    Some plans do not show in the optimistic task, such as putting a body down only to grasp it anew: all poses and
+    grasps look alike there. So when something fails and fails, the incremental algorithm is asked for a second opinion.
+
+    Args:
+        problem: The task and its streams.
+        make_rng: A random generator from a string (see Streams).
+        deadline: When to give up.
+        progress: Told between rounds.
+    """
+    return _Adaptive(problem, make_rng, deadline, progress).solve()
+
+
+class _Adaptive(Run):
+    def solve(self) -> Result:
+        """Rounds of search and binding until a plan is bound, nothing is left, or the time is up."""
+        patience, dry = PATIENCE, 0
+        try:
+            while True:
+                before = self.binder.units
+                result = self._round()
+                if result is not None:
+                    return result
+                dry = dry + 1 if self.binder.units == before else 0
+                if dry >= DRY:
+                    return self.result(Outcome.EXHAUSTED)
+                if self._stuck(patience):
+                    second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
+                    result = second.solve(SECOND_OPINION * patience)
+                    if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED):
+                        return result
+                    patience *= 2
+                self.progress(self.effort)
+        except OutOfTime:
+            return self.result(Outcome.TIMEOUT)
+        except KeyboardInterrupt:
+            return self.result(Outcome.INTERRUPTED)
+
+    def _round(self) -> Result | None:
+        """Search, bind, learn."""
+        found = self.search()
+        if found.plan is None:
+            if self.deadline.passed:
+                raise OutOfTime
+            return self.result(Outcome.INFEASIBLE, explain_infeasible(self.problem, self.grounded, self.dead))
+        skeleton = self.skeleton(found.plan)
+        self.latest = skeleton
+        tries = FIRST_TRIES + skeleton.rounds
+        values = self.binder.bind(skeleton, tries, ROUND_BUDGET * (1 + skeleton.rounds))
+        if values is not None:
+            return self.solved(skeleton, values)
+        skeleton.rounds += 1
+        self.effort.draws = self.binder.units
+        if self.bury(skeleton):
+            self.optimism, self.grounded = self.imagined()
+        return None
+
+    def _stuck(self, patience: int) -> bool:
+        """Whether even the cheapest plan rests on something that failed that often without a success."""
+        nodes = () if self.latest is None else self.latest.nodes
+        records = [self.experience.facts.get(node.fact) for node in nodes]
+        return any(record and not record.successes and record.failures >= patience for record in records)

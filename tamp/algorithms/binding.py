@@ -1,0 +1,184 @@
+"""Finding values for a skeleton: draw, test, and jump back to a choice that the failure depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Term
+from tamp.algorithms.statistics import Experience
+from tamp.algorithms.stream import Instance, Streams
+from tamp.clock import Deadline, OutOfTime
+from tamp.pddl.structs import Fact
+
+RECENT = 3
+"""How many of an instance's latest results are tried again before drawing new ones."""
+
+
+@dataclass
+class _Level:
+    """One node on the way down: where its candidates come from, and which earlier levels its failure depends on."""
+
+    candidates: Iterator[tuple[str, ...]]
+    conflict: set[int]
+    culprits: set[int] = field(default_factory=set[int])
+
+
+class Binder:
+    """Backtracking with conflict-directed backjumping (Prosser 1993) over the stream calls of a skeleton.
+
+    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest level in it. Every
+    failure is noted in `experience` under the symbolic fact that it concerns.
+    """
+
+    def __init__(self, streams: Streams, experience: Experience, deadline: Deadline) -> None:
+        self._streams = streams
+        self._experience = experience
+        self._deadline = deadline
+        self.units = 0
+        self._met: list[tuple[Node, Instance]] = []
+
+    def bind(self, skeleton: Skeleton, tries: int, budget: int) -> dict[int, str] | None:
+        """Values for all variables, or None when none were found within the budget.
+
+        Args:
+            skeleton: What to bind; it remembers the values that worked, to be tried first next time.
+            tries: New draws a visit of a node.
+            budget: Draws in all.
+        """
+        nodes = skeleton.nodes
+        makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
+        values: dict[int, str] = {}
+        levels: list[_Level] = []
+        spent_before = self.units
+        self._met.clear()
+        while len(levels) < len(nodes):
+            index = len(levels)
+            levels.append(self._enter(skeleton, index, makers, values, tries))
+            while True:
+                level = levels[-1]
+                index = len(levels) - 1
+                outputs = next(level.candidates, None)
+                if outputs is not None:
+                    values.update(zip(nodes[index].outputs, outputs, strict=True))
+                    break
+                levels.pop()
+                for variable in nodes[index].outputs:
+                    values.pop(variable, None)
+                conflict = level.conflict | level.culprits
+                conflict.discard(index)
+                if not conflict or self.units - spent_before > budget:
+                    if self.units == spent_before:  # nothing is left to draw: what is known to fail failed once more
+                        for node, instance in self._met:
+                            self._note(node, instance, False)
+                    return None
+                target = max(conflict)
+                for dropped in range(target + 1, len(levels)):
+                    for variable in nodes[dropped].outputs:
+                        values.pop(variable, None)
+                del levels[target + 1 :]
+                levels[target].culprits |= conflict
+                if self._deadline.passed:
+                    raise OutOfTime
+        return values
+
+    def _enter(
+        self, skeleton: Skeleton, index: int, makers: dict[int, int], values: dict[int, str], tries: int
+    ) -> _Level:
+        node = skeleton.nodes[index]
+        inputs = tuple(_value(term, values) for term in node.inputs)
+        fluents = frozenset[Fact](
+            (fact[0], *(_value(term, values) for term in fact[1]))
+            for fact, _ in node.fluents
+            if all(isinstance(term, str) or term in values for term in fact[1])
+        )
+        instance = self._streams.instance(node.stream.name, inputs, fluents)
+        conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
+        level = _Level(iter(()), conflict)
+        level.candidates = self._candidates(skeleton, index, instance, makers, level, tries)
+        return level
+
+    def _candidates(
+        self,
+        skeleton: Skeleton,
+        index: int,
+        instance: Instance,
+        makers: dict[int, int],
+        level: _Level,
+        tries: int,
+    ) -> Iterator[tuple[str, ...]]:
+        """The value that was taken last time and a few recent ones, then new draws, then the earliest results.
+
+        New draws come before most earlier results, since what failed once often fails again; the earliest ones come
+        back so that, with growing `tries`, every pair of values meets.
+        """
+        node = skeleton.nodes[index]
+        key: tuple[object, ...] = (instance.inputs, frozenset[Fact]() if node.stream.is_advisory else instance.fluents)
+        offered: set[tuple[str, ...]] = set()
+
+        def offer(outputs: tuple[str, ...]) -> bool:
+            if outputs in offered:
+                return False
+            offered.add(outputs)
+            skeleton.memory[index] = (key, outputs)
+            return True
+
+        remembered = skeleton.memory.get(index)
+        if remembered is not None and remembered[0] == key and offer(remembered[1]):
+            yield remembered[1]
+        earlier = list(instance.results)
+        for outputs in reversed(earlier[-RECENT:]):
+            if offer(outputs):
+                yield outputs
+        if instance.exhausted and not instance.results:
+            self._met.append((node, instance))
+        draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
+        for _ in range(max(draws - len(earlier), (draws + 1) // 2)):
+            if self._deadline.passed:
+                raise OutOfTime
+            if instance.exhausted:
+                break
+            self.units += 1
+            outputs = self._streams.draw(instance)
+            self._note(node, instance, outputs is not None)
+            if outputs is not None and offer(outputs):
+                yield outputs
+        for outputs in earlier[:draws]:
+            if offer(outputs):
+                yield outputs
+        if not instance.results:
+            self._blame(node, instance, makers, level)
+
+    def _note(self, node: Node, instance: Instance, success: bool) -> None:
+        if success or instance.last is None:
+            self._experience.note(node.fact, None)
+            return
+        if node.stream.is_fluent and instance.last.blockers:
+            present = _present(node, instance.last.blockers)
+            if present:
+                self._experience.note_nogood(node.fact, present, instance.last.reason)
+                return
+        self._experience.note(node.fact, instance.last.reason)
+
+    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], level: _Level) -> None:
+        """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
+        if not node.stream.is_fluent:
+            return
+        blockers = instance.last.blockers if instance.last is not None else ()
+        for (_, terms), fact in node.fluents:
+            if not blockers or any(word in blockers for word in fact[1:]):
+                level.conflict |= {makers[term] for term in terms if isinstance(term, int)}
+
+
+def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
+    """The symbolic state facts about the blockers."""
+    return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
+
+
+def _value(term: Term, values: dict[int, str]) -> str:
+    return term if isinstance(term, str) else values[term]
+
+
+def substitute(fact: LiftedFact, values: dict[int, str]) -> Fact:
+    """A lifted fact with its variables' values."""
+    return (fact[0], *(_value(term, values) for term in fact[1]))

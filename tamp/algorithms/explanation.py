@@ -1,0 +1,106 @@
+"""Why there is no plan, in words that name objects."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+from tamp.algorithms.optimistic import MARK
+from tamp.algorithms.skeleton import Node, Skeleton
+from tamp.algorithms.solution import StreamTask
+from tamp.algorithms.statistics import Experience, Record
+from tamp.algorithms.stream import Streams
+from tamp.pddl.structs import Fact
+from tamp.rejection import Rejection
+from tamp.search.forward import unreachable
+from tamp.search.operators import Grounded
+
+LINES = 6
+"""How many causes are worth reading."""
+
+
+def explain_infeasible(
+    problem: StreamTask, grounded: Grounded, dead: Mapping[tuple[str, tuple[str, ...]], Rejection]
+) -> tuple[str, ...]:
+    """The goal facts that nothing can make true, and what is known about the objects in them."""
+    lines: list[str] = []
+    blamed: set[tuple[str, tuple[str, ...]]] = set()
+    for fact in unreachable(grounded):
+        words = fact[2:] if fact[0] == "not" else fact[1:]
+        meaning = grounded.meanings.get(fact[0])
+        text = meaning or f"({' '.join(fact)})"
+        causes: list[str] = []
+        for key, rejection in dead.items():
+            if set(_names(problem, key[1])) & set(words):
+                blamed.add(key)
+                causes.append(f"{_call(problem, *key)}: {rejection.reason}")
+        causes = causes or [_never(problem, words)]
+        lines += [f"{text} cannot be reached: {cause}" for cause in causes]
+    lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
+    return tuple(dict.fromkeys(lines)) or ("every way to the goal was searched, and none leads there",)
+
+
+def explain_failures(
+    problem: StreamTask, streams: Streams, experience: Experience, skeleton: Skeleton | None
+) -> tuple[str, ...]:
+    """The call that did not end, what failed most in the plan that was tried last, or else what never worked."""
+    running = streams.running
+    endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
+    rows = _failed(experience, skeleton) if skeleton is not None else _never_worked(problem, streams)
+    none = "no action plan was found yet" if skeleton is None else "no single step failed more than it worked"
+    return (*endless, *rows) or (none,)
+
+
+def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
+    """Kinds of calls, by the objects of the problem among their inputs, that failed whatever else was tried."""
+    failed: dict[str, Counter[str]] = {}
+    worked: set[str] = set()
+    for instance in streams.called():
+        kind = _call(problem, instance.stream.name, instance.inputs)
+        if instance.results:
+            worked.add(kind)
+        elif instance.last is not None:
+            failed.setdefault(kind, Counter())[instance.last.reason] += 1
+    never = [(kind, reasons) for kind, reasons in failed.items() if kind not in worked]
+    never.sort(key=lambda row: -row[1].total())
+    texts = (", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3)) for _, reasons in never)
+    return [f"{kind} never worked: {text}" for (kind, _), text in zip(never[:LINES], texts, strict=False)]
+
+
+def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
+    rows: list[tuple[int, str]] = []
+    seen: set[Fact] = set()
+    for node in skeleton.nodes:
+        records = [(frozenset[Fact](), experience.facts.get(node.fact))]
+        records += [(present, record) for (fact, present), record in experience.nogoods.items() if fact == node.fact]
+        if node.fact in seen:
+            continue
+        seen.add(node.fact)
+        for present, record in records:
+            if record is not None and record.failures > record.successes:
+                rows.append((record.failures, _row(skeleton, node, present, record)))
+    rows.sort(key=lambda row: -row[0])
+    return list(dict.fromkeys(text for _, text in rows[:LINES]))
+
+
+def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Record) -> str:
+    objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
+    reasons = ", ".join(f"{count} {reason}" for reason, count in record.reasons.most_common(3))
+    tries = record.failures + record.successes
+    place = " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present)) if present else ""
+    return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+
+
+def _never(problem: StreamTask, words: tuple[str, ...]) -> str:
+    types = problem.task.objects
+    kinds = [f"{word} is {' and '.join(types[word])}" for word in words if types.get(word)]
+    return f"no action makes it true ({', '.join(kinds)})" if kinds else "no action makes it true"
+
+
+def _names(problem: StreamTask, inputs: tuple[str, ...]) -> list[str]:
+    return [name for name in inputs if isinstance(problem.values.get(name), str)]
+
+
+def _call(problem: StreamTask, name: str, inputs: tuple[str, ...]) -> str:
+    """The call with the objects that the user knows: those of the problem."""
+    return f"{name}({', '.join([x for x in inputs if x in problem.task.objects] or inputs)})"

@@ -1,0 +1,133 @@
+"""The incremental algorithm: sample everything level by level, then search over what is known. The simple reference.
+
+After PDDLStream's incremental algorithm (Garrett, Lozano-Perez, Kaelbling, ICAPS 2020). Streams that certify something
+about the state that they are shown cannot be called before there is a plan; they stay optimistic, and are bound last.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from tamp.algorithms.explanation import explain_infeasible
+from tamp.algorithms.optimistic import Optimism, imagine
+from tamp.algorithms.run import Run
+from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
+from tamp.algorithms.stream import Instance
+from tamp.clock import Deadline, OutOfTime
+from tamp.pddl.structs import Fact
+from tamp.search.instantiate import instantiate
+from tamp.search.operators import Grounded
+
+PER_LEVEL = 2
+"""Values drawn from each generator instance a level."""
+
+ROUNDS = 4
+"""Plans whose fluent streams are tried before the next level."""
+
+TRIES, BUDGET = 4, 200
+"""Draws a visit, and in all, when the fluent streams of a plan are bound."""
+
+
+def solve_incremental(
+    problem: StreamTask,
+    make_rng: Callable[[str], Any],
+    deadline: Deadline,
+    progress: Progress,
+) -> Result:
+    """Plan; the arguments are those of `solve_adaptive`."""
+    return Incremental(problem, make_rng, deadline, progress).solve()
+
+
+class Incremental(Run):
+    """Keeps the real facts found so far; `imagined` looks at those instead of placeholders."""
+
+    def __init__(
+        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+    ) -> None:
+        self.found: dict[Fact, Instance | None] = {}
+        super().__init__(problem, make_rng, deadline, progress)
+
+    def solve(self, most: int | None = None) -> Result:
+        """Sample a level, search and bind what is left, until a plan is found or nothing is new.
+
+        Args:
+            most: Draws after which no further level is begun.
+        """
+        try:
+            while True:
+                fresh = self._sample()
+                result = self._searched(ROUNDS if fresh else None)
+                if result is not None:
+                    return result
+                if not fresh:
+                    return self.result(Outcome.INFEASIBLE, explain_infeasible(self.problem, self.grounded, self.dead))
+                if most is not None and self.binder.units >= most:
+                    return self.result(Outcome.EXHAUSTED)
+                self.progress(self.effort)
+        except OutOfTime:
+            return self.result(Outcome.TIMEOUT)
+        except KeyboardInterrupt:
+            return self.result(Outcome.INTERRUPTED)
+
+    def _searched(self, rounds: int | None) -> Result | None:
+        """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
+        while rounds is None or rounds > 0:
+            self.optimism, self.grounded = self.imagined()
+            found = self.search()
+            if self.deadline.passed:
+                raise OutOfTime
+            if found.plan is None:
+                return None
+            skeleton = self.skeleton(found.plan)
+            self.latest = skeleton
+            before = self.binder.units
+            values = self.binder.bind(skeleton, TRIES, BUDGET)
+            if values is not None:
+                return self.solved(skeleton, values)
+            if not self.bury(skeleton):
+                if self.binder.units == before:
+                    return None
+                rounds = None if rounds is None else rounds - 1
+        return None
+
+    def _sample(self) -> bool:
+        """Call every stream instance that the known facts allow; whether anything may still come of it."""
+        static = [stream for stream in self.useful if not stream.is_fluent]
+        fresh = False
+        known = [*self.known, *self.found]
+        guesses = imagine(static, known, levels=1).makers.values()
+        for guess in dict.fromkeys(guesses):
+            shown = [fact for fact in self.known if fact[0] in guess.stream.declaration.fluents]
+            instance = self.streams.instance(guess.stream.name, guess.inputs, frozenset(shown))
+            for _ in range(1 if guess.stream.is_test else PER_LEVEL):
+                if self.deadline.passed:
+                    raise OutOfTime
+                if instance.exhausted:
+                    break
+                fresh = True
+                self.binder.units += 1
+                outputs = self.streams.draw(instance)
+                if outputs is not None:
+                    for fact in self.streams.certified(instance, outputs):
+                        self.found.setdefault(fact, instance)
+            if instance.exhausted and not instance.results and instance.last is not None:
+                self.dead[guess.stream.name, guess.inputs] = instance.last
+        return fresh
+
+    def imagined(self) -> tuple[Optimism, Grounded]:
+        """The task over real facts, only the fluent streams' outputs are placeholders."""
+        started = time.perf_counter()
+        fluent = [stream for stream in self.useful if stream.is_fluent]
+        optimism = imagine(fluent, [*self.known, *self.found], levels=1)
+        optimism.assumed = self.assumed
+        grounded = instantiate(
+            self.problem.task,
+            [*self.found, *optimism.makers],
+            {**self.objects.types, **optimism.types},
+            assumed=frozenset(self.assumed),
+            refused=frozenset(self.refused),
+        )
+        self.effort.search_seconds += time.perf_counter() - started
+        return optimism, grounded

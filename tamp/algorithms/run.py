@@ -1,0 +1,161 @@
+"""What algorithms are made of: imagine, search, lift, bind, and remember what failed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from tamp.algorithms.binding import Binder, substitute
+from tamp.algorithms.explanation import explain_failures
+from tamp.algorithms.lifting import build_skeleton
+from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
+from tamp.algorithms.skeleton import Skeleton
+from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
+from tamp.algorithms.statistics import Experience
+from tamp.algorithms.steps import to_steps, with_nogoods
+from tamp.algorithms.stream import Objects, Streams
+from tamp.clock import Deadline
+from tamp.pddl.structs import Fact
+from tamp.rejection import Rejection
+from tamp.search.forward import Plan, Reason, search
+from tamp.search.forward import Result as Found
+from tamp.search.instantiate import instantiate
+from tamp.search.operators import Grounded
+
+FEW = 8
+"""A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
+
+SEARCH_LIMIT = 2000
+"""States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
+
+
+class Run:
+    """One run of planning: what it knows, and the steps that algorithms are made of."""
+
+    def __init__(
+        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+    ) -> None:
+        task = problem.task
+        self.problem = problem
+        self.make_rng = make_rng
+        self.deadline = deadline
+        self.progress = progress
+        self.objects = Objects(
+            {**task.domain.constants, **task.objects},
+            {**{name: name for name in task.domain.constants}, **problem.values},
+        )
+        self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
+        self.experience = Experience()
+        self.binder = Binder(self.streams, self.experience, deadline)
+        self.effort = Effort()
+        self.skeletons: dict[object, Skeleton] = {}
+        self.latest: Skeleton | None = None
+        self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
+        useful = relevant(problem.streams, used_predicates(task))
+        self.assumed = assumable(useful, task)
+        tests = {stream.name for stream, _ in self.assumed.values()}
+        self.useful = [stream for stream in useful if stream.name not in tests]
+        self.refused: set[Fact] = set()
+        self.names: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
+        self.settled: set[tuple[str, tuple[str, ...]]] = set()
+        self.real: dict[Fact, None] = {}
+        self.known = [*sorted(task.initial), *type_facts(task)]
+        self.optimism, self.grounded = self.imagined()
+
+    def imagined(self) -> tuple[Optimism, Grounded]:
+        """The optimistic task without the calls that are known to be dead."""
+        started = time.perf_counter()
+        optimism = imagine(
+            self.useful, [*self.known, *self.real], dead=frozenset((*self.dead, *self.settled)), names=self.names
+        )
+        optimism.assumed = self.assumed
+        grounded = instantiate(
+            self.problem.task,
+            [*self.real, *optimism.makers],
+            {**self.objects.types, **optimism.types},
+            assumed=frozenset(self.assumed),
+            refused=frozenset(self.refused),
+        )
+        self.effort.search_seconds += time.perf_counter() - started
+        return optimism, grounded
+
+    def search(self) -> Found:
+        """A plan of the optimistic task, priced by experience."""
+        started = time.perf_counter()
+        grounded, prices = with_nogoods(self.grounded, self.experience)
+        prices |= self.experience.prices()
+        found = search(grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline)
+        self.effort.expanded += found.expanded
+        if found.reason is Reason.LIMIT:  # with many prices many plans look alike: then any plan will do
+            found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
+            self.effort.expanded += found.expanded
+        self.effort.searches += 1
+        self.effort.search_seconds += time.perf_counter() - started
+        return found
+
+    def skeleton(self, plan: Plan) -> Skeleton:
+        """The plan's skeleton; the same one when the plan was found before."""
+        signature = tuple((operator.name, operator.arguments) for operator in plan.operators)
+        if signature not in self.skeletons:
+            steps, goal = to_steps(self.grounded, plan)
+            self.skeletons[signature] = build_skeleton(steps, goal, self.optimism.maker)
+            self.effort.skeletons = len(self.skeletons)
+        return self.skeletons[signature]
+
+    def bury(self, skeleton: Skeleton) -> bool:
+        """Note the calls with real inputs that ended without any value; whether there were new ones."""
+        before = len(self.dead) + len(self.settled)
+        for node in skeleton.nodes:
+            if node.stream.is_fluent or any(isinstance(term, int) for term in node.inputs):
+                continue
+            inputs = tuple(str(term) for term in node.inputs)
+            for instance in self.streams.instances(node.stream.name, inputs):
+                if not instance.exhausted:
+                    continue
+                if not instance.results:
+                    self.dead.setdefault((node.stream.name, inputs), instance.last or Rejection("has no value"))
+                    self.refused.add(node.fact)
+                elif not node.stream.is_advisory and len(instance.results) <= FEW:
+                    self.settled.add((node.stream.name, inputs))
+                    for outputs in instance.results:
+                        self.real.update(dict.fromkeys(self.streams.certified(instance, outputs)))
+        if self.settled:
+            self._refuse_tests()
+        return len(self.dead) + len(self.settled) > before
+
+    def _refuse_tests(self) -> None:
+        """Note all tests of settled values that turned out false, so that no search proposes them one by one."""
+        settled = {name for fact in self.real for name in fact[1:]} | self.problem.task.objects.keys()
+        for instance in self.streams.false_tests():
+            if settled.issuperset(instance.inputs):
+                key = (instance.stream.name, instance.inputs)
+                self.dead.setdefault(key, instance.last or Rejection("does not hold"))
+                self.refused.update(self.streams.certified(instance, ()))
+
+    def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
+        """The bound plan."""
+        actions = tuple(
+            GroundAction(name, substitute((name, terms), values)[1:], step.cost)
+            for (name, terms), step in zip(skeleton.actions, skeleton.steps, strict=True)
+        )
+        initial = self.problem.task.initial
+        certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
+        result = self.result(Outcome.SOLVED, ())
+        result.actions = actions
+        result.certified = tuple(sorted(fact for fact in certified if fact not in initial))
+        return result
+
+    def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
+        """What the run ends with; by default the explanation is what failed most."""
+        if explanation is None:
+            explanation = explain_failures(self.problem, self.streams, self.experience, self.latest)
+        self.effort.draws = self.binder.units
+        return Result(
+            outcome=outcome,
+            objects=self.objects,
+            statistics=self.streams.statistics,
+            effort=self.effort,
+            explanation=explanation,
+            warnings=tuple(self.streams.warnings),
+        )

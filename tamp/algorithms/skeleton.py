@@ -1,0 +1,97 @@
+"""A skeleton: an action plan over variables, and the stream calls that give them values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tamp.algorithms.stream import BoundStream
+from tamp.pddl.structs import Fact
+
+Term = str | int
+"""A real object's name, or the number of a variable."""
+
+LiftedFact = tuple[str, tuple[Term, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Usage:
+    """A test's fact that a step needs because `present` holds in the state before it."""
+
+    fact: Fact
+    present: frozenset[Fact]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One action of an optimistic plan.
+
+    Attributes:
+        name: The action's.
+        arguments: Real objects or placeholders.
+        state: The fluent facts before it.
+        positive: The fluent facts that it reads.
+        added: The facts that it makes true.
+        deleted: The facts that it makes false.
+        static: The static facts that it rests on.
+        usages: The tests that the state asks for.
+        cost: Its cost.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    state: frozenset[Fact]
+    positive: frozenset[Fact]
+    added: frozenset[Fact]
+    deleted: frozenset[Fact]
+    static: frozenset[Fact]
+    usages: tuple[Usage, ...]
+    cost: float = 1.0
+
+
+@dataclass(eq=False)
+class Node:
+    """One stream call of a skeleton.
+
+    Attributes:
+        stream: Whose call it is.
+        guess: The symbolic inputs and outputs that stand behind the variables, as (inputs, outputs).
+        inputs: Terms.
+        outputs: Variables.
+        step: The first step that needs it.
+        fluents: The facts that its function is shown, with what each is called symbolically.
+        fact: The first symbolic fact that it certifies: what is blamed when it fails.
+    """
+
+    stream: BoundStream
+    guess: tuple[tuple[str, ...], tuple[str, ...]]
+    inputs: tuple[Term, ...]
+    outputs: tuple[int, ...]
+    step: int
+    fact: Fact
+    fluents: tuple[tuple[LiftedFact, Fact], ...] = ()
+
+
+@dataclass(eq=False)
+class Skeleton:
+    """An action plan over variables, and the stream calls that give them values.
+
+    Attributes:
+        steps: The optimistic plan.
+        actions: Name and terms of each action.
+        nodes: The calls, in an order that fails early.
+        certified: The static facts that the plan rests on, over terms.
+    """
+
+    steps: tuple[Step, ...]
+    actions: tuple[tuple[str, tuple[Term, ...]], ...]
+    nodes: tuple[Node, ...]
+    certified: tuple[LiftedFact, ...]
+    rounds: int = 0
+    memory: dict[int, tuple[tuple[object, ...], tuple[str, ...]]] = field(
+        default_factory=dict[int, tuple[tuple[object, ...], tuple[str, ...]]]
+    )
+
+    @property
+    def signature(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """What tells it from other skeletons."""
+        return tuple((step.name, step.arguments) for step in self.steps)

@@ -1,0 +1,89 @@
+"""What planning over streams ends with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from tamp.algorithms.statistics import StreamStatistics
+from tamp.algorithms.stream import BoundStream, Objects
+from tamp.pddl.structs import Fact, Task
+
+
+class Outcome(Enum):
+    """How planning ended; the value is the sentence that a user reads."""
+
+    SOLVED = "Solved"
+    INFEASIBLE = "No plan: infeasible"
+    EXHAUSTED = "No plan: everything there was to try failed"
+    TIMEOUT = "No plan in the time given"
+    INTERRUPTED = "Interrupted before a plan was found"
+
+
+@dataclass(frozen=True)
+class StreamTask:
+    """A symbolic task and the streams that extend it.
+
+    Attributes:
+        task: Objects, initial facts (static ones too) and goal.
+        streams: Bound to their functions.
+        values: The objects' values, where they are more than their names.
+    """
+
+    task: Task
+    streams: tuple[BoundStream, ...]
+    values: Mapping[str, object]
+
+
+@dataclass(frozen=True)
+class GroundAction:
+    """An action of a plan: its name and the names of its arguments."""
+
+    name: str
+    arguments: tuple[str, ...]
+    cost: float = 1.0
+
+
+@dataclass
+class Effort:
+    """How much was done.
+
+    Attributes:
+        searches: Symbolic searches.
+        expanded: Search nodes expanded.
+        skeletons: Different action plans that were tried to be bound.
+        draws: Stream calls.
+        search_seconds: Wall-clock time in search and instantiation.
+    """
+
+    searches: int = 0
+    expanded: int = 0
+    skeletons: int = 0
+    draws: int = 0
+    search_seconds: float = 0.0
+
+
+@dataclass
+class Result:
+    """The symbolic side of a solution.
+
+    Attributes:
+        actions: The plan, empty unless solved.
+        certified: Static facts that streams certified and the plan rests on.
+        objects: Names, types and values of everything in it.
+        explanation: Why there is no plan, a line a cause.
+    """
+
+    outcome: Outcome
+    objects: Objects
+    actions: tuple[GroundAction, ...] = ()
+    certified: tuple[Fact, ...] = ()
+    statistics: dict[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
+    effort: Effort = field(default_factory=Effort)
+    explanation: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+Progress = Callable[[Effort], None]
+"""Called between rounds with what was done so far."""

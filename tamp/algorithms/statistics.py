@@ -1,0 +1,78 @@
+"""What was tried, what it cost, and why it failed: the record that explanations and efforts read."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+
+@dataclass
+class StreamStatistics:
+    """Counts of one stream's tries.
+
+    Attributes:
+        calls: Tries.
+        successes: Tries that gave a value (for a test: that held).
+        seconds: Wall-clock time inside its function.
+        reasons: Why the others failed.
+    """
+
+    calls: int = 0
+    successes: int = 0
+    seconds: float = 0.0
+    reasons: Counter[str] = field(default_factory=Counter[str])
+
+
+@dataclass
+class Record:
+    """Successes and failures of one thing in a skeleton: a test's fact, a stream's instance."""
+
+    successes: int = 0
+    failures: int = 0
+    reasons: Counter[str] = field(default_factory=Counter[str])
+
+    @property
+    def expected_failures(self) -> float:
+        """Failures to expect before the next success: the mean of 1/p - 1 under a flat prior, 0 when untried."""
+        return max(0.0, (self.failures + 1.0) / (self.successes + 1.0) - 1.0)
+
+    @property
+    def price(self) -> float:
+        """What relying on it costs, in units of the actions' costs."""
+        return SCALE * self.expected_failures
+
+
+SCALE = 0.4
+"""An expected failure costs this much of an action of cost 1: about ten failures outweigh moving a body away."""
+
+
+class Experience:
+    """What binding learned about the symbolic facts of the optimistic task, priced for the next search.
+
+    A test that fails blocks exactly the facts it read: `facts` prices the optimistic static facts that need it, and
+    `nogoods` prices a static fact in the presence of named fluent facts.
+    """
+
+    def __init__(self) -> None:
+        self.facts: dict[tuple[str, ...], Record] = {}
+        self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], Record] = {}
+
+    def note(self, fact: tuple[str, ...], reason: str | None) -> None:
+        """Count a try of whatever certifies `fact`: a success, or a failure for a reason."""
+        self._count(self.facts.setdefault(fact, Record()), reason)
+
+    def note_nogood(self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str) -> None:
+        """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
+        self._count(self.nogoods.setdefault((fact, present), Record()), reason)
+
+    def prices(self) -> dict[tuple[str, ...], float]:
+        """The extra cost of an action that rests on a fact, for those that cost something."""
+        return {fact: record.price for fact, record in self.facts.items() if record.price > 0.0}
+
+    @staticmethod
+    def _count(record: Record, reason: str | None) -> None:
+        if reason is None:
+            record.successes += 1
+        else:
+            record.failures += 1
+            record.reasons[reason] += 1

@@ -1,0 +1,67 @@
+"""From a grounded plan to the steps of a skeleton."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tamp.algorithms.skeleton import Step, Usage
+from tamp.algorithms.statistics import Experience
+from tamp.pddl.structs import Fact
+from tamp.search.forward import Plan
+from tamp.search.operators import Grounded, Guard, Operator
+from tamp.search.trace import trace
+
+NOGOOD = "(nogood)"
+"""The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
+
+
+def with_nogoods(grounded: Grounded, experience: Experience) -> tuple[Grounded, dict[Fact, float]]:
+    """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
+    if not experience.nogoods:
+        return grounded, {}
+    guards: dict[Fact, list[Guard]] = {}
+    prices: dict[Fact, float] = {}
+    for number, ((fact, present), record) in enumerate(experience.nogoods.items()):
+        name = (NOGOOD, str(number))
+        prices[name] = record.price
+        guards.setdefault(fact, []).append(Guard(present, name))
+    operators = tuple(
+        _guarded(operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())])
+        for operator in grounded.operators
+    )
+    return replace(grounded, operators=operators), prices
+
+
+def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
+    if not guards:
+        return operator
+    return replace(operator, guards=(*operator.guards, *guards))
+
+
+def to_steps(grounded: Grounded, plan: Plan) -> tuple[tuple[Step, ...], tuple[frozenset[Fact], frozenset[Fact]]]:
+    """The plan's steps, and for the goal the final state and the static facts that support it."""
+    traced = trace(grounded, plan.operators)
+    derived = {axiom.head for axiom in grounded.axioms}
+    steps: list[Step] = []
+    for step in traced.steps:
+        operator = step.operator
+        usages = [
+            Usage(guard.lifted_by, guard.facts)
+            for guard in step.guards
+            if guard.lifted_by is not None and guard.lifted_by[0] != NOGOOD
+        ]
+        used = {usage.fact for usage in usages}
+        steps.append(
+            Step(
+                name=operator.name,
+                arguments=operator.arguments,
+                state=step.state,
+                positive=operator.positive - derived,
+                added=operator.added,
+                deleted=operator.deleted,
+                static=frozenset(fact for fact in step.static if fact[0] != NOGOOD and fact not in used),
+                usages=tuple(sorted(usages, key=lambda usage: (usage.fact, sorted(usage.present)))),
+                cost=operator.cost,
+            )
+        )
+    return tuple(steps), (traced.final, traced.goal)
