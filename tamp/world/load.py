@@ -1,0 +1,141 @@
+"""From a problem file in YAML to a frozen scene. docs/problem-format.md describes the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from tamp.data import find_problem
+from tamp.errors import InputError
+from tamp.world.bodies import Draft, read_body
+from tamp.world.placing import FLOOR, place_bodies
+from tamp.world.scene import RobotStart, Room, Scene
+from tamp.world.yaml_nodes import Node, Passage, read_yaml
+
+_KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
+
+
+@dataclass(frozen=True)
+class LoadedProblem:
+    """A problem file: the scene, and what only the symbolic side understands.
+
+    Attributes:
+        path: The file.
+        scene: Everything geometric.
+        goal: In PDDL, with its place in the file.
+        domain: The domain's name or path, when the file names one.
+        init: Facts that hold at the start beside those that the scene implies.
+        metric: In PDDL.
+        samplers: Sampler by relation, as `--sampler` gives them.
+        meshes: The mesh files that were read.
+        warnings: What was repaired or looks odd, one sentence each.
+        lines: 1-based line of each body and of `robot`, for later errors about them.
+    """
+
+    path: Path
+    scene: Scene
+    goal: Passage
+    domain: str | None
+    init: tuple[Passage, ...]
+    metric: Passage | None
+    samplers: Mapping[str, str]
+    meshes: tuple[Path, ...]
+    warnings: tuple[str, ...]
+    lines: Mapping[str, int]
+
+    def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
+        """An error about this problem, or about one of its bodies or its `robot`, with file and line."""
+        return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
+
+
+def load_scene(problem: str | Path) -> LoadedProblem:
+    """Load a problem file.
+
+    Args:
+        problem: A path, or the name of a shipped problem.
+
+    Raises:
+        InputError: Anything wrong with the file, with its line.
+    """
+    path = find_problem(problem)
+    root = read_yaml(path)
+    entries = root.mapping(_KEYS, required=("robot", "room", "bodies", "goal"))
+    name = entries["name"].text() if "name" in entries else path.stem
+    room = _room(entries["room"])
+    robot = _robot(entries["robot"], room)
+    drafts = {
+        body: read_body(body, node, path.parent) for body, node in entries["bodies"].mapping().items()
+    }  # fmt: skip
+    _check_names(drafts)
+    bodies, warnings = place_bodies(drafts)
+    meshes = [(body, draft.mesh) for body, draft in drafts.items() if draft.mesh]
+    samplers = entries["samplers"].mapping() if "samplers" in entries else {}
+    return LoadedProblem(
+        path=path,
+        scene=Scene(name, MappingProxyType(bodies), robot, room),
+        goal=entries["goal"].passage(),
+        domain=entries["domain"].text() if "domain" in entries else None,
+        init=tuple(fact.passage() for fact in entries["init"].items()) if "init" in entries else (),
+        metric=entries["metric"].passage() if "metric" in entries else None,
+        samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
+        meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
+        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings),
+        lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
+    )
+
+
+def _room(node: Node) -> Room:
+    entries = node.mapping(("x", "y"), required=("x", "y"))
+    limits: list[tuple[float, float]] = []
+    for axis in ("x", "y"):
+        low, high = entries[axis].numbers(2)
+        if not low < high:
+            raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
+        limits.append((low, high))
+    return Room(*limits)
+
+
+def _robot(node: Node, room: Room) -> RobotStart:
+    from tamp.world.robot import ROBOTS  # not needed to read the rest
+
+    entries = node.mapping(("model", "base", "arm"), required=("model", "base"))
+    model = entries["model"].text(tuple(ROBOTS), "robot")
+    base = entries["base"].items(3)
+    x, y, yaw = base[0].number(), base[1].number(), base[2].angle()
+    for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
+        if not low <= value <= high:
+            raise entries["base"].error(
+                f"the robot starts out of the room: {axis} = {value:g} is not within [{low:g}, {high:g}]"
+            )
+    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
+
+
+def _arm(node: Node, model: str) -> tuple[float, ...]:
+    from tamp.world.robot import ROBOTS
+
+    robot = ROBOTS[model]()
+    joints = node.items(len(robot.lower))
+    angles = tuple(joint.angle() for joint in joints)
+    for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):
+        if not low <= angle <= high:
+            raise joint.error(f"{angle:g} rad is outside of the joint's limits [{low:g}, {high:g}]")
+    return angles
+
+
+def _check_names(drafts: Mapping[str, Draft]) -> None:
+    """All share one space of names, in which case does not count (PDDL's rule); one place may be named as its body."""
+    owners = {"robot": "the robot", FLOOR: "the floor"}
+    for name, draft in drafts.items():
+        if name.lower() in owners:
+            raise draft.node.error(f"the name '{name}' is taken by {owners[name.lower()]}")
+        owners[name.lower()] = f"body '{name}'"
+    for name, draft in drafts.items():
+        own = True
+        for place in (*draft.body.surfaces, *draft.body.cavities):
+            key = place.name.lower()
+            if key in owners and not (own and place.name == name):
+                raise draft.node.error(f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}")
+            own = own and place.name != name
+            owners[key] = f"a surface or cavity of '{name}'"

@@ -1,0 +1,110 @@
+"""Rigid transforms. Inner names cancel: T_world_tool = T_world_base @ T_base_tool."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A position and an orientation of one frame in another.
+
+    Attributes:
+        position: x, y, z in metres.
+        quaternion: x, y, z, w, of unit norm.
+    """
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    quaternion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The homogeneous matrix, shape (4, 4), read-only."""
+        x, y, z, w = self.quaternion
+        matrix = np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), self.position[0]],
+                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), self.position[1]],
+                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), self.position[2]],
+                [0.0, 0.0, 0.0, 1.0],
+            ]
+        )
+        matrix.flags.writeable = False
+        return matrix
+
+    @property
+    def rotation(self) -> Array:
+        """The rotation matrix, shape (3, 3)."""
+        return self.matrix[:3, :3]
+
+    @property
+    def yaw(self) -> float:
+        """Rotation about z of the frame's x axis, radians in (-pi, pi]."""
+        return math.atan2(self.matrix[1, 0], self.matrix[0, 0])
+
+    @classmethod
+    def from_matrix(cls, matrix: Array) -> Pose:
+        """From a homogeneous matrix, shape (4, 4)."""
+        return cls(_floats3(matrix[:3, 3]), quaternion_from_matrix(matrix[:3, :3]))
+
+    @classmethod
+    def from_xyz_yaw(cls, x: float, y: float, z: float, yaw: float) -> Pose:
+        """Upright at (x, y, z) metres, turned by yaw radians about z."""
+        return cls((float(x), float(y), float(z)), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
+
+    @classmethod
+    def from_xyz_rpy(cls, xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Pose:
+        """From a position in metres and URDF's roll, pitch, yaw in radians (fixed axes x, y, z)."""
+        (cr, cp, cy), (sr, sp, sy) = ([f(angle / 2) for angle in rpy] for f in (math.cos, math.sin))
+        quaternion = (
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+            cr * cp * cy + sr * sp * sy,
+        )
+        return cls((float(xyz[0]), float(xyz[1]), float(xyz[2])), quaternion)
+
+    def __matmul__(self, other: Pose) -> Pose:
+        return Pose.from_matrix(self.matrix @ other.matrix)
+
+    def inverse(self) -> Pose:
+        """The other frame's pose in this one."""
+        rotation = self.rotation.T
+        x, y, z, w = self.quaternion
+        return Pose(_floats3(-rotation @ np.array(self.position)), (-x, -y, -z, w))
+
+    def apply(self, points: Array) -> Array:
+        """Express points of the inner frame in the outer one. Shape (n, 3), metres."""
+        return points @ self.rotation.T + self.matrix[:3, 3]
+
+
+def quaternion_from_matrix(rotation: Array) -> tuple[float, float, float, float]:
+    """The unit quaternion x, y, z, w of a rotation matrix, shape (3, 3), with w >= 0 (Shepperd's method)."""
+    r = rotation
+    trace = r[0, 0] + r[1, 1] + r[2, 2]
+    squares = (r[0, 0], r[1, 1], r[2, 2], trace)
+    largest = max(range(4), key=squares.__getitem__)
+    if largest == 3:
+        q = (r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], 1.0 + trace)
+    else:
+        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
+        parts = [0.0, 0.0, 0.0, 0.0]
+        parts[i] = 1.0 - trace + 2.0 * r[i, i]
+        parts[j] = r[j, i] + r[i, j]
+        parts[k] = r[k, i] + r[i, k]
+        parts[3] = r[k, j] - r[j, k]
+        q = tuple(parts)
+    scale = math.sqrt(sum(c * c for c in q)) * (1.0 if q[3] >= 0 else -1.0)
+    x, y, z, w = (float(c) / scale for c in q)
+    return (x, y, z, w)
+
+
+def _floats3(values: Array) -> tuple[float, float, float]:
+    return (float(values[0]), float(values[1]), float(values[2]))
