@@ -1,0 +1,106 @@
+"""What all streams of one problem share: the scene, the robot, and the tools that were built for them once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from tamp.streams.relations import Generator
+from tamp.streams.resting import Resting, resting_of
+from tamp.streams.values import Grasp
+from tamp.world.bounds import bounds
+from tamp.world.collision import Arrangement, Attachment, Collisions
+from tamp.world.hand import HandCollisions
+from tamp.world.inverse_kinematics import ArmIK
+from tamp.world.kinematics import Kinematics
+from tamp.world.pose import Array, Pose
+from tamp.world.reachability import Reachability
+from tamp.world.robot import Robot
+from tamp.world.scene import Scene
+
+
+@dataclass
+class Context:
+    """The shared tools of one problem's streams.
+
+    Attributes:
+        scene: The problem's geometry.
+        robot: Its robot.
+        generators: Relation to the generator that serves it.
+        steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
+    """
+
+    scene: Scene
+    robot: Robot
+    generators: Mapping[str, Generator]
+    steering: str = "se2"
+    _radii: dict[str, float] = field(default_factory=dict[str, float])
+    _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        """Forward kinematics of the robot."""
+        return Kinematics(self.robot)
+
+    @cached_property
+    def ik(self) -> ArmIK:
+        """Inverse kinematics of the arm."""
+        return ArmIK(self.robot)
+
+    @cached_property
+    def reachability(self) -> Reachability:
+        """Where the base may stand for a tool pose."""
+        return Reachability(self.robot)
+
+    @cached_property
+    def collisions(self) -> Collisions:
+        """Collision detection among the scene's bodies and the robot."""
+        return Collisions(self.scene, self.robot, self.kinematics)
+
+    @cached_property
+    def hand(self) -> HandCollisions:
+        """Collision detection of the hand alone."""
+        return HandCollisions(self.scene, self.robot)
+
+    @cached_property
+    def home(self) -> Array:
+        """The arm's configuration between actions, shape (7,)."""
+        arm = self.scene.robot.arm
+        return np.array(self.robot.home if arm is None else arm)
+
+    def resting(self, body: str) -> Resting:
+        """The ways in which a body can rest."""
+        return resting_of(self.scene.bodies[body])
+
+    def radius(self, body: str) -> float:
+        """Of a sphere around the body's frame that contains the body, metres."""
+        if body not in self._radii:
+            low, high = bounds(self.scene.bodies[body].parts, Pose())
+            self._radii[body] = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+        return self._radii[body]
+
+    def conf(self, base: tuple[float, float, float] | Array, arm: Array) -> Array:
+        """The configuration (10,) of a base and an arm."""
+        return np.concatenate([np.asarray(base, dtype=float), arm])
+
+    def attachment(self, grasp: Grasp) -> Attachment:
+        """The grasp as the collision layer wants it."""
+        return Attachment(grasp.body, grasp.T_tool_body, grasp.opening)
+
+    def fixed_only(self, grasp: Grasp | None) -> Arrangement:
+        """The robot, with what it holds, among the fixed bodies."""
+        if grasp not in self._fixed_only:
+            attachment = None if grasp is None else self.attachment(grasp)
+            self._fixed_only[grasp] = self.collisions.arrangement({}, attachment)
+        return self._fixed_only[grasp]
+
+    def scene_at(self, poses: Mapping[str, Pose], absent: str | None = None) -> Scene:
+        """The scene with bodies where they are at a step of the plan; `absent` stays at its start."""
+        bodies = {
+            name: replace(body, pose=poses[name]) if name in poses and name != absent else body
+            for name, body in self.scene.bodies.items()
+        }
+        return replace(self.scene, bodies=bodies)

@@ -1,0 +1,56 @@
+"""What is out of the arm's reach for certain."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tamp.call import Call
+from tamp.rejection import Rejection
+from tamp.streams.context import Context
+from tamp.world.bounds import bounds
+from tamp.world.pose import Array, Pose
+from tamp.world.robot import Robot
+
+PAD = 0.02
+"""How far the fingers reach beyond the tool's origin, metres."""
+
+
+def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool | Rejection:
+    """Whether any base pose in the room could bring any point of the arm to the body: false only when proven."""
+    return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
+
+
+def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
+    """Whether the arm could touch a box with corners `low` and `high` (3,) from some place in the room.
+
+    A necessary condition: the shoulder stays at one height and over the room's rectangle grown by its offset.
+    """
+    robot, room = context.robot, context.scene.room
+    shoulder, span = _shoulder(robot), arm_length(robot)
+    vertical = max(low[2] - shoulder[2], shoulder[2] - high[2], 0.0)
+    if vertical > span:
+        side = "high" if low[2] > shoulder[2] else "low"
+        return Rejection(
+            f"out of reach (too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m)"
+        )
+    offset = math.hypot(shoulder[0], shoulder[1])
+    horizontal = math.hypot(
+        max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),
+        max(low[1] - room.y[1] - offset, room.y[0] - offset - high[1], 0.0),
+    )
+    if math.hypot(horizontal, vertical) > span:
+        return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
+    return True
+
+
+def arm_length(robot: Robot) -> float:
+    """From the second joint to the finger tips of the arm stretched out, metres; an upper bound."""
+    pieces = [joint.origin for joint in robot.joints[2:]] + [robot.T_flange_hand, robot.T_hand_tool]
+    return sum(math.hypot(*piece.position) for piece in pieces) + PAD
+
+
+def _shoulder(robot: Robot) -> Array:
+    """Where the second joint is in the base's frame, (3,)."""
+    return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)

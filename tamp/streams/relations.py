@@ -1,0 +1,39 @@
+"""What grounds a relation such as `on`: a generator that proposes poses, and a classifier that judges them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
+
+from numpy.random import Generator as Random
+
+from tamp.world.pose import Pose
+from tamp.world.scene import Scene
+
+
+@runtime_checkable
+class Generator(Protocol):
+    """Proposes poses of a relation's first argument that may make the relation hold.
+
+    What it proposes is advice: the stream that asks puts each pose to rest and certifies it, or rejects it.
+    """
+
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+        """At most `count` world poses of body `arguments[0]`; an empty list when there will never be any.
+
+        Args:
+            scene: The scene at that step of the plan: other bodies where they will be, the proposed one at its start.
+            arguments: The relation's arguments: (body, surface) or (body, cavity).
+            count: How many are wanted.
+            rng: The only source of randomness.
+        """
+        ...
+
+
+@runtime_checkable
+class Classifier(Protocol):
+    """Judges whether a relation holds in a scene."""
+
+    def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
+        """The probability in [0, 1] that the relation holds for these arguments."""
+        ...

@@ -1,0 +1,156 @@
+"""Grasps hold: pads on opposite faces, the open hand free, within the opening; from above and from the sides."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from tamp.streams.grasps import sample_grasps
+from tamp.streams.hand_fit import CONE
+from tamp.streams.solid import Solid
+from tamp.streams.values import Grasp
+from tamp.world.fcl_bodies import FclBody, touch
+from tamp.world.pose import Pose
+from tamp.world.robot import Robot, panda_mobile
+from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
+
+
+def body(*parts: Shape | Part, pose: Pose | None = None) -> Body:
+    placed = tuple(part if isinstance(part, Part) else Part(part) for part in parts)
+    return Body("thing", placed, pose or Pose.from_xyz_yaw(0.3, 0.2, 0.8, 0.7), movable=True)
+
+
+def wedge_block(size: tuple[float, float, float]) -> Hull:
+    """A box as a mesh's piece."""
+    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * size
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    return Hull(corners, faces)
+
+
+BODIES = {
+    "cracker box": body(Box((0.06, 0.16, 0.21))),
+    "soup can": body(Cylinder(0.033, 0.102)),
+    "tuna can": body(Cylinder(0.042, 0.033)),
+    "ball": body(Sphere(0.035)),
+    "cube": body(Box((0.05, 0.05, 0.05))),
+    "thin plate": body(Box((0.15, 0.15, 0.012))),
+    "lying can": body(Cylinder(0.033, 0.102), pose=Pose.from_xyz_rpy((0.0, 0.0, 0.8), (math.pi / 2, 0.0, 0.3))),
+    "hammer": body(
+        Part(wedge_block((0.03, 0.03, 0.15))), Part(wedge_block((0.12, 0.03, 0.03)), Pose((0.0, 0.0, 0.09)))
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return panda_mobile()
+
+
+def first(robot: Robot, thing: Body, count: int, seed: int = 0) -> list[Grasp]:
+    return list(itertools.islice(sample_grasps(thing, robot, np.random.default_rng(seed)), count))
+
+
+def hand_hits(robot: Robot, thing: Body, T_body_tool: np.ndarray, opening: float, links: slice) -> bool:
+    """Whether links of the hand touch the body, by their own forward kinematics."""
+    T_body_hand = T_body_tool @ robot.T_hand_tool.inverse().matrix
+    poses = [T_body_hand]
+    for finger in robot.fingers:
+        T_hand_finger = finger.origin.matrix.copy()
+        T_hand_finger[:3, 3] += np.array(finger.axis) * opening / 2
+        poses.append(T_body_hand @ T_hand_finger)
+    static = FclBody(thing.parts)
+    items = [static.place(index, np.eye(4)) for index in range(len(thing.parts))]
+    return any(
+        touch(FclBody(link.parts).place(0, T), item, 0.0)
+        for link, T in list(zip(robot.links[-3:], poses, strict=True))[links]
+        for item in items
+    )
+
+
+@pytest.mark.parametrize("name", sorted(BODIES))
+def test_grasps_hold(robot: Robot, name: str) -> None:
+    thing = BODIES[name]
+    grasps = first(robot, thing, 25)
+    assert len(grasps) == 25
+    for grasp in grasps:
+        assert grasp.body == "thing" and 0.0 < grasp.opening <= 0.0765
+        T = grasp.T_tool_body.inverse().matrix
+        for back in (0.0, 0.01, 0.03, 0.07, 0.1):
+            moved = T.copy()
+            moved[:3, 3] -= back * T[:3, 2]
+            assert not hand_hits(robot, thing, moved, robot.opening, slice(0, 3))  # open, here and on its way
+        assert not hand_hits(robot, thing, T, grasp.opening, slice(0, 3))  # holding does not penetrate
+        for finger in (slice(1, 2), slice(2, 3)):
+            assert hand_hits(robot, thing, T, grasp.opening - 0.002, finger)  # and both fingers do touch
+
+
+@pytest.mark.parametrize("name", sorted(BODIES))
+def test_contacts_oppose_each_other(robot: Robot, name: str) -> None:
+    thing = BODIES[name]
+    solid = Solid(thing)
+    opposed = 0
+    for grasp in first(robot, thing, 25):
+        T = grasp.T_tool_body.inverse().matrix
+        for x, z in itertools.product((-0.006, 0.0, 0.006), repeat=2):
+            contact = solid.solid_at(T[:3, 3] + T[:3, :3] @ (x, 0.0, z), T[:3, 1])
+            if contact is not None and contact.end - contact.start > grasp.opening - 0.004:
+                assert abs(contact.start + contact.end) < 0.004
+                opposed += contact.end_normal @ T[:3, 1] > math.cos(CONE) and -contact.start_normal @ T[
+                    :3, 1
+                ] > math.cos(CONE)
+    assert opposed >= 25
+
+
+def test_a_box_is_grasped_from_above_and_from_the_sides(robot: Robot) -> None:
+    thing = BODIES["cube"]
+    directions = [thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2] for grasp in first(robot, thing, 12)]
+    heights = np.array(directions)[:, 2]
+    assert np.any(heights < -0.99) and np.sum(np.abs(heights) < 0.01) >= 4
+    assert np.all(heights < 0.1)  # none of the canonical ones from below
+    sides = {(round(x), round(y)) for x, y, z in np.array(directions) @ thing.pose.rotation if abs(z) < 0.01}
+    assert sides == {(1, 0), (-1, 0), (0, 1), (0, -1)}
+
+
+def test_up_is_the_bodys_present_up(robot: Robot) -> None:
+    lying = BODIES["lying can"]
+    heights = [
+        (lying.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2] for grasp in first(robot, lying, 12)
+    ]
+    assert min(heights) < -0.99 and max(heights) < 0.1
+
+
+def test_slanted_grasps_come_too(robot: Robot) -> None:
+    thing = BODIES["cube"]
+    heights = [
+        (thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2] for grasp in first(robot, thing, 60)
+    ]
+    for angle in (30, 45, 60):
+        assert any(abs(height + math.cos(math.radians(angle))) < 0.01 for height in heights)
+
+
+def test_the_stream_goes_on_and_differs_by_seed_only(robot: Robot) -> None:
+    thing = BODIES["soup can"]
+    once, again, other = first(robot, thing, 80), first(robot, thing, 80), first(robot, thing, 80, seed=1)
+    assert once == again and once != other
+    assert len(once) == 80 and len(set(once)) == 80
+
+
+@pytest.mark.parametrize("shape", [Box((0.1, 0.1, 0.1)), Sphere(0.05), Cylinder(0.06, 0.2)])
+def test_a_body_that_is_too_wide_has_no_grasp(robot: Robot, shape: Shape) -> None:
+    assert first(robot, body(shape), 1) == []
+
+
+def test_a_thin_body_on_its_support_is_not_grasped_through_it(robot: Robot) -> None:
+    """The tips stay inside the body's extent along a canonical approach: what it stands on is right behind."""
+    thing = body(Box((0.06, 0.06, 0.02)))
+    checked = 0
+    for grasp in first(robot, thing, 6):
+        T = grasp.T_tool_body.inverse().matrix
+        if T[2, 2] < -0.99:
+            assert T[2, 3] - 0.009 > -0.01
+            checked += 1
+    assert checked > 0
