@@ -1,0 +1,299 @@
+"""The only file that knows pybullet: bodies and the robot in an engine of their own.
+
+Measured (tests/simulation/test_physics.py): distances between boxes, cylinders and spheres are exact; Bullet pads a
+convex hull by 1 mm, which is added back here. (A hull whose pad is set to zero is measured wrongly when it penetrates.)
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Self
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.simulation.shapes import centre_of_mass, half_extents, obj
+from tamp.simulation.silence import silence
+from tamp.world.pose import Array, Pose
+from tamp.world.robot import Robot
+from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Scene, Sphere
+
+HULL_PAD = 0.001
+"""Metres by which Bullet pads a convex hull."""
+
+FLOOR = "floor"
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """One convex piece of a body or a link of the robot, as the engine knows it.
+
+    Attributes:
+        owner: The body's or the link's name.
+        handle: The engine's number of the body, and `link` the one of the link in it.
+        offset: T_owner_solid, shape (4, 4).
+        centre, half: The box around it in the owner's frame, shape (3,) each, metres.
+        pad: What the engine adds to its surface, metres.
+    """
+
+    owner: str
+    handle: int
+    link: int
+    offset: Array
+    centre: Array
+    half: Array
+    pad: float = 0.0
+
+
+class World:
+    """The scene's bodies and its robot in one pybullet client without a window. Use it as a context manager.
+
+    Args:
+        scene: Its bodies, at their starts.
+        robot: The arm and hand of its URDF on its base; None leaves the robot out.
+        dynamic: Movable bodies have mass and fall, and every body is one piece. Otherwise nothing moves by itself and
+            every convex part is a piece of its own, which makes distances exact.
+    """
+
+    def __init__(self, scene: Scene, robot: Robot | None = None, *, dynamic: bool = False) -> None:
+        self.scene, self.robot, self.dynamic = scene, robot, dynamic
+        self._bullet = load_bullet()
+        self.client = self._bullet.connect(self._bullet.DIRECT)
+        if self.client < 0:
+            raise RuntimeError("pybullet has no more room for another client")
+        self._poses: dict[str, Array] = {}
+        self._centres: dict[str, Array] = {}
+        self.solids: dict[str, tuple[Solid, ...]] = {}
+        self.floor = self._add_floor()
+        for body in scene.bodies.values():
+            self._add_body(body)
+        self.links: dict[str, Solid] = {}
+        if robot is not None:
+            self._add_robot(robot)
+        if dynamic:
+            self._bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give the engine's memory back."""
+        self._bullet.disconnect(physicsClientId=self.client)
+
+    # Where things are
+
+    def pose(self, body: str) -> Array:
+        """T_world_body, shape (4, 4)."""
+        if not self.dynamic:
+            return self._poses[body]
+        handle = self.solids[body][0].handle
+        at, turn = self._bullet.getBasePositionAndOrientation(handle, physicsClientId=self.client)
+        T_world_com = Pose(tuple(at), tuple(turn)).matrix.copy()
+        T_world_com[:3, 3] -= T_world_com[:3, :3] @ self._centres[body]
+        return T_world_com
+
+    def place(self, body: str, T_world_body: Array) -> None:
+        """Put a body somewhere, at rest."""
+        self._poses[body] = np.array(T_world_body)
+        for solid in self.solids[body]:
+            self._move(solid.handle, T_world_body @ solid.offset)
+
+    def set_robot(self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float) -> None:
+        """Put the base at x, y, yaw, the arm at its joints' angles, each finger at opening / 2; metres and radians."""
+        at = (float(base[0]), float(base[1]), float(base[2]))
+        if at != self._base_at:
+            T_world_base = Pose.from_xyz_yaw(at[0], at[1], 0.0, at[2]).matrix
+            for solid in self._base_solids:
+                self._move(solid.handle, T_world_base @ solid.offset)
+            self._move(self._arm, T_world_base @ self._T_base_com)
+            self._base_at = at
+            frames = (Pose.from_matrix(T) for T in (T_world_base, T_world_base @ self._T_base_foot))
+            self._base_frames = [(*pose.position, *pose.quaternion) for pose in frames]
+        values = [[float(q)] for q in arm] + [[opening / 2], [opening / 2]]
+        self._bullet.resetJointStatesMultiDof(self._arm, self._joints, values, physicsClientId=self.client)
+
+    def link_frames(self) -> Array:
+        """Position (m) and quaternion x, y, z, w of each link's frame, in the order of `links`, shape (l, 7)."""
+        states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
+        return np.array(self._base_frames + [(*state[4], *state[5]) for state in states])
+
+    def link_poses(self) -> dict[str, Array]:
+        """T_world_link of the links as they stand, shape (4, 4) each; the base has its frame on the floor."""
+        frames = self.link_frames().tolist()
+        return {
+            name: Pose((x, y, z), (qx, qy, qz, qw)).matrix
+            for name, (x, y, z, qx, qy, qz, qw) in zip(self.links, frames, strict=True)
+        }
+
+    # What touches what
+
+    def distance(self, first: Solid, second: Solid, reach: float = 0.02) -> float:
+        """Metres between two solids, negative when they penetrate; infinite when farther apart than `reach`."""
+        pads = first.pad + second.pad
+        points = self._bullet.getClosestPoints(
+            first.handle, second.handle, reach, first.link, second.link, physicsClientId=self.client
+        )  # fmt: skip
+        return min((point[8] + pads for point in points), default=math.inf)
+
+    def body_distance(self, first: str, second: str, reach: float = 0.02) -> float:
+        """The same between two bodies."""
+        pairs = itertools.product(self.solids[first], self.solids[second])
+        return min((self.distance(a, b, reach) for a, b in pairs), default=math.inf)
+
+    def rays(self, starts: Array, ends: Array) -> list[tuple[str | None, float]]:
+        """What rays hit first: the owner's name or None, and the fraction of the way. Shapes (n, 3), metres."""
+        hits: list[tuple[str | None, float]] = []
+        for at in range(0, len(starts), 8192):  # more at a time overflow the engine's shared memory
+            some = slice(at, at + 8192)
+            found = self._bullet.rayTestBatch(
+                starts[some].tolist(), ends[some].tolist(), physicsClientId=self.client, numThreads=1
+            )  # fmt: skip
+            hits += [(self._owners.get((hit[0], hit[1])), hit[2]) for hit in found]
+        return hits
+
+    def step(self, seconds: float) -> None:
+        """Let time pass, in steps of 1/240 s."""
+        for _ in range(math.ceil(seconds * 240)):
+            self._bullet.stepSimulation(physicsClientId=self.client)
+
+    # Building
+
+    def _add_floor(self) -> Solid:
+        self._owners: dict[tuple[int, int], str] = {}
+        half = np.array([50.0, 50.0, 0.5])
+        shape = self._bullet.createCollisionShape(
+            self._bullet.GEOM_BOX, halfExtents=half.tolist(), physicsClientId=self.client
+        )  # fmt: skip
+        handle = self._bullet.createMultiBody(0.0, shape, -1, [0.0, 0.0, -0.5], physicsClientId=self.client)
+        self._owners[handle, -1] = FLOOR
+        return Solid(FLOOR, handle, -1, np.eye(4), np.array([0.0, 0.0, -0.5]), half)
+
+    def _add_body(self, body: Body) -> None:
+        if self.dynamic and body.movable:
+            solids = [self._compound(body)]
+            self._centres[body.name] = centre_of_mass(body.parts)
+        else:
+            solids = [self._solid(body.name, part, body.friction) for part in body.parts]
+            self._centres[body.name] = np.zeros(3)
+        self.solids[body.name] = tuple(solids)
+        self.place(body.name, body.pose.matrix)
+
+    def _solid(self, owner: str, part: Part, friction: float = 0.5) -> Solid:
+        centre, half = half_extents(part.shape)
+        turned = np.abs(part.pose.rotation) @ half
+        pad = HULL_PAD if isinstance(part.shape, Hull) else 0.0
+        shape = self._bullet.createCollisionShape(**self._described(part), physicsClientId=self.client)
+        handle = self._bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        self._bullet.changeDynamics(handle, -1, lateralFriction=friction, physicsClientId=self.client)
+        self._owners[handle, -1] = owner
+        return Solid(owner, handle, -1, part.pose.matrix, part.pose.apply(centre[None])[0], turned, pad)
+
+    def _compound(self, body: Body) -> Solid:
+        described = [self._described(part) for part in body.parts]
+        names = {"shapeType": "shapeTypes", "radius": "radii", "height": "lengths", "halfExtents": "halfExtents"}
+        blanks: dict[str, Any] = {"shapeType": 0, "radius": 0.0, "height": 0.0, "halfExtents": [0.0] * 3}
+        arrays = {names[key]: [one.get(key, blank) for one in described] for key, blank in blanks.items()}
+        with tempfile.TemporaryDirectory() as folder:  # an array of shapes takes its meshes from files only
+            files = [""] * len(described)
+            for number, one in enumerate(described):
+                if "vertices" in one:
+                    files[number] = str(Path(folder) / f"{number}.obj")
+                    Path(files[number]).write_text(obj(body.parts[number].shape))
+            shape = self._bullet.createCollisionShapeArray(
+                **arrays,
+                fileNames=files,
+                meshScales=[[1.0, 1.0, 1.0]] * len(files),
+                collisionFramePositions=[list(part.pose.position) for part in body.parts],
+                collisionFrameOrientations=[list(part.pose.quaternion) for part in body.parts],
+                physicsClientId=self.client,
+            )
+        centre = centre_of_mass(body.parts)
+        handle = self._bullet.createMultiBody(
+            body.mass, shape, baseInertialFramePosition=centre.tolist(), physicsClientId=self.client
+        )  # fmt: skip
+        self._bullet.changeDynamics(handle, -1, lateralFriction=body.friction, physicsClientId=self.client)
+        self._owners[handle, -1] = body.name
+        offset = np.eye(4)
+        offset[:3, 3] = centre
+        return Solid(body.name, handle, -1, offset, np.zeros(3), np.full(3, np.inf))
+
+    def _described(self, part: Part) -> dict[str, Any]:
+        shape, bullet = part.shape, self._bullet
+        if isinstance(shape, Box):
+            return {"shapeType": bullet.GEOM_BOX, "halfExtents": [edge / 2 for edge in shape.size]}
+        if isinstance(shape, Cylinder):
+            return {"shapeType": bullet.GEOM_CYLINDER, "radius": shape.radius, "height": shape.height}
+        if isinstance(shape, Sphere):
+            return {"shapeType": bullet.GEOM_SPHERE, "radius": shape.radius}
+        return {"shapeType": bullet.GEOM_MESH, "vertices": shape.vertices.tolist()}
+
+    def _add_robot(self, robot: Robot) -> None:
+        bullet, client = self._bullet, self.client
+        base, foot = robot.links[0], robot.links[1]
+        self._base_solids = tuple(self._solid(base.name, part) for part in base.parts)
+        if len(self._base_solids) != 1:
+            raise InputError(f"the base of the robot '{robot.name}' must be one convex part")
+        flags = bullet.URDF_USE_SELF_COLLISION | bullet.URDF_IGNORE_VISUAL_SHAPES
+        self._arm = bullet.loadURDF(str(robot.urdf), useFixedBase=True, flags=flags, physicsClientId=client)
+        inertial = bullet.getDynamicsInfo(self._arm, -1, physicsClientId=client)
+        # The engine's base position is the one of the foot's centre of mass.
+        self._T_foot_com = Pose(inertial[3], inertial[4]).matrix
+        self._T_base_foot = robot.T_base_arm.matrix
+        self._T_base_com = self._T_base_foot @ self._T_foot_com
+        index = {foot.name: -1}
+        joints: dict[str, int] = {}
+        for number in range(bullet.getNumJoints(self._arm, physicsClientId=client)):
+            info = bullet.getJointInfo(self._arm, number, physicsClientId=client)
+            index[info[12].decode()] = number
+            if info[2] != bullet.JOINT_FIXED:
+                joints[info[1].decode()] = number
+        self._joints = list(joints.values())
+        self._names = [link.name for link in robot.links[2:]]
+        self._indices = [index[name] for name in self._names]
+        self.links[base.name] = self._base_solids[0]
+        for link in robot.links[1:]:
+            self.links[link.name] = self._link_solid(link.name, index[link.name])
+            self._owners[self._arm, index[link.name]] = link.name
+        self._base_at = (math.nan, math.nan, math.nan)
+        start = self.scene.robot
+        self.set_robot(start.base, start.arm or robot.home, robot.opening)
+
+    def _link_solid(self, name: str, index: int) -> Solid:
+        # The box around the link at its reset pose, taken from the engine and not from the planner's hulls: here all
+        # joints are zero, so the link's frame is turned against the world's; the box of its box is a little larger.
+        bullet, client = self._bullet, self.client
+        low, high = (np.array(corner) for corner in bullet.getAABB(self._arm, index, physicsClientId=client))
+        if index < 0:
+            T_world_com = Pose(*bullet.getBasePositionAndOrientation(self._arm, physicsClientId=client)).matrix
+            T_world_link = T_world_com @ np.linalg.inv(self._T_foot_com)
+        else:
+            state = bullet.getLinkState(self._arm, index, computeForwardKinematics=1, physicsClientId=client)
+            T_world_link = Pose(state[4], state[5]).matrix
+        centre = T_world_link[:3, :3].T @ ((low + high) / 2 - T_world_link[:3, 3])
+        half = np.abs(T_world_link[:3, :3].T) @ (high - low) / 2
+        return Solid(name, self._arm, index, np.eye(4), centre, half, HULL_PAD)
+
+    def _move(self, handle: int, T_world: Array) -> None:
+        pose = Pose.from_matrix(T_world)
+        self._bullet.resetBasePositionAndOrientation(
+            handle, pose.position, pose.quaternion, physicsClientId=self.client
+        )  # fmt: skip
+
+
+def load_bullet() -> ModuleType:
+    """pybullet, without the build time that it prints when imported."""
+    if "pybullet" in sys.modules:
+        return sys.modules["pybullet"]
+    with silence():
+        import pybullet
+    return pybullet

@@ -1,0 +1,82 @@
+"""Extents, volumes and surface points of convex shapes. The simulation's own: shared with nothing that plans."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tamp.world.pose import Array
+from tamp.world.scene import Box, Cylinder, Hull, Part, Shape, Sphere
+
+ROUND = 48
+"""Points on a circle where a round shape is described by points."""
+
+
+def half_extents(shape: Shape) -> tuple[Array, Array]:
+    """Centre (3,) and half edge lengths (3,) of the box around a shape in its own frame, metres."""
+    if isinstance(shape, Box):
+        return np.zeros(3), np.array(shape.size) / 2
+    if isinstance(shape, Cylinder):
+        return np.zeros(3), np.array([shape.radius, shape.radius, shape.height / 2])
+    if isinstance(shape, Sphere):
+        return np.zeros(3), np.full(3, shape.radius)
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    return (low + high) / 2, (high - low) / 2
+
+
+def points(shape: Shape) -> Array:
+    """Points on the shape's surface that reach its extents, in its own frame, shape (n, 3), metres.
+
+    The vertices of a box or hull; the two rims of a cylinder; rings of a sphere.
+    """
+    if isinstance(shape, Box):
+        signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+        return signs * np.array(shape.size) / 2
+    turn = np.linspace(0.0, 2 * np.pi, ROUND, endpoint=False)
+    circle = np.stack([np.cos(turn), np.sin(turn), np.zeros(ROUND)], axis=1)
+    if isinstance(shape, Cylinder):
+        return np.concatenate([circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)])
+    if isinstance(shape, Sphere):
+        tilts = np.linspace(-np.pi / 2, np.pi / 2, 17)
+        rings = [circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts]
+        return np.concatenate(rings) * shape.radius
+    return np.asarray(shape.vertices, dtype=float)
+
+
+def body_points(parts: Iterable[Part]) -> Array:
+    """`points` of all parts in the body's frame, shape (n, 3), metres."""
+    return np.concatenate([part.pose.apply(points(part.shape)) for part in parts])
+
+
+def centre_of_mass(parts: Iterable[Part]) -> Array:
+    """Of a body of uniform density in its own frame, shape (3,), metres. Overlapping parts count twice."""
+    total, moment = 0.0, np.zeros(3)
+    for part in parts:
+        volume, centre = _volume_and_centre(part.shape)
+        total += volume
+        moment += volume * part.pose.apply(centre[None])[0]
+    return moment / total
+
+
+def obj(shape: Shape) -> str:
+    """A hull as the text of an OBJ file."""
+    if not isinstance(shape, Hull):
+        raise TypeError(f"not a hull: {shape}")
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in shape.vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in shape.faces]
+    return "\n".join(lines) + "\n"
+
+
+def _volume_and_centre(shape: Shape) -> tuple[float, Array]:
+    if isinstance(shape, Box):
+        return float(np.prod(shape.size)), np.zeros(3)
+    if isinstance(shape, Cylinder):
+        return float(np.pi * shape.radius**2 * shape.height), np.zeros(3)
+    if isinstance(shape, Sphere):
+        return float(4 / 3 * np.pi * shape.radius**3), np.zeros(3)
+    inside = shape.vertices.mean(axis=0)
+    corners = shape.vertices[shape.faces] - inside  # (m, 3 corners, 3): a tetrahedron over each face
+    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    volume = float(volumes.sum())
+    return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume

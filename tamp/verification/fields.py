@@ -1,0 +1,140 @@
+"""Reading a JSON document whose shape is not to be trusted: every surprise is an InputError that says where."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.world.pose import Array, Pose
+
+
+def read_json(file: Path) -> Any:
+    """The document in a file.
+
+    Raises:
+        InputError: No such file, not UTF-8, not JSON, a number that is not finite, or a key given twice.
+    """
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise InputError(f"no such file: {file}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read: {error}", file=file) from None
+    try:
+        return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_unique)
+    except json.JSONDecodeError as error:
+        raise InputError(f"not JSON: {error.msg}", file=file, line=error.lineno, column=error.colno) from None
+    except RecursionError:
+        raise InputError("not a plan: nested too deeply", file=file) from None
+    except InputError as error:
+        raise error.at(file) from None
+
+
+class Field:
+    """A value in the document, and where it stands ("actions[3].segments[0].times")."""
+
+    def __init__(self, value: Any, where: str, file: Path | None) -> None:
+        self.value, self.where, self.file = value, where, file
+
+    def wrong(self, message: str, *, found: str | None = None, choices: tuple[str, ...] = ()) -> InputError:
+        """The error to raise about this field."""
+        where = f"{self.where}: " if self.where else ""
+        return InputError(f"{where}{message}", file=self.file, found=found, choices=choices)
+
+    def __contains__(self, key: str) -> bool:
+        return self.get(key) is not None
+
+    def __getitem__(self, key: str) -> Field:
+        found = self.get(key)
+        if found is None:
+            raise self.wrong(f"'{key}' is missing")
+        return found
+
+    def get(self, key: str) -> Field | None:
+        """The field under a key, or None when it is absent or null."""
+        value = self.mapping().get(key)
+        return None if value is None else Field(value, f"{self.where}.{key}" if self.where else key, self.file)
+
+    def mapping(self) -> dict[str, Any]:
+        """As an object."""
+        if not isinstance(self.value, dict):
+            raise self.wrong(f"an object is expected, not {_kind(self.value)}")
+        return self.value
+
+    def fields(self) -> dict[str, Field]:
+        """The object's members."""
+        return {key: Field(value, f"{self.where}.{key}", self.file) for key, value in self.mapping().items()}
+
+    def items(self) -> list[Field]:
+        """The array's elements."""
+        if not isinstance(self.value, list):
+            raise self.wrong(f"an array is expected, not {_kind(self.value)}")
+        return [Field(value, f"{self.where}[{at}]", self.file) for at, value in enumerate(self.value)]
+
+    def text(self, choices: tuple[str, ...] = ()) -> str:
+        """As a string, one of `choices` if there are any."""
+        if not isinstance(self.value, str):
+            raise self.wrong(f"a string is expected, not {_kind(self.value)}")
+        if choices and self.value not in choices:
+            raise self.wrong(f"'{self.value}' is unknown", found=self.value, choices=choices)
+        return self.value
+
+    def number(self, least: float = -math.inf) -> float:
+        """As a finite number."""
+        if isinstance(self.value, bool) or not isinstance(self.value, int | float):
+            raise self.wrong(f"a number is expected, not {_kind(self.value)}")
+        try:
+            number = float(self.value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self.wrong("a finite number is expected")
+        if number < least:
+            raise self.wrong(f"{number:g} is less than {least:g}")
+        return number
+
+    def numbers(self, size: int | None = None) -> Array:
+        """As an array of finite numbers, shape (size,)."""
+        items = self.items()
+        if size is not None and len(items) != size:
+            raise self.wrong(f"{size} numbers are expected, not {len(items)}")
+        return np.array([item.number() for item in items], dtype=float)
+
+    def rows(self, width: int) -> Array:
+        """As rows of finite numbers, shape (n >= 1, width)."""
+        items = self.items()
+        if not items:
+            raise self.wrong("at least one row is expected")
+        return np.stack([item.numbers(width) for item in items])
+
+    def pose(self) -> Array:
+        """A "position" and a unit "quaternion" (x, y, z, w) as a homogeneous matrix, shape (4, 4)."""
+        position, quaternion = self["position"].numbers(3), self["quaternion"].numbers(4)
+        norm = float(np.linalg.norm(quaternion))
+        if abs(norm - 1.0) > 1e-3:
+            raise self["quaternion"].wrong(f"its norm is {norm:.4g}, not 1")
+        x, y, z, w = (quaternion / norm).tolist()
+        return Pose((float(position[0]), float(position[1]), float(position[2])), (x, y, z, w)).matrix
+
+
+def _kind(value: Any) -> str:
+    names = {dict: "an object", list: "an array", str: "a string", bool: "true or false", type(None): "null"}
+    return names.get(type(value), "a number")
+
+
+def _refuse_constant(constant: str) -> float:
+    raise InputError(f"{constant} is not a number that a plan may hold")
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    members = dict(pairs)
+    if len(members) != len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise InputError(f"the key '{twice}' is given twice")
+    return members

@@ -1,0 +1,82 @@
+"""Looking at formulas and writing them down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tamp.pddl.structs import And, Atom, Fact, Formula, Not, Or
+
+Binding = dict[str, str]
+"""What variables stand for."""
+
+
+def substitute(formula: Formula, binding: Mapping[str, str]) -> Formula:
+    """The formula with objects in the place of its bound variables."""
+    if isinstance(formula, Atom):
+        return Atom(formula.predicate, tuple(binding.get(term, term) for term in formula.terms))
+    if isinstance(formula, Not):
+        return Not(substitute(formula.body, binding))
+    if isinstance(formula, And | Or):
+        return type(formula)(tuple(substitute(part, binding) for part in formula.parts))
+    inner = {p.name for p in formula.parameters}
+    return type(formula)(
+        formula.parameters, substitute(formula.body, {k: v for k, v in binding.items() if k not in inner})
+    )  # fmt: skip
+
+
+def show(formula: Formula) -> str:
+    """In PDDL."""
+    if isinstance(formula, Atom):
+        return f"({' '.join((formula.predicate, *formula.terms))})"
+    if isinstance(formula, Not):
+        return f"(not {show(formula.body)})"
+    if isinstance(formula, And | Or):
+        return f"({' '.join((type(formula).__name__.lower(), *map(show, formula.parts)))})"
+    names = " ".join(f"{p.name} - {p.types[0]}" for p in formula.parameters)
+    return f"({type(formula).__name__.lower()} ({names}) {show(formula.body)})"
+
+
+def flat(formula: Formula) -> list[Formula]:
+    """The parts of a conjunction, nested ones taken apart."""
+    if isinstance(formula, And):
+        return [part for one in formula.parts for part in flat(one)]
+    return [formula]
+
+
+def free(formula: Formula) -> set[str]:
+    """Its free variables."""
+    if isinstance(formula, Atom):
+        return {term for term in formula.terms if term.startswith("?")}
+    if isinstance(formula, Not):
+        return free(formula.body)
+    if isinstance(formula, And | Or):
+        return {name for part in formula.parts for name in free(part)}
+    return free(formula.body) - {p.name for p in formula.parameters}
+
+
+def predicates(formula: Formula) -> set[str]:
+    """The predicates that it asks for."""
+    if isinstance(formula, Atom):
+        return {formula.predicate}
+    if isinstance(formula, And | Or):
+        return {name for part in formula.parts for name in predicates(part)}
+    return predicates(formula.body)
+
+
+def ground(atom: Atom, binding: Mapping[str, str]) -> Fact:
+    """The fact that an atom is under a binding of its variables."""
+    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
+
+
+def unify(terms: Sequence[str], row: Sequence[str], binding: Mapping[str, str]) -> Binding | None:
+    """The binding extended so that the terms are the row; None when there is none."""
+    extended = dict(binding)
+    if len(terms) != len(row):
+        return None
+    for term, value in zip(terms, row, strict=True):
+        if term.startswith("?"):
+            if extended.setdefault(term, value) != value:
+                return None
+        elif term != value:
+            return None
+    return extended

@@ -1,0 +1,94 @@
+"""Whether one part's motion keeps the robot's limits and follows a clock."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.verification.plan_file import Segment
+from tamp.world.pose import Array
+from tamp.world.robot import Robot
+from tamp.world.scene import Room
+
+SLACK = 1e-4
+"""Radians or metres by which a position may exceed its range."""
+SPEED = 1.02
+"""Share of a velocity limit that is still kept."""
+HARSH = 1.2
+"""Share of an acceleration limit that is still kept: measured between samples it is coarse."""
+ROUNDING = 2e-6
+"""Metres or radians by which a written position may be rounded."""
+
+
+@dataclass(frozen=True)
+class Excess:
+    """A limit that is exceeded: the violation's kind, seconds from the first segment's start, what, by how much."""
+
+    kind: str
+    time: float
+    message: str
+    amount: float
+
+
+def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[Excess]:
+    """The worst excess of each limit in consecutive segments of one part, which starts and ends at rest."""
+    part = segments[0].part
+    times, rows = _joined(segments)
+    steps = np.diff(times)
+    if (steps <= 0).any():
+        at = int(np.argmax(steps <= 0))
+        yield Excess("time", float(times[at]), f"times of the {part} do not increase", 0.0)
+        return
+    names, lower, upper, velocity, acceleration = _limits(part, robot, room)
+    beyond = np.maximum(lower - rows, rows - upper)
+    yield from _worst("limit", beyond - SLACK, beyond, times, names, rows, "out of range")
+    if len(rows) < 2:
+        return
+    speed = np.abs(np.diff(rows, axis=0)) / steps[:, None]
+    allowed = SPEED * velocity + ROUNDING / steps[:, None]
+    yield from _worst("velocity", speed - allowed, speed - velocity, times, names, speed, "too fast")
+    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time between their middles.
+    still = np.zeros((1, rows.shape[1]))
+    speeds = np.concatenate([still, np.diff(rows, axis=0) / steps[:, None], still])
+    apart = np.concatenate([[steps[0] / 2], (steps[:-1] + steps[1:]) / 2, [steps[-1] / 2]])[:, None]
+    shortest = np.concatenate([steps[:1], np.minimum(steps[:-1], steps[1:]), steps[-1:]])[:, None]
+    harsh = np.abs(np.diff(speeds, axis=0)) / apart
+    allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
+    yield from _worst("acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh")
+
+
+def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
+    """Times and rows of segments one after the other; the gripper's row is its opening."""
+    times, rows = [], []
+    offset = 0.0
+    for segment in segments:
+        values = segment.opening[:, None] if segment.part == "gripper" else segment.positions
+        skip = 1 if times else 0
+        times.append(segment.times[skip:] + offset)
+        rows.append(values[skip:])
+        offset += float(segment.times[-1])
+    return np.concatenate(times), np.concatenate(rows)
+
+
+def _limits(part: str, robot: Robot, room: Room) -> tuple[list[str], Array, Array, Array, Array]:
+    velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
+    if part == "base":
+        lower, upper = np.array([room.x[0], room.y[0], -np.inf]), np.array([room.x[1], room.y[1], np.inf])
+        return ["base x", "base y", "base yaw"], lower, upper, velocity[:3], acceleration[:3]
+    if part == "arm":
+        names = [joint.name for joint in robot.joints]
+        return names, np.array(robot.lower), np.array(robot.upper), velocity[3:], acceleration[3:]
+    fastest = sum(finger.velocity for finger in robot.fingers)
+    return ["opening"], np.zeros(1), np.array([robot.opening]), np.array([fastest]), np.array([np.inf])
+
+
+def _worst(
+    kind: str, excess: Array, amount: Array, times: Array, names: list[str], values: Array, what: str
+) -> Iterator[Excess]:
+    for column, name in enumerate(names):
+        if len(excess) and excess[:, column].max() > 0:
+            row = int(excess[:, column].argmax())
+            value, by = float(values[row, column]), float(amount[row, column])
+            yield Excess(kind, float(times[row]), f"{name} is {what}: {value:.4g}, {by:.2g} over", by)

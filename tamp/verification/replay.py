@@ -1,0 +1,225 @@
+"""The plan carried out step by step: facts by PDDL's meaning, bodies and robot by pybullet's, the two compared."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from tamp.pddl.structs import Formula
+from tamp.simulation.physics import World
+from tamp.verification.agreement import Agreement
+from tamp.verification.certified import ALIKE, CLOSE, Certified
+from tamp.verification.course import Course, Held
+from tamp.verification.formulas import show
+from tamp.verification.limits import excesses
+from tamp.verification.log import Log
+from tamp.verification.plan_file import Hold, PlanFile, Segment, TimedAction
+from tamp.verification.semantics import Semantics, State
+from tamp.verification.standing import Standing
+from tamp.verification.start import apart, base_apart
+from tamp.verification.sweep import TOLERANCE, Findings, Natural, Sweeper
+from tamp.world.pose import Array
+from tamp.world.robot import Robot
+
+JUMP = 1e-4
+"""Metres or radians by which the robot may differ where two segments meet."""
+CLOCK = 1e-4
+"""Seconds by which times that should meet may differ."""
+
+
+class Replay:
+    """Carries out a plan once, from the bodies' poses in the world, and keeps a `log`, `findings` and a `course`."""
+
+    def __init__(
+        self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, semantics: Semantics, certified: Certified
+    ) -> None:
+        self._plan, self._world, self._robot, self._sweeper = plan, world, robot, sweeper
+        self._semantics, self._certified = semantics, certified
+        self._bodies = {name.lower(): name for name in world.scene.bodies}
+        self.log = Log()
+        self.findings = Findings()
+        self._agreement = Agreement(plan, world, semantics.domain, self.log)
+        self._standing = Standing(plan, world, semantics, certified.known, self.log)
+        start = world.scene.robot
+        arm = start.arm if start.arm is not None else robot.home
+        self.course = Course(np.array([*start.base, *arm, robot.opening]), None, 0.0)
+
+    @property
+    def notes(self) -> list[str]:
+        """Oddities that are not the plan's fault."""
+        return self._standing.notes
+
+    def run(self, goal: Formula) -> None:
+        """From the start to the goal."""
+        state = State.of((*self._plan.initial, *self._plan.certified))
+        self._check_bodies_apart()
+        self._standing.check_relations(state, None)
+        for index, action in enumerate(self._plan.actions):
+            self.log.action, self.log.time = (index, action.name), self.course.time
+            state = self._apply(state, action)
+            self._move(action)
+            self._agreement.follows(action)
+            self._agreement.compare(state, self.course)
+            self._standing.check_relations(state, self.course.in_hand)
+        self.log.action = self.log.time = None
+        if abs(self._plan.duration - self.course.time) > CLOCK:
+            self.log.add("time", f"the plan lasts {self.course.time:.3f} s, not {self._plan.duration:.3f} s")
+        cost = sum(action.cost for action in self._plan.actions)
+        if abs(self._plan.cost - cost) > 1e-6:
+            self.log.add("state", f"the actions cost {cost:g}, not {self._plan.cost:g}")
+        self._standing.check_unused(self.course.in_hand)
+        self._standing.check_goal(goal, state, self.course.in_hand)
+
+    def _check_bodies_apart(self) -> None:
+        scene = self._world.scene
+        for first, second in itertools.combinations(scene.bodies, 2):
+            if scene.bodies[first].movable or scene.bodies[second].movable:
+                depth = -self._world.body_distance(first, second, 0.0)
+                if depth > TOLERANCE:
+                    message = f"{first} and {second} penetrate by {1000 * depth:.1f} mm at the start"
+                    self.log.add("collision", message, first, second, time=0.0, depth=depth)
+
+    def _apply(self, state: State, action: TimedAction) -> State:
+        lifted = self._semantics.actions.get(action.name)
+        if lifted is None or len(lifted.parameters) != len(action.arguments):
+            wrong = "is unknown to the domain" if lifted is None else f"takes {len(lifted.parameters)} arguments"
+            self.log.add("precondition", f"the action {action.name} {wrong}")
+            return state
+        for parameter, argument in zip(lifted.parameters, action.arguments, strict=True):
+            if not self._semantics.fits(argument, parameter.types):
+                self.log.add("precondition", f"'{argument}' is not a {' or '.join(parameter.types)}")
+        for part in self._semantics.unmet(lifted, action.arguments, state):
+            bodies = (argument for argument in action.arguments if argument in self._bodies)
+            self.log.add("precondition", f"{show(part)} does not hold", *bodies)
+        if isinstance(lifted.cost, int | float) and abs(lifted.cost - action.cost) > 1e-6:
+            self.log.add("state", f"the action costs {lifted.cost:g}, not {action.cost:g}")
+        return self._semantics.apply(lifted, action.arguments, state)
+
+    def _move(self, action: TimedAction) -> None:
+        course = self.course
+        if action.start < course.time - CLOCK:
+            self.log.add("time", f"it starts at {action.start:.3f} s, before {course.time:.3f} s")
+        course.time = self.log.time = action.start
+        self._check_limits(action)
+        natural = self._natural(action)
+        findings = Findings(nearest=self.findings.nearest)
+        for segment in action.segments:
+            self._carry_out(segment, natural, findings)
+        for contact in findings.worst.values():
+            message = f"{contact.first} and {contact.second} penetrate by {-1000 * contact.distance:.1f} mm"
+            pair = (contact.first, contact.second)
+            self.log.add("collision", message, *pair, time=contact.time, depth=-contact.distance)
+        self.findings.nearest, self.findings.states = findings.nearest, self.findings.states + findings.states
+        lasts = course.time - action.start
+        if abs(lasts - action.duration) > CLOCK:
+            self.log.add("time", f"it lasts {lasts:.3f} s, not {action.duration:.3f} s")
+
+    def _check_limits(self, action: TimedAction) -> None:
+        offset = action.start
+        for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
+            segments = list(group)
+            for excess in excesses(segments, self._robot, self._world.scene.room):
+                self.log.add(excess.kind, excess.message, time=offset + excess.time, depth=excess.amount)
+            offset += sum(float(segment.times[-1]) for segment in segments)
+
+    def _carry_out(self, segment: Segment, natural: Natural, findings: Findings) -> None:
+        course = self.course
+        if abs(segment.times[0]) > CLOCK:
+            self.log.add("time", f"the {segment.part}'s times do not start at 0")
+        rows = self._rows(segment)
+        if segment.detach is not None:
+            self._detach(segment.detach, rows)
+        touched = {segment.attach.body if segment.attach else None, segment.detach}
+        touching = frozenset(name for word, name in self._bodies.items() if word in touched)
+        around = Natural(touching, natural.grasped, natural.resting)
+        self._sweeper.sweep(rows, segment.times + course.time, course.held, findings, around)
+        course.row, course.time = rows[-1], course.time + float(segment.times[-1])
+        self.log.time = course.time
+        if course.held is not None:
+            self._world.place(course.held.body, self._sweeper.tool(course.row) @ course.held.T_tool_body)
+        if segment.attach is not None:
+            self._attach(segment.attach)
+
+    def _rows(self, segment: Segment) -> Array:
+        """The whole robot's states, shape (n, 11), after a check that they go on from where the last ones ended."""
+        course, held = self.course, self.course.in_hand
+        rows = np.repeat(course.row[None], len(segment.times), axis=0)
+        rows[:, 10] = segment.opening
+        jump = 0.0
+        if segment.part == "base":
+            rows[:, :3] = segment.positions
+            jump = base_apart(rows[0, :3], course.row[:3])
+        elif segment.part == "arm":
+            rows[:, 3:10] = segment.positions
+            jump = float(np.abs(rows[0, 3:10] - course.row[3:10]).max())
+        if jump > JUMP:
+            self.log.add("continuity", f"the {segment.part} jumps by {jump:.3g} (m, rad)", depth=jump)
+        jump = abs(float(rows[0, 10] - course.row[10]))
+        if jump > JUMP:
+            self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
+        says = segment.holding if segment.part != "gripper" else held and held.lower()
+        if says != (held and held.lower()):
+            message = f"the plan says that the hand holds {says or 'nothing'}, not {held or 'nothing'}"
+            self.log.add("continuity", message)
+        if segment.part == "gripper" and held and segment.detach is None and np.ptp(rows[:, 10]) > JUMP:
+            self.log.add("grasp", f"the fingers move while they hold {held}", held)
+        return rows
+
+    def _attach(self, hold: Hold) -> None:
+        course, body = self.course, self._bodies.get(hold.body)
+        if body is None or not self._world.scene.bodies[body].movable:
+            self.log.add("grasp", f"{hold.body} cannot be moved", hold.body)
+            return
+        if course.held is not None:
+            self.log.add("grasp", f"the hand holds {course.held.body} already", hold.body)
+        T_world_body = self._world.pose(body)
+        T_tool_body = np.linalg.inv(self._sweeper.tool(course.row)) @ T_world_body
+        moved, turned = apart(T_tool_body, hold.T_tool_body)
+        if moved > CLOSE or turned > ALIKE:
+            off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+            self.log.add("grasp", f"{body} is {off} from where the hand closes", body, depth=moved)
+        why = self._certified.why_not_held(body, T_tool_body, float(course.row[10]))
+        self._world.place(body, T_world_body)
+        if why:
+            self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
+        course.held = Held(body, T_tool_body)
+        self._standing.check(body)
+
+    def _detach(self, name: str, rows: Array) -> None:
+        course = self.course
+        if course.held is None or course.held.body.lower() != name:
+            self.log.add("grasp", f"the hand does not hold {name}", name)
+            return
+        if rows[-1, 10] < min(rows[0, 10] + CLOSE, self._robot.opening) - JUMP:
+            self.log.add("grasp", f"the fingers do not open to let go of {name}", name)
+        course.held = None
+        self._standing.check(None)
+
+    def _natural(self, action: TimedAction) -> Natural:
+        """What an action is near by its nature: bodies that it grasps, and what they stand on before and after."""
+        grasped: set[str] = set()
+        resting: set[str] = set()
+        row, held = self.course.row.copy(), self.course.held
+        for segment in action.segments:
+            _follow(row, segment)
+            if segment.attach is not None and segment.attach.body in self._bodies:
+                body = self._bodies[segment.attach.body]
+                grasped.add(body)
+                resting |= self._standing.stand(body, None).on
+                held = Held(body, segment.attach.T_tool_body)
+            if segment.detach is not None and held is not None:
+                before = self._world.pose(held.body)
+                self._world.place(held.body, self._sweeper.tool(row) @ held.T_tool_body)
+                grasped.add(held.body)
+                resting |= self._standing.stand(held.body, None).on
+                self._world.place(held.body, before)
+        return Natural(frozenset(), frozenset(grasped), frozenset(resting))
+
+
+def _follow(row: Array, segment: Segment) -> None:
+    columns: dict[str, Sequence[int]] = {"base": range(3), "arm": range(3, 10), "gripper": ()}
+    for column, value in zip(columns[segment.part], segment.positions[-1], strict=True):
+        row[column] = value

@@ -1,0 +1,123 @@
+"""What the judge found, for people and for programs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from tamp.verification.sweep import Contact
+
+KINDS = {
+    "hash": "a file that the plan was made from is another one now",
+    "initial": "the plan starts from something that the problem does not say",
+    "certified": "a fact that the plan rests on does not hold",
+    "precondition": "an action is not applicable",
+    "state": "the facts and the geometry disagree",
+    "goal": "the goal does not hold at the end",
+    "time": "times that do not follow each other",
+    "continuity": "the robot or a body jumps",
+    "limit": "a joint, the base or the fingers leave their range",
+    "velocity": "faster than the limit",
+    "acceleration": "harsher than the limit",
+    "collision": "two things penetrate",
+    "grasp": "the hand does not hold what it should",
+    "support": "a body that is not held does not stand on anything, or not still",
+}
+"""The kinds of violations."""
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One thing that is wrong with a plan.
+
+    Attributes:
+        kind: One of KINDS.
+        message: What it is, as a sentence without its full stop.
+        index: Which action, from 0; None when it concerns the plan.
+        action: Its name.
+        time: Seconds since the plan's start.
+        bodies: The bodies and links that it is about.
+        depth: Metres of penetration, or of whatever distance was exceeded.
+    """
+
+    kind: str
+    message: str
+    index: int | None = None
+    action: str | None = None
+    time: float | None = None
+    bodies: tuple[str, ...] = ()
+    depth: float | None = None
+
+    def __str__(self) -> str:
+        place = "" if self.index is None else f"{self.index + 1} {self.action}"
+        when = "" if self.time is None else f"{self.time:.2f} s"
+        where = ", ".join(part for part in (place, when) if part)
+        return f"{self.kind:<12} {where + ': ' if where else ''}{self.message}"
+
+
+@dataclass(frozen=True)
+class Report:
+    """The verdict.
+
+    Attributes:
+        name: The plan file's name.
+        violations: Empty when the plan holds.
+        actions: How many.
+        duration: Of the motion, seconds.
+        states: How many states of the robot were looked at.
+        nearest: The nearest miss, if anything was nearer than 2 cm (grasping and resting aside).
+        trusted: How many facts of each predicate could only be taken on trust.
+        notes: Oddities that are not the plan's fault.
+        seconds: That the verification took.
+    """
+
+    name: str
+    violations: tuple[Violation, ...]
+    actions: int
+    duration: float
+    states: int
+    nearest: Contact | None
+    trusted: dict[str, int]
+    notes: tuple[str, ...]
+    seconds: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing is wrong."""
+        return not self.violations
+
+    def text(self) -> str:
+        """For people: a line a violation and a summary."""
+        lines = [f"  {violation}" for violation in self.violations]
+        lines += [f"  note: {note}" for note in self.notes]
+        facts = [f"{self.actions} actions", f"{self.duration:.1f} s", f"{self.states:,} states checked"]
+        if self.nearest:
+            pair = f"{self.nearest.first} - {self.nearest.second}"
+            facts.append(f"least clearance {1000 * self.nearest.distance:.1f} mm ({pair})")
+        if self.trusted:
+            facts.append("on trust: " + " ".join(f"{name} ({count})" for name, count in self.trusted.items()))
+        verdict = "holds" if self.holds else f"does not hold, {_counted(self.violations)}"
+        lines.append(f"{self.name} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
+        return "\n".join(lines)
+
+    def json(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "plan": self.name,
+            "holds": self.holds,
+            "violations": [asdict(violation) for violation in self.violations],
+            "actions": self.actions,
+            "duration": self.duration,
+            "states": self.states,
+            "clearance": asdict(self.nearest) if self.nearest else None,
+            "trusted": self.trusted,
+            "notes": self.notes,
+            "seconds": self.seconds,
+        }
+
+
+def _counted(violations: tuple[Violation, ...]) -> str:
+    counts = Counter(violation.kind for violation in violations)
+    plural = "" if len(violations) == 1 else "s"
+    return f"{len(violations)} violation{plural} (" + ", ".join(f"{n} {kind}" for kind, n in counts.items()) + ")"

@@ -1,0 +1,106 @@
+"""Sweeps are fine enough, and find what is in the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from tamp.simulation.physics import World
+from tamp.verification.course import Held
+from tamp.verification.sampling import STEP, TURN, Sampler
+from tamp.verification.sweep import Findings, Natural, Sweeper
+from tamp.world.pose import Array, Pose
+from tamp.world.robot import ROBOTS
+from tamp.world.scene import Body, Box, Part, RobotStart, Room, Scene
+
+ROBOT = ROBOTS["panda_mobile"]()
+POST = Body("post", (Part(Box((0.02, 0.02, 2.0))),), Pose((2.0, 0.0, 1.0)), movable=False)
+STICK = Body("stick", (Part(Box((0.02, 0.02, 0.3))),), Pose((-2.0, 0.0, 0.15)), movable=True)
+
+
+@pytest.fixture(scope="module")
+def world() -> Iterator[World]:
+    bodies = {body.name: body for body in (POST, STICK)}
+    scene = Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))
+    with World(scene, ROBOT) as made:
+        yield made
+
+
+def row(x: float = 0.0, y: float = 0.0, yaw: float = 0.0, arm: Array | None = None) -> Array:
+    return np.array([x, y, yaw, *(ROBOT.home if arm is None else arm), 0.04])
+
+
+def test_samples_are_close_together(world: World, rng: np.random.Generator) -> None:
+    sampler = Sampler(world, ROBOT)
+    held = Held("stick", Pose((0.0, 0.0, 0.1)).matrix)
+    tried = 0
+    for _ in range(5):
+        arms = rng.uniform(ROBOT.lower, ROBOT.upper, (2, 7))
+        ends = np.array(
+            [row(float(rng.uniform(-1, 1)), float(rng.uniform(-1, 1)), float(rng.uniform(-3, 3)), arm) for arm in arms]
+        )
+        rows, times, frames = sampler.sampled(ends, np.array([0.0, 1.0]), held)
+        assert np.allclose(rows[[0, -1]], ends) and (np.diff(times) > 0).all()
+        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= TURN * (1 + 1e-6)
+        tips = sampler.held_frames(frames, held) @ np.array([0.0, 0.0, 0.15, 1.0])
+        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= STEP * (1 + 1e-6)
+        tried += len(rows)
+    assert tried > 1000
+
+
+def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
+    sampler = Sampler(world, ROBOT)
+    rows, _, frames = sampler.sampled(np.array([row(), row(1.0, 0.5, 2.0)]), np.array([0.0, 1.0]), None)
+    world.set_robot(rows[70, :3], rows[70, 3:10], rows[70, 10])
+    for name, frame in zip(world.links, frames[70], strict=True):
+        assert np.allclose(world.link_poses()[name], frame, atol=1e-6)
+
+
+def test_a_thin_post_cannot_be_jumped(world: World) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings()
+    sweeper.sweep(np.array([row(0.0), row(4.0)]), np.array([0.0, 8.0]), None, findings)
+    assert ("base", "post") in findings.worst
+    worst = findings.worst["base", "post"]
+    assert 3.1 < worst.time < 5.0
+    assert worst.distance < -0.01
+    beside = Findings()
+    sweeper.sweep(np.array([row(0.0, 0.37), row(4.0, 0.37)]), np.array([0.0, 8.0]), None, beside)
+    assert not beside.worst
+    assert beside.nearest is not None
+    assert beside.nearest.distance == pytest.approx(0.01, abs=1e-4)
+
+
+def test_what_is_held_collides_too(world: World) -> None:
+    sweeper = Sweeper(world, ROBOT)
+    held = Held("stick", Pose.from_xyz_rpy((0.0, 0.3, 0.0), (math.pi / 2, 0.0, 0.0)).matrix)
+    rows, times = np.array([row(0.9, -0.6), row(0.9, 0.6)]), np.array([0.0, 3.0])
+    with_stick, without = Findings(), Findings()
+    sweeper.sweep(rows, times, None, without)
+    sweeper.sweep(rows, times, held, with_stick)
+    reach = sweeper.tool(row())[0, 3]
+    sweeper.sweep(np.array([row(2.0 - reach, -0.3), row(2.0 - reach, 0.5)]), times, held, with_stick)
+    assert not without.worst
+    assert ("stick", "post") in with_stick.worst
+
+
+def test_a_folded_arm_hits_itself(world: World) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings()
+    folded = np.array([0.0, 1.7, 0.0, -3.0, 0.0, 0.0, 0.8])
+    sweeper.sweep(np.array([row(arm=folded)]), np.zeros(1), None, findings)
+    assert findings.worst
+
+
+def test_fingers_may_touch_what_they_close_on(world: World) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings()
+    narrow = row()
+    narrow[10] = 0.0
+    T_world_stick = sweeper.tool(narrow) @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0)).matrix
+    world.place("stick", T_world_stick)
+    sweeper.sweep(narrow[None], np.zeros(1), None, findings, Natural(touching=frozenset({"stick"})))
+    assert not findings.worst
+    sweeper.sweep(narrow[None], np.zeros(1), None, findings)
+    assert ("panda_leftfinger", "stick") in findings.worst
+    world.place("stick", STICK.pose.matrix)
