@@ -1,0 +1,248 @@
+"""From files to a problem: the scene, the task in symbols, and the streams tied to their functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tamp.algorithms.solution import StreamTask
+from tamp.algorithms.stream import BoundStream
+from tamp.data import find_domain
+from tamp.errors import InputError
+from tamp.initial import initial_state
+from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.pddl.structs import Stream, StreamFile, Task
+from tamp.streams.context import Context
+from tamp.streams.groundings import sample_relation, test_relation
+from tamp.streams.registry import SAMPLERS, STREAMS
+from tamp.streams.relations import Classifier, Generator
+from tamp.world.load import LoadedProblem, load_scene
+from tamp.world.overlaps import check_overlaps
+from tamp.world.robot import ROBOTS
+from tamp.world.scene import Scene
+from tamp.world.yaml_nodes import MAX_BYTES, read_yaml
+
+METRIC = "minimize total-cost"
+"""The metric that a problem may name."""
+
+STEERINGS = ("se2", "reeds-shepp")
+"""How the base may move: in any direction, or like a car."""
+
+
+Grounding = Generator | Classifier
+"""What grounds a relation: its generator, its classifier, or an object that is both."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything that planning needs.
+
+    Attributes:
+        name: The problem's.
+        scene: Its geometry.
+        context: What its streams share.
+        stream_task: The task in symbols with its streams.
+        goal: The goal's text.
+        files: Input files by role: "problem", "domain", "streams", and "mesh" ones.
+        samplers: Which sampler serves which relation.
+        warnings: What was repaired or looks odd.
+    """
+
+    name: str
+    scene: Scene
+    context: Context
+    stream_task: StreamTask
+    goal: str
+    files: Mapping[str, tuple[Path, ...]]
+    samplers: Mapping[str, str]
+    warnings: tuple[str, ...]
+
+
+def load_problem(
+    problem: str | Path,
+    domain: str | Path | None = None,
+    *,
+    streams: str | Path | None = None,
+    samplers: Mapping[str, str] | None = None,
+    groundings: Mapping[str, Grounding] | None = None,
+    functions: Mapping[str, Callable[..., Any]] | None = None,
+    steering: str = "se2",
+) -> Problem:
+    """Load a problem.
+
+    Args:
+        problem: A YAML file, or the name of a shipped problem.
+        domain: A PDDL file or the name of a shipped domain; by default the one that the problem names.
+        streams: The streams file; by default `<domain>.streams.pddl` beside the domain.
+        samplers: Relation to the name of the sampler that serves it, over those that the problem names.
+        groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
+            samplers. A relation of the user's own is served to the streams sample-<relation> and test-<relation>.
+        functions: Further stream functions by name, f(context, *inputs, call=...).
+        steering: How the base moves: "se2" or "reeds-shepp".
+
+    Raises:
+        InputError: Anything wrong with the files or the names, with its place.
+    """
+    if steering not in STEERINGS:
+        raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
+    loaded = load_scene(problem)
+    domain_path = _domain_path(loaded, domain)
+    parsed = parse_domain(_read(domain_path), domain_path)
+    streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
+    declared = parse_streams(_read(streams_path), parsed, streams_path)
+    start = initial_state(loaded.scene, parsed)
+    goal = parse_goal(
+        loaded.goal.text,
+        parsed,
+        start.objects,
+        loaded.path,
+        line_offset=loaded.goal.line - 1,
+        column_offset=loaded.goal.column - 1,
+    )
+    for passage in loaded.init:
+        start.facts |= parse_facts(
+            passage.text,
+            parsed,
+            start.objects,
+            loaded.path,
+            line_offset=passage.line - 1,
+            column_offset=passage.column - 1,
+        )
+    _check_metric(loaded)
+    chosen = {relation: next(iter(known)) for relation, known in SAMPLERS.items()}
+    chosen |= _chosen(loaded.samplers, loaded)
+    chosen |= _chosen(samplers or {}, None)
+    generators: dict[str, Generator] = {relation: SAMPLERS[relation][name]() for relation, name in chosen.items()}
+    generators |= {name: item for name, item in (groundings or {}).items() if isinstance(item, Generator)}
+    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), generators, steering)
+    check_overlaps(loaded)
+    _check_start(loaded, context)
+    bound = _bind(declared, parsed, context, {**_grounded(groundings or {}), **(functions or {})})
+    task = Task(loaded.scene.name, parsed, start.objects, frozenset(start.facts), goal, {})
+    return Problem(
+        name=loaded.scene.name,
+        scene=loaded.scene,
+        context=context,
+        stream_task=StreamTask(task, bound, start.values),
+        goal=" ".join(loaded.goal.text.split()),
+        files={
+            "problem": (loaded.path.resolve(),),
+            "domain": (domain_path.resolve(),),
+            "streams": (streams_path.resolve(),),
+            "meshes": tuple(path.resolve() for path in loaded.meshes),
+        },
+        samplers=chosen | dict.fromkeys(groundings or {}, "given"),
+        warnings=(*loaded.warnings, *_unused(functions or {}, declared)),
+    )
+
+
+def _grounded(groundings: Mapping[str, Grounding]) -> dict[str, Callable[..., Any]]:
+    """The stream functions of relations that have no built-in ones."""
+    made: dict[str, Callable[..., Any]] = {}
+    for relation, grounding in groundings.items():
+        if relation not in SAMPLERS and isinstance(grounding, Generator):
+            made[f"sample-{relation}"] = partial(sample_relation, generator=grounding)
+        if isinstance(grounding, Classifier):
+            made[f"test-{relation}"] = partial(test_relation, classifier=grounding)
+    return made
+
+
+def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
+    if domain is not None:
+        return find_domain(domain)
+    if loaded.domain is None:
+        raise loaded.error(
+            "no domain", remedy="Name one in the file (domain: cupboard) or on the command line, before the problem"
+        )
+    try:
+        return find_domain(loaded.domain, loaded.path.parent)
+    except InputError as error:
+        raise error.at(loaded.path, _line(loaded, "domain")) from None
+
+
+def _check_metric(loaded: LoadedProblem) -> None:
+    metric = loaded.metric
+    if metric is not None and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC:
+        remedy = "The one that there is: (minimize (total-cost))"
+        raise InputError(f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy)
+
+
+def _line(loaded: LoadedProblem, *keys: str) -> int:
+    """Where an entry of the problem file stands: read again, for an error's sake only."""
+    node = read_yaml(loaded.path)
+    for key in keys:
+        node = node.mapping()[key]
+    return node.line
+
+
+def _read(path: Path) -> str:
+    try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise InputError(f"no PDDL file is {size / 1e6:.1f} MB large", file=path)
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise InputError(f"cannot read it: {reason}", file=path) from error
+
+
+def _chosen(samplers: Mapping[str, str], loaded: LoadedProblem | None) -> dict[str, str]:
+    """The samplers as they were given, checked; `loaded` when it was by the problem file."""
+    for relation, name in samplers.items():
+        error: InputError | None = None
+        if relation not in SAMPLERS:
+            error = InputError(f"unknown relation '{relation}'", found=relation, choices=SAMPLERS)
+        elif name not in SAMPLERS[relation]:
+            what = f"unknown sampler '{name}' for '{relation}'"
+            error = InputError(what, found=name, choices=SAMPLERS[relation])
+        if error is not None:
+            raise error if loaded is None else error.at(loaded.path, _line(loaded, "samplers", relation))
+    return dict(samplers)
+
+
+def _bind(
+    declared: StreamFile, domain: Any, context: Context, functions: Mapping[str, Callable[..., Any]]
+) -> tuple[BoundStream, ...]:
+    known = {**STREAMS, **functions}
+    bound: list[BoundStream] = []
+    for stream in declared.streams:
+        if stream.name not in known:
+            raise _without_function(stream, declared.file, known)
+        types = output_types(stream, domain)
+        outputs = tuple(types[name] for name in stream.outputs)
+        bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
+    return tuple(bound)
+
+
+def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
+    names = [stream.name for stream in declared.streams]
+    return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
+
+
+def _without_function(stream: Stream, file: str | None, known: Mapping[str, Any]) -> InputError:
+    place = stream.place
+    return InputError(
+        f"stream '{stream.name}' has no function",
+        file=file,
+        line=place.line if place else None,
+        column=place.column if place else None,
+        found=stream.name,
+        choices=known,
+        remedy=f"Give it one from Python: load_problem(..., functions={{'{stream.name}': f}})",
+    )
+
+
+def _check_start(loaded: LoadedProblem, context: Context) -> None:
+    scene = loaded.scene
+    conf = context.conf(scene.robot.base, context.home)
+    poses = {name: scene.bodies[name].pose for name in scene.movable}
+    hit = context.collisions.arrangement(poses).hits(conf)
+    if hit is not None:
+        link, other = hit
+        remedy = (
+            "Move its base, or what stands there" if {link, other} & set(scene.bodies) else "Give it another 'arm:'"
+        )
+        raise loaded.error(f"the robot starts in collision: {link} hits {other}", "robot", remedy)

@@ -1,0 +1,74 @@
+"""A plan with everything that belongs to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from tamp.algorithms.solution import Effort, Outcome
+from tamp.algorithms.statistics import StreamStatistics
+from tamp.pddl.structs import Fact
+from tamp.problem import Problem
+from tamp.trajectories import Trajectory
+
+
+@dataclass(frozen=True)
+class Action:
+    """An action of a plan.
+
+    Attributes:
+        name: As in the domain.
+        arguments: Names of all its arguments; their values are in `Solution.values`.
+        objects: Those among them that the scene knows: bodies, surfaces, containers.
+        trajectory: What the robot does.
+        start: Seconds from the plan's start.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    objects: tuple[str, ...]
+    trajectory: Trajectory
+    start: float
+    cost: float = 1.0
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What `solve` returns, with a plan or without one.
+
+    Attributes:
+        outcome: How planning ended.
+        plan: The actions in order, empty unless solved.
+        values: The value of every name in the plan: poses, grasps, base configurations, reaches, motions.
+        certified: The facts that streams certified and the plan rests on.
+        explanation: Why there is no plan, a line a cause.
+        seconds: Wall-clock time: "total", "search", "timing", and by stream.
+    """
+
+    problem: Problem
+    outcome: Outcome
+    seed: int
+    algorithm: str
+    plan: tuple[Action, ...] = ()
+    values: Mapping[str, object] = field(default_factory=dict[str, object])
+    certified: tuple[Fact, ...] = ()
+    statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
+    effort: Effort = field(default_factory=Effort)
+    explanation: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    seconds: Mapping[str, float] = field(default_factory=dict[str, float])
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a plan."""
+        return self.outcome is Outcome.SOLVED
+
+    @property
+    def cost(self) -> float:
+        """The sum of the actions' costs."""
+        return sum(action.cost for action in self.plan)
+
+    @property
+    def duration(self) -> float:
+        """Seconds of motion."""
+        return sum(action.trajectory.duration for action in self.plan)

@@ -1,0 +1,94 @@
+"""The house rules that a machine can check: layers, file sizes, what starts when."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+SYMBOLIC = ("tamp/pddl", "tamp/search", "tamp/algorithms")
+LONGEST = 300
+HEAVY = {"torch", "pybullet", "trimesh", "toppra", "scipy", "ompl", "fcl", "pinocchio", "eaik", "coacd", "matplotlib"}
+DISTRIBUTIONS = {"fcl": "python-fcl", "pinocchio": "pin", "pybullet_data": "pybullet", "yaml": "pyyaml"}
+"""Where a package's import name is not its name on PyPI."""
+
+
+def sources(*folders: str) -> list[Path]:
+    files = sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py"))
+    assert files, folders
+    return files
+
+
+def imported(file: Path) -> Iterator[str]:
+    """The top-level packages that a file imports, inside functions too."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (name.name.partition(".")[0] for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module.partition(".")[0]
+
+
+def test_folders_import_only_from_folders_below() -> None:
+    linter = Path(sys.executable).with_name("lint-imports")
+    run = subprocess.run([str(linter), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "0 broken" in run.stdout
+
+
+@pytest.mark.parametrize("folder", SYMBOLIC)
+def test_the_symbolic_half_is_pure_standard_library(folder: str) -> None:
+    foreign = {
+        f"{file.relative_to(ROOT)}: {name}"
+        for file in sources(folder)
+        for name in imported(file)
+        if name not in sys.stdlib_module_names and name != "tamp"
+    }
+    assert not foreign
+
+
+def test_files_stay_short() -> None:
+    lengths = {
+        str(file.relative_to(ROOT)): len(file.read_text(encoding="utf-8").splitlines())
+        for file in sources("tamp", "grounding")
+    }
+    assert {file: lines for file, lines in lengths.items() if lines > LONGEST} == {}
+
+
+def test_no_global_state_no_asserts_no_probing() -> None:
+    found = {
+        f"{file.relative_to(ROOT)}:{node.lineno}: {ast.unparse(node)[:60]}"
+        for file in sources("tamp", "grounding")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Assert | ast.Global)
+        or (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id in {"hasattr", "eval", "exec"}
+        )
+    }
+    assert found == set()
+    assert not [file for file in sources("tamp", "grounding") if file.name in {"utils.py", "helpers.py", "common.py"}]
+
+
+def test_dependencies_are_what_the_code_imports() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = {line.partition(">=")[0].lower() for line in project["dependencies"]}
+    own = {"tamp", "grounding", *sys.stdlib_module_names}
+    needed = {name for file in sources("tamp", "grounding") for name in imported(file)} - own
+    assert {DISTRIBUTIONS.get(name, name) for name in needed} == declared
+
+
+@pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli"])
+def test_nothing_heavy_is_imported_at_start(module: str) -> None:
+    code = f"import sys, json, {module}; print(json.dumps(sorted(sys.modules)))"
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    modules = {name.partition(".")[0] for name in json.loads(run.stdout)}
+    assert "tamp" in modules
+    assert modules & HEAVY == set()

@@ -1,0 +1,55 @@
+"""Every shipped problem: a plan that the independent judge accepts, or the reason why there is none."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from tamp.algorithms.solution import Outcome
+from tamp.api import solve
+from tamp.data import shipped
+from tamp.plan_file import plan_text
+from tamp.problem import load_problem
+from tamp.verification.verify import verify
+
+PROBLEMS = sorted(path.stem for path in shipped("problems").glob("*.yaml"))
+IMPOSSIBLE = {"impossible_reach": ("soup_can", "reach"), "impossible_size": ("pitcher", "0.24")}
+"""Problems without a plan: the object that the reason must name, and what it must say of it."""
+
+LADDER = {
+    *("one_object", "two_objects", "four_objects", "eight_objects", "cluttered", "shelves", "blocked", "swap"),
+    *IMPOSSIBLE,
+}
+
+
+def test_the_ladder_is_complete() -> None:
+    assert set(PROBLEMS) >= LADDER
+
+
+@pytest.mark.timeout(150)  # 30 s to plan, and slow shared cores
+@pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in IMPOSSIBLE])
+def test_solved_and_verified(name: str) -> None:
+    problem = load_problem(name)
+    solution = solve(problem, max_time=30.0, seed=0)
+    assert solution.outcome is Outcome.SOLVED, solution.explanation
+    assert not solution.warnings
+    report = verify(json.loads(plan_text(solution)))
+    assert report.holds, report.text()
+    assert report.states > 100 * len(solution.plan)
+    moved = {body for action in solution.plan if action.name == "pick" for body in action.objects}
+    wanted = set(problem.scene.movable) & set(re.findall(r"\w+", problem.goal))
+    assert wanted and moved >= wanted
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_impossible_and_why(name: str) -> None:
+    body, reason = IMPOSSIBLE[name]
+    solution = solve(load_problem(name), max_time=30.0, seed=0)
+    assert solution.outcome in (Outcome.INFEASIBLE, Outcome.EXHAUSTED)
+    text = "\n".join(solution.explanation)
+    assert body in text and reason in text, text
+    assert solution.seconds["total"] < 5.0
+    assert not solution.plan
