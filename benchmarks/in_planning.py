@@ -1,0 +1,91 @@
+"""The collision checks that planning really asks for: recorded while a problem is solved, then timed again.
+
+python -m benchmarks.in_planning four_objects eight_objects
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import tyro
+
+from benchmarks.common import record, table
+from tamp import load_problem, solve
+from tamp.world.arrangement import Arrangement
+
+REPEATS = 15
+"""Each recorded check is timed so often; the fastest pass counts."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to run."""
+
+    problems: tyro.conf.Positional[tuple[str, ...]] = ("four_objects", "eight_objects", "cluttered", "shelves")
+    """Shipped problems' names or paths."""
+    seed: int = 0
+    """Of the solve."""
+    out: str = "in_planning.jsonl"
+    """The file under benchmarks/results."""
+
+
+Check = tuple[Arrangement, tuple[Any, ...]]
+
+
+@contextmanager
+def recorded(name: str, checks: list[Check]) -> Iterator[None]:
+    """Keep every call of one of Arrangement's methods."""
+    method: Callable[..., bool] = getattr(Arrangement, name)
+
+    def keep(self: Arrangement, *confs: Any) -> bool:
+        checks.append((self, confs))
+        return method(self, *confs)
+
+    setattr(Arrangement, name, keep)
+    try:
+        yield
+    finally:
+        setattr(Arrangement, name, method)
+
+
+def microseconds(name: str, checks: list[Check]) -> float:
+    """Mean time of a recorded check, the call from Python included."""
+    method: Callable[..., bool] = getattr(Arrangement, name)
+    best = float("inf")
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        for arrangement, confs in checks:
+            method(arrangement, *confs)
+        best = min(best, time.perf_counter() - started)
+    return 1e6 * best / len(checks)
+
+
+def main(options: Options) -> None:
+    """Record, time, print."""
+    rows: list[dict[str, Any]] = []
+    for problem in options.problems:
+        states: list[Check] = []
+        edges: list[Check] = []
+        with recorded("free", states), recorded("edge_free", edges):
+            solve(load_problem(problem), seed=options.seed)
+        arrangements = {id(arrangement): arrangement for arrangement, _ in (*states, *edges)}.values()
+        asked = sum(arrangement.stats.edges for arrangement in arrangements)
+        decided = sum(arrangement.stats.edges_decided for arrangement in arrangements)
+        row = {
+            "states": len(states),
+            "us a state": round(microseconds("free", states), 2),
+            "edges": len(edges),
+            "us an edge": round(microseconds("edge_free", edges), 1),
+            "edges decided compiled": round(decided / asked, 4),
+        }
+        rows.append({"problem": problem, **row})
+        record(options.out, seed=options.seed, config={"problem": problem}, **row)
+    table(rows, "collision checks as planning asks for them")
+
+
+if __name__ == "__main__":
+    main(tyro.cli(Options))
