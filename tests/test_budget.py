@@ -163,9 +163,11 @@ def test_no_plan_that_cannot_be_proven_names_the_object(algorithm: str, tmp_path
 
 @pytest.mark.parametrize("budget", [1e-6, 0.05, 0.3])
 def test_a_very_short_budget(budget: float) -> None:
+    """A fast machine may find a plan in 0.3 s; none finds one in a microsecond."""
     solution, seconds = timed(load_problem("eight_objects"), budget)
     assert seconds < budget + LATE
-    assert solution.outcome is Outcome.TIMEOUT and solution.explanation
+    assert solution.outcome is Outcome.TIMEOUT or (solution.solved and budget > 1e-6)
+    assert solution.solved or solution.explanation
 
 
 def test_the_alarm_is_disarmed_afterwards() -> None:
