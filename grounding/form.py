@@ -17,6 +17,9 @@ from tamp.world.scene import Body, Part
 DIRECTIONS = 128
 """Directions in which a hull's extreme vertices are kept; more vertices would change no decision."""
 
+FEW = 42
+"""The same where speed counts."""
+
 
 @lru_cache(maxsize=512)
 def form_of(parts: tuple[Part, ...]) -> Form:
@@ -67,6 +70,20 @@ class Form:
         return np.ascontiguousarray(points[chosen]) if len(points) > DIRECTIONS else points
 
     @cached_property
+    def outer(self) -> Array:
+        """Fewer of `vertices`, the outermost ones in FEW directions and along its axes, shape (v, 3)."""
+        if self._unit is not self:
+            return self._unit.outer * self.scale
+        directions = np.concatenate([sphere(FEW), np.eye(3), -np.eye(3)])
+        chosen = np.unique(np.argmax(self.vertices @ directions.T, axis=0))
+        return self.vertices[chosen] if len(self.vertices) > FEW else self.vertices
+
+    @cached_property
+    def outer_box(self) -> Array:
+        """`corners` of `outer` alone, shape (2, 3)."""
+        return np.stack([self.outer.min(axis=0), self.outer.max(axis=0)])
+
+    @cached_property
     def centre_of_mass(self) -> Array:
         """Of uniform density, shape (3,)."""
         return self._unit.centre_of_mass * self.scale if self._unit is not self else centre_of_mass(self._body)
@@ -82,6 +99,13 @@ class Form:
                     centre=face.centre * s)
             for face in self._unit.faces
         )  # fmt: skip
+
+    @cached_property
+    def pieces(self) -> tuple[Form, ...]:
+        """Each part as a form of its own."""
+        if self._unit is not self:
+            return tuple(piece.scaled(self.scale) for piece in self._unit.pieces)
+        return tuple(Form((part,)) for part in self.parts)
 
     @cached_property
     def _body(self) -> Body:

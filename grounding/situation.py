@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,7 +24,7 @@ class Placed:
     form: Form
     matrix: Array
 
-    @property
+    @cached_property
     def box(self) -> Array:
         """The box around it along the world's axes: low and high corner, shape (2, 3), metres."""
         centre, half = self.form.corners.mean(axis=0), np.ptp(self.form.corners, axis=0) / 2
@@ -90,7 +91,7 @@ def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
 def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
     """The situation, with those of `others` that are surroundings."""
     around = tuple(
-        other for other in others if min(_gap(other.box, support.box), _gap(other.box, body.box)) <= SURROUNDINGS
+        other for other in others if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
     )
     return Situation(support, region, body, around)
 
@@ -120,7 +121,7 @@ def _turned(corners: Array, matrix: Array) -> Array:
     return np.stack([middle - half, middle + half])
 
 
-def _gap(first: Array, second: Array) -> float:
+def gap(first: Array, second: Array) -> float:
     """Distance between two boxes along the axes, metres; 0 when they overlap."""
     apart = np.maximum(np.maximum(first[0] - second[1], second[0] - first[1]), 0.0)
     return float(np.sqrt(apart @ apart))
