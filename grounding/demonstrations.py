@@ -13,12 +13,13 @@ from numpy.random import Generator as Random
 from grounding.form import Form
 from grounding.objects import object_templates
 from grounding.oracles import REACH, ItemOf, Verdict, settled
+from grounding.random_poses import afloat, on_ground, pick, random_rest, random_scale, random_turn, solids, upright
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, gap, near
 from grounding.supports import Support, scaled_region, support_templates
 from tamp.simulation.drop import Drops, Item
 from tamp.streams.resting import resting_pose
-from tamp.world.pose import Array, Pose
+from tamp.world.pose import Array
 
 Kinds = Mapping[str, float]
 
@@ -91,12 +92,12 @@ class Maker:
                 return made
 
     def _try(self, kind: str, rng: Random) -> Made | None:
-        name, scale = _pick(self._supports, rng), _scale(SUPPORT_SCALES[self.split], rng)
+        name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         support = self._supports[name]
         support = replace(support, region=scaled_region(support.region, scale))
         names, scales = [name], [scale]
-        placed = [Placed(self._form(name, scale), _standing(rng.uniform(-1.5, 1.5, 2), rng))]
-        name, scale = _pick(self._objects, rng), _scale(OBJECT_SCALES[self.split], rng)
+        placed = [Placed(self._form(name, scale), upright(rng.uniform(-1.5, 1.5, 2), rng))]
+        name, scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
         body = self._form(name, scale)
         names, scales = [*names, name], [*scales, scale]
         other = self._other_support(placed[0], rng)
@@ -124,7 +125,7 @@ class Maker:
 
     def _positive(self, scene: _Scene, rng: Random) -> Array | None:
         if rng.random() < TUMBLED:
-            pose = _turned(rng)
+            pose = random_turn(rng)
             low = float((scene.body.vertices @ pose[2, :3]).min())
             half = scene.support.region.size[:2] / 2
             pose[:3, 3] = (*rng.uniform(-0.8, 0.8, 2) * half, 0.01 - low)
@@ -161,7 +162,7 @@ class Maker:
         poses = [
             scene.T_world_region @ pose
             for pose in (
-                _rest(form, region.size, not region.hollow and overhang and rng.random() < 0.3, rng)
+                random_rest(form, region.size, not region.hollow and overhang and rng.random() < 0.3, rng)
                 for _ in range(TRIES)
             )
             if pose is not None
@@ -171,13 +172,13 @@ class Maker:
     # The surroundings
 
     def _other_support(self, stand: Placed, rng: Random) -> tuple[str, float, Placed] | None:
-        name, scale = _pick(self._tables, rng), _scale(SUPPORT_SCALES[self.split], rng)
+        name, scale = pick(self._tables, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         form = self._form(name, scale)
         reach = 0.5 * float(np.linalg.norm(np.ptp(stand.form.corners, axis=0)[:2]))
         reach += 0.5 * float(np.linalg.norm(np.ptp(form.corners, axis=0)[:2]))
         angle = rng.uniform(-math.pi, math.pi)
         away = (reach + rng.uniform(0.02, 0.5)) * np.array([math.cos(angle), math.sin(angle)])
-        return name, scale, Placed(form, _standing(stand.matrix[:2, 3] + away, rng))
+        return name, scale, Placed(form, upright(stand.matrix[:2, 3] + away, rng))
 
     def _distractor(
         self,
@@ -188,20 +189,20 @@ class Maker:
         others: list[tuple[str, float, Placed]],
         rng: Random,
     ) -> tuple[str, float, Placed] | None:
-        name, scale = _pick(self._objects, rng), _scale(OBJECT_SCALES[self.split], rng)
+        name, scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
         form = self._form(name, scale)
         where = rng.random()
         T_world_region = stand.matrix @ support.region.matrix
         if kind != "alone" and (where < 0.6 or number == 0):
-            poses = [_rest(form, support.region.size, False, rng) for _ in range(6)]
+            poses = [random_rest(form, support.region.size, False, rng) for _ in range(6)]
             poses = [T_world_region @ pose for pose in poses if pose is not None]
         elif where < 0.75 and others:
             poses = [self._on_other(form, others[0], rng)]
         elif where < 0.9:
-            poses = [_on_ground(form, stand, rng) for _ in range(3)]
+            poses = [on_ground(form, stand, rng) for _ in range(3)]
         else:
-            poses = [_afloat(stand, rng) for _ in range(3)]
-        obstacles = Obstacles([*(item for _, _, item in others), *_solids(stand)])
+            poses = [afloat(stand, rng) for _ in range(3)]
+        obstacles = Obstacles([*(item for _, _, item in others), *solids(stand)])
         for pose in (pose for pose in poses if pose is not None):
             if (separations(form, pose[None], obstacles) > 0.5 * _GAP).all():
                 return name, scale, Placed(form, pose)
@@ -210,7 +211,7 @@ class Maker:
     def _on_other(self, form: Form, other: tuple[str, float, Placed], rng: Random) -> Array | None:
         name, scale, item = other
         region = scaled_region(self._tables[name].region, scale)
-        pose = _rest(form, region.size, False, rng)
+        pose = random_rest(form, region.size, False, rng)
         return None if pose is None else item.matrix @ region.matrix @ pose
 
     def _form(self, name: str, scale: float) -> Form:
@@ -221,10 +222,10 @@ class Maker:
     # Samples that do not hold
 
     def _floating(self, scene: _Scene, rng: Random) -> Array | None:
-        return _afloat(scene.stand, rng)
+        return afloat(scene.stand, rng)
 
     def _grounded(self, scene: _Scene, rng: Random) -> Array | None:
-        return _on_ground(scene.body, scene.stand, rng)
+        return on_ground(scene.body, scene.stand, rng)
 
     def _lifted(self, scene: _Scene, rng: Random) -> Array | None:
         return self._shifted(scene, rng.uniform(0.035, 0.25), rng)
@@ -240,7 +241,7 @@ class Maker:
         return poses[0]
 
     def _centred(self, scene: _Scene, rng: Random) -> Array | None:
-        pose = _turned(rng)
+        pose = random_turn(rng)
         low, high = scene.stand.box
         pose[:3, 3] = (low + high) / 2 + rng.uniform(-0.15, 0.15, 3) * (high - low)
         return pose
@@ -262,7 +263,7 @@ class Maker:
             face = tall[int(rng.integers(len(tall)))]
             x, y = rng.uniform(-0.5, 0.5, 2) * region.size[:2] * 0.6
             return scene.T_world_region @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
-        pose = _rest(body, (*region.size[:2], math.inf), True, rng)
+        pose = random_rest(body, (*region.size[:2], math.inf), True, rng)
         if pose is None:
             return None
         points = body.vertices @ pose[:3, :3].T + pose[:3, 3]
@@ -292,68 +293,3 @@ _NEGATIVES: Mapping[str, Callable[[Maker, _Scene, Random], Array | None]] = {
     "colliding": Maker._colliding,
     "sticking out": Maker._sticking,
 }
-
-
-def _rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random) -> Array | None:
-    """T_region_body at rest: whole above the rectangle, or only its centre of mass, 2 cm inside, with `overhang`."""
-    faces = [face for face in form.faces if face.extent + 2 * _GAP <= size[2]]
-    if not faces:
-        return None
-    weights = np.array([face.angle for face in faces])
-    face = faces[int(rng.choice(len(faces), p=weights / weights.sum()))]
-    yaw = rng.uniform(-math.pi, math.pi)
-    c, s = math.cos(yaw), math.sin(yaw)
-    turn = np.array([[c, -s], [s, c]])
-    half = np.asarray(size[:2]) / 2
-    if overhang:
-        low = high = turn @ face.centre
-        half = half - 0.02
-    else:
-        outline = face.outline @ turn.T
-        low, high = outline.min(axis=0), outline.max(axis=0)
-    least, most = -half - low, half - high
-    if (least > most).any():
-        return None
-    x, y = rng.uniform(least, most)
-    return resting_pose(face, yaw, float(x), float(y)).matrix.copy()
-
-
-def _on_ground(form: Form, stand: Placed, rng: Random) -> Array | None:
-    low, high = stand.box
-    size = high - low
-    pose = _rest(form, (size[0] + 1.0, size[1] + 1.0, math.inf), False, rng)
-    if pose is not None:
-        pose[:2, 3] += (low + high)[:2] / 2
-    return pose
-
-
-def _afloat(stand: Placed, rng: Random) -> Array:
-    low, high = stand.box
-    pose = _turned(rng)
-    pose[:3, 3] = rng.uniform([low[0] - 0.5, low[1] - 0.5, 0.15], [high[0] + 0.5, high[1] + 0.5, high[2] + 0.5])
-    return pose
-
-
-def _turned(rng: Random) -> Array:
-    x, y, z, w = (float(v) for v in rng.normal(size=4))
-    norm = math.sqrt(x * x + y * y + z * z + w * w)
-    return Pose((0.0, 0.0, 0.0), (x / norm, y / norm, z / norm, w / norm)).matrix.copy()
-
-
-def _standing(at: Array, rng: Random) -> Array:
-    return Pose.from_xyz_yaw(float(at[0]), float(at[1]), 0.0, rng.uniform(-math.pi, math.pi)).matrix.copy()
-
-
-def _solids(stand: Placed) -> list[Placed]:
-    """The support's convex parts as obstacles of their own."""
-    return [Placed(part, stand.matrix) for part in stand.form.pieces]
-
-
-def _pick(names: Mapping[str, object], rng: Random) -> str:
-    return tuple(names)[int(rng.integers(len(names)))]
-
-
-def _scale(limits: tuple[float, float], rng: Random) -> float:
-    """In steps of 0.1, so that shapes come again."""
-    low, high = round(limits[0] * 10), round(limits[1] * 10)
-    return int(rng.integers(low, high + 1)) / 10

@@ -53,7 +53,6 @@ def generate(
     job: Job,
     out: Path,
     workers: int | None = None,
-    ray: str | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Dataset:
     """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made is used.
@@ -62,7 +61,6 @@ def generate(
         job: What to make.
         out: The file.
         workers: Processes; None for one a core.
-        ray: Address of a Ray cluster to use instead, "local" to start one.
         progress: Called with the scenes made so far and all.
 
     Raises:
@@ -81,7 +79,7 @@ def generate(
     waiting = [number for number in chunks if not (parts / f"{number}.npz").is_file()]
     done = len(chunks) - len(waiting)
     progress(min(done * CHUNK, job.count), job.count)
-    for number, content in _results(job, waiting, workers, ray):
+    for number, content in _results(job, waiting, workers):
         write_whole(parts / f"{number}.npz", content)
         done += 1
         progress(min(done * CHUNK, job.count), job.count)
@@ -114,10 +112,7 @@ def _claim(parts: Path, name: str) -> None:
     write_whole(mark, name.encode())
 
 
-def _results(job: Job, waiting: list[int], workers: int | None, ray: str | None) -> Iterator[tuple[int, bytes]]:
-    if ray is not None:
-        yield from _on_ray(job, waiting, ray)
-        return
+def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
     count = min(workers or os.cpu_count() or 1, len(waiting))
     if count <= 1:
         yield from ((number, _chunk(job, number)) for number in waiting)
@@ -129,22 +124,6 @@ def _results(job: Job, waiting: list[int], workers: int | None, ray: str | None)
         futures = {pool.submit(_chunk, job, number): number for number in waiting}
         for future in as_completed(futures):
             yield futures[future], future.result()
-
-
-def _on_ray(job: Job, waiting: list[int], address: str) -> Iterator[tuple[int, bytes]]:
-    try:
-        import ray
-    except ImportError:
-        raise InputError("ray is not installed", remedy="pip install tamp[ray]") from None
-    ray.init(address=None if address == "local" else address, log_to_driver=False)
-    try:
-        remote = ray.remote(max_retries=3)(_chunk)
-        references = {remote.remote(job, number): number for number in waiting}
-        while references:
-            ready, _ = ray.wait(list(references), num_returns=1)
-            yield references.pop(ready[0]), ray.get(ready[0])
-    finally:
-        ray.shutdown()
 
 
 @lru_cache(maxsize=2)

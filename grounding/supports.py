@@ -11,10 +11,9 @@ from numpy.random import Generator as Random
 
 from grounding.objects import SPLITS
 from grounding.situation import Region, region_of
-from tamp.world.bodies import top_of
 from tamp.world.furniture import FURNITURE, Options
 from tamp.world.pose import Pose
-from tamp.world.scene import Body, Box, Cylinder, Part
+from tamp.world.scene import Body, Box, Cylinder, Part, Surface
 
 PIECES = {"train": 8, "test": 3}
 """How many of each kind of furniture."""
@@ -57,8 +56,7 @@ def _table(rng: Random) -> Body:
 def _block(rng: Random) -> Body:
     x, y, z = (float(v) for v in rng.uniform([0.25, 0.25, 0.1], [0.8, 0.7, 0.8]))
     part = Part(Box((x, y, z)), Pose((0.0, 0.0, z / 2)))
-    surface = top_of("block", (Part(Box((x, y, z))),))
-    assert surface is not None
+    surface = Surface("block", "block", Pose(), (x, y))
     return Body("block", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, z))),))
 
 
@@ -66,8 +64,7 @@ def _board(rng: Random) -> Body:
     """A thin board that hangs at some height."""
     x, y, height = (float(v) for v in rng.uniform([0.3, 0.18, 0.2], [1.0, 0.45, 1.4]))
     part = Part(Box((x, y, 0.03)), Pose((0.0, 0.0, height - 0.015)))
-    surface = top_of("board", (Part(Box((x, y, 0.03))),))
-    assert surface is not None
+    surface = Surface("board", "board", Pose(), (x, y))
     return Body("board", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),))
 
 
@@ -76,8 +73,7 @@ def _round(rng: Random) -> Body:
     radius, height = (float(v) for v in rng.uniform([0.25, 0.4], [0.6, 0.9]))
     plate = Part(Cylinder(radius, 0.04), Pose((0.0, 0.0, height - 0.02)))
     leg = Part(Cylinder(0.05, height - 0.04), Pose((0.0, 0.0, (height - 0.04) / 2)))
-    surface = top_of("round", (Part(Cylinder(radius, 0.04)),))
-    assert surface is not None
+    surface = Surface("round", "round", Pose(), (radius * 2**0.5, radius * 2**0.5))
     return Body("round", (plate, leg), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),))
 
 
