@@ -154,7 +154,7 @@ def read_dataset(path: Path) -> Dataset:
     if not isinstance(card, dict) or card.get("format") != FORMAT:
         raise InputError(f"not a card of '{FORMAT}'", file=card_path, remedy=remedy)
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         geometry = _unpacked({name: arrays.pop(name) for name in _GEOMETRY})
         templates = dict(zip(card.pop("templates"), geometry, strict=True))
