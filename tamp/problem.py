@@ -13,6 +13,7 @@ from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
 from tamp.errors import InputError
 from tamp.initial import initial_state
+from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import Stream, StreamFile, Task
 from tamp.streams.context import Context
@@ -135,7 +136,7 @@ def load_problem(
             "meshes": tuple(path.resolve() for path in loaded.meshes),
         },
         samplers=chosen | dict.fromkeys(groundings or {}, "given"),
-        warnings=(*loaded.warnings, *_unused(functions or {}, declared)),
+        warnings=(*loaded.warnings, *_unused(functions or {}, declared), *lint(parsed, declared, goal, start.facts)),
     )
 
 

@@ -79,7 +79,6 @@ def _stream(section: Section, domain: Domain) -> Stream:
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
-    _check_covered(outputs, certified, f"output of {owner} is never certified")
     fluents = tuple(_fluent(node, domain) for node in _list(values.get(":fluents"), ":fluents"))
     return Stream(
         name.text,

@@ -199,7 +199,10 @@ class StreamFile:
 
 @dataclass(frozen=True)
 class Task:
-    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts."""
+    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts.
+
+    `notes` are oddities of its file that are no errors, each with its place.
+    """
 
     name: str
     domain: Domain
@@ -207,3 +210,4 @@ class Task:
     initial: frozenset[Fact]
     goal: Formula
     costs: Mapping[Fact, float]
+    notes: tuple[str, ...] = ()

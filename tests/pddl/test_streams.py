@@ -81,7 +81,6 @@ WRONG = [
     (":inputs (?o ?s)", ":inputs (?o ?s @@?o)", "variable of stream 'sample-on': '?o' stands twice", None),
     ("(?o ?s) :domain (and", "(?o ?s @@?r) :domain (and", "'?r': this input of stream 'sample-on' does not", None),
     (":outputs (?g)", ":outputs (@@?o)", "'?o' stands twice", None),
-    (":outputs (?g)", ":outputs (?g @@?h)", "'?h': this output of stream 'sample-grasp' is never certified", None),
     ("(grasp ?o ?g))\n  (:stream sample-on", "(grasp ?o @@?h))\n  (:stream sample-on", "unknown variable '?h'", None),
     (":domain (movable ?o)", ":domain (movable @@?p)", "unknown variable '?p'. Choices: ?o", None),
     (":domain (movable ?o)", ":domain (@@movabel ?o)", "unknown predicate 'movabel'", "movable"),
