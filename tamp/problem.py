@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
@@ -81,7 +82,8 @@ def load_problem(
         samplers: Relation to the name of the sampler that serves it, over those that the problem names.
         groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
             samplers. A relation of the user's own is served to the streams sample-<relation> and test-<relation>.
-        functions: Further stream functions by name, f(context, *inputs, call=...).
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
+            f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
 
     Raises:
@@ -122,12 +124,18 @@ def load_problem(
     check_overlaps(loaded)
     _check_start(loaded, context)
     bound = _bind(declared, parsed, context, {**_grounded(groundings or {}), **(functions or {})})
+    _refuse_decided(declared)
+    costs = tuple(
+        BoundFunction(function, partial((functions or {})[function.name], context))
+        for function in declared.functions
+        if function.name in (functions or {})
+    )
     task = Task(loaded.scene.name, parsed, start.objects, frozenset(start.facts), goal, {})
     return Problem(
         name=loaded.scene.name,
         scene=loaded.scene,
         context=context,
-        stream_task=StreamTask(task, bound, start.values),
+        stream_task=StreamTask(task, bound, start.values, costs),
         goal=" ".join(loaded.goal.text.split()),
         files={
             "problem": (loaded.path.resolve(),),
@@ -215,11 +223,27 @@ def _bind(
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
         bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
-    return tuple(bound)
+    return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
+
+
+def _always(*inputs: Any, call: Any) -> bool:
+    return True
+
+
+def _refuse_decided(declared: StreamFile) -> None:
+    for predicate in declared.predicates:
+        place = predicate.place
+        raise InputError(
+            f"'{predicate.name}' is a :predicate, which scenes do not have",
+            file=declared.file,
+            line=place.line if place else None,
+            column=place.column if place else None,
+            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+        )
 
 
 def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
-    names = [stream.name for stream in declared.streams]
+    names = [one.name for one in (*declared.streams, *declared.functions)]
     return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
 
 

@@ -189,12 +189,23 @@ class Function:
 
 @dataclass(frozen=True)
 class StreamFile:
-    """A parsed streams file."""
+    """A parsed streams file.
+
+    Attributes:
+        streams: Those that need a function.
+        functions: Costs that Python computes.
+        predicates: Static predicates that Python decides.
+        rules: What follows from certified facts, as streams without outputs that always succeed.
+        notes: Oddities that are no errors, each with its place.
+    """
 
     name: str
     streams: tuple[Stream, ...]
     functions: tuple[Function, ...] = ()
     file: str | None = None
+    predicates: tuple[Function, ...] = ()
+    rules: tuple[Stream, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

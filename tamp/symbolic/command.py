@@ -64,6 +64,8 @@ def plan_files(
     if len(files) != 2:
         remedy = "For example: tamp-solve domain.pddl problem.pddl"
         raise InputError(f"'{files[-1]}' alone: a problem in PDDL needs its domain before it", remedy=remedy)
+    if not files[0].endswith(".pddl") and Path(files[0]).suffix:
+        raise InputError(f"expected [DOMAIN] PROBLEM, found '{files[0]}' in the domain's place")
     loaded = load_symbolic(*files)
     show(headline(loaded))
     solution = solve_symbolic(loaded, search=search, heuristic=heuristic, max_time=left())
