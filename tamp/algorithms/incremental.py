@@ -112,6 +112,8 @@ class Incremental(Run):
                 if outputs is not None:
                     for fact in self.streams.certified(instance, outputs):
                         self.found.setdefault(fact, instance)
+                for fact in self.streams.wild:
+                    self.found.setdefault(fact, None)
             if instance.exhausted and not instance.results and instance.last is not None:
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh
@@ -123,7 +125,7 @@ class Incremental(Run):
         optimism = imagine(fluent, [*self.known, *self.found], levels=1)
         optimism.assumed = self.assumed
         grounded = instantiate(
-            self.problem.task,
+            self.task,
             [*self.found, *optimism.makers],
             {**self.objects.types, **optimism.types},
             assumed=frozenset(self.assumed),

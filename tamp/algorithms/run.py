@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
+from tamp.algorithms.costs import Costs
 from tamp.algorithms.explanation import explain_failures
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
@@ -44,7 +46,10 @@ class Run:
         self.objects = Objects(
             {**task.domain.constants, **task.objects},
             {**{name: name for name in task.domain.constants}, **problem.values},
+            by_value=problem.by_value,
         )
+        self.costs = Costs(problem.functions, self.objects, task.costs)
+        self.task = replace(task, costs=self.costs)
         self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
@@ -71,7 +76,7 @@ class Run:
         )
         optimism.assumed = self.assumed
         grounded = instantiate(
-            self.problem.task,
+            self.task,
             [*self.real, *optimism.makers],
             {**self.objects.types, **optimism.types},
             assumed=frozenset(self.assumed),
@@ -133,12 +138,17 @@ class Run:
                 self.dead.setdefault(key, instance.last or Rejection("does not hold"))
                 self.refused.update(self.streams.certified(instance, ()))
 
+    def absorb(self) -> bool:
+        """Take over the facts that streams found besides; whether there were new ones."""
+        before = len(self.real)
+        self.real.update(self.streams.wild)
+        return len(self.real) > before
+
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""
-        actions = tuple(
-            GroundAction(name, substitute((name, terms), values)[1:], step.cost)
-            for (name, terms), step in zip(skeleton.actions, skeleton.steps, strict=True)
-        )
+        lifted = {action.name: action for action in self.task.domain.actions}
+        bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
+        actions = tuple(GroundAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
         initial = self.problem.task.initial
         certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
         result = self.result(Outcome.SOLVED, ())

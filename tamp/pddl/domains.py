@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Mapping, Set
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,10 +22,17 @@ SECTIONS = (
 ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
 
-def parse_domain(text: str, file: str | Path | None = None) -> Domain:
+def parse_domain(
+    text: str, file: str | Path | None = None, undeclared: Mapping[str, Predicate] | None = None
+) -> Domain:
     """Read a PDDL domain.
 
     Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
+
+    Args:
+        text: The domain.
+        file: For messages: where the text comes from.
+        undeclared: Predicates that may be used although the domain does not declare them.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -36,6 +43,8 @@ def parse_domain(text: str, file: str | Path | None = None) -> Domain:
     constants = parse_objects(items_of(sections, ":constants"), types, "a constant")
     predicates = parse_predicates(items_of(sections, ":predicates"), types)
     functions = parse_functions(items_of(sections, ":functions"), types)
+    known = (types, predicates, functions)
+    predicates |= {n: p for n, p in (undeclared or {}).items() if not any(n in names for names in known)}
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")

@@ -189,17 +189,31 @@ class Function:
 
 @dataclass(frozen=True)
 class StreamFile:
-    """A parsed streams file."""
+    """A parsed streams file.
+
+    Attributes:
+        streams: Those that need a function.
+        functions: Costs that Python computes.
+        predicates: Static predicates that Python decides.
+        rules: What follows from certified facts, as streams without outputs that always succeed.
+        notes: Oddities that are no errors, each with its place.
+    """
 
     name: str
     streams: tuple[Stream, ...]
     functions: tuple[Function, ...] = ()
     file: str | None = None
+    predicates: tuple[Function, ...] = ()
+    rules: tuple[Stream, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Task:
-    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts."""
+    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts.
+
+    `notes` are oddities of its file that are no errors, each with its place.
+    """
 
     name: str
     domain: Domain
@@ -207,3 +221,4 @@ class Task:
     initial: frozenset[Fact]
     goal: Formula
     costs: Mapping[Fact, float]
+    notes: tuple[str, ...] = ()

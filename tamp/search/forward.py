@@ -95,7 +95,11 @@ class _Search:
 
 
 def _eager(search: _Search, weight: float) -> Plan | None:
-    """A* with reopening; ties are broken for the lower estimate, then for the younger state."""
+    """A* with reopening; ties are broken for the lower estimate, then for the younger state.
+
+    `weight` infinite is greedy search: costs do not count, and no state is reopened.
+    """
+    greedy = weight == math.inf
     s = search.successors
     initial = s.initial
     search.evaluated += 1
@@ -103,7 +107,7 @@ def _eager(search: _Search, weight: float) -> Plan | None:
     estimates: dict[State, float] = {initial: h}
     queue: list[tuple[float, float, int, float, State]] = []
     if h < math.inf:
-        queue.append((weight * h, h, 0, 0.0, initial))
+        queue.append((h, h, 0, 0.0, initial))
     number = 0
     while queue:
         _, h, _, cost, state = heappop(queue)
@@ -116,7 +120,7 @@ def _eager(search: _Search, weight: float) -> Plan | None:
         for operator in s.applicable(closed):
             after = s.apply(operator, state, closed)
             known = search.best.get(after, math.inf)
-            if cost + s.cost[operator] >= known:
+            if cost + s.cost[operator] >= known or (greedy and known < math.inf):
                 continue
             reached = cost + s.step_cost(operator, state)
             if reached >= known:
@@ -126,10 +130,10 @@ def _eager(search: _Search, weight: float) -> Plan | None:
             h = estimates.get(after)
             if h is None:
                 search.evaluated += 1
-                h = estimates[after] = search.heuristic(s.closure(after)).value
+                h = estimates[after] = search.heuristic(s.closure(after), closed).value
             if h < math.inf:
                 number -= 1
-                heappush(queue, (reached + weight * h, h, number, reached, after))
+                heappush(queue, (h if greedy else reached + weight * h, h, number, reached, after))
     return None
 
 
@@ -166,7 +170,7 @@ def _lazy(search: _Search, weight: float) -> Plan | None:
         h = estimates.get(state)
         if h is None:
             search.evaluated += 1
-            estimate = search.heuristic(closed)
+            estimate = search.heuristic(closed, None if parent is None else s.closure(parent))
             h = estimates[state] = estimate.value
             relaxed[state] = estimate.plan
         if h == math.inf:
@@ -231,6 +235,7 @@ SEARCHES: dict[str, Callable[[_Search, float], Plan | None]] = {
     "astar": lambda search, weight: _eager(search, 1.0),
     "wastar": _lazy,
     "greedy": lambda search, weight: _lazy(search, math.inf),
+    "eager": lambda search, weight: _eager(search, math.inf),
 }
 
 
@@ -248,7 +253,8 @@ def search(
 
     Args:
         grounded: The task.
-        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("hmax", "blind") is optimal.
+        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax", "blind") is optimal;
+            "wastar" and "greedy" are lazy and use preferred operators, "eager" is plain greedy best-first search.
         heuristic: A name of `HEURISTICS`.
         weight: Of the estimate in "wastar".
         price: What the use of a static fact costs (by an operator resting on it, or to lift a guard); may be infinite.
