@@ -15,6 +15,7 @@ from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.solution import Action, Solution
+from tamp.streams.mixture import accounts
 from tamp.trajectories import trajectories
 
 Algorithm = Callable[[StreamTask, Callable[[str], np.random.Generator], Deadline, Progress], Result]
@@ -88,6 +89,7 @@ def solve(
             "timing": total - planned,
             **by_stream,
         },
+        samplers=accounts(result.memory),
     )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
+import importlib.util
 import io
 import math
 import os
@@ -20,6 +22,7 @@ from tamp.errors import InputError
 
 if TYPE_CHECKING:
     from tamp.solution import Solution
+    from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
 SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -52,7 +55,8 @@ class Arguments:
         tyro.conf.UseAppendAction[tuple[str, ...]],
         tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
     ] = ()
-    """Which sampler serves a relation, such as on=uniform."""
+    """Which sampler serves a relation, such as on=uniform. NAME:alone or NAME:mixed says whether the hand-made sampler
+    takes part; it does unless NAME is hand-made, too."""
     algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
     """adaptive, or incremental (simple, for comparison)."""
     steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"
@@ -149,6 +153,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         domain[0] if domain else None,
         streams=arguments.streams,
         samplers=samplers,
+        registry=registry(),
         steering=arguments.steering,
     )
     shown = _Progress(quiet=arguments.quiet or arguments.json)
@@ -183,6 +188,16 @@ def _solve(arguments: Arguments, started: float) -> int:
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
     return SOLVED if holds else NO_PLAN
+
+
+def registry() -> Registry:
+    """The samplers that package grounding supplies in `grounding.registry.GROUNDINGS`: relation to name to a factory.
+
+    This is the one place where the planner meets them.
+    """
+    if importlib.util.find_spec("grounding.registry") is None:
+        return {}
+    return importlib.import_module("grounding.registry").GROUNDINGS
 
 
 def _left(seconds: float, started: float) -> float:

@@ -158,4 +158,5 @@ class Run:
             effort=self.effort,
             explanation=explanation,
             warnings=tuple(self.streams.warnings),
+            memory=self.streams.memory,
         )

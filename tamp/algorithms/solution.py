@@ -73,6 +73,7 @@ class Result:
         certified: Static facts that streams certified and the plan rests on.
         objects: Names, types and values of everything in it.
         explanation: Why there is no plan, a line a cause.
+        memory: What the streams have learned in the run, as they keep it.
     """
 
     outcome: Outcome
@@ -83,6 +84,7 @@ class Result:
     effort: Effort = field(default_factory=Effort)
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    memory: Mapping[str, object] = field(default_factory=dict[str, object])
 
 
 Progress = Callable[[Effort], None]
