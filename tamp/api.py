@@ -13,6 +13,7 @@ from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.solution import Action, Solution
+from tamp.streams.mixture import accounts
 from tamp.trajectories import trajectories
 
 
@@ -82,6 +83,7 @@ def solve(
             "timing": total - planned,
             **by_stream,
         },
+        samplers=accounts(result.memory),
     )
 
 

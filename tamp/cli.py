@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
+import importlib.util
 import io
 import math
 import os
 import shlex
 import sys
-import tempfile
 import time
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -16,9 +17,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from tamp.data import check_writable
 from tamp.errors import InputError
 
 if TYPE_CHECKING:
+    from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
 SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -53,7 +56,8 @@ class Arguments:
         tyro.conf.UseAppendAction[tuple[str, ...]],
         tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
     ] = ()
-    """Which sampler serves a relation, such as on=uniform."""
+    """Which sampler serves a relation, such as on=uniform. NAME:alone or NAME:mixed says whether the hand-made sampler
+    takes part; it does unless NAME is hand-made, too."""
     algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
     """adaptive, or incremental (simple, for comparison)."""
     steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"
@@ -137,7 +141,7 @@ def _sentence(box: str) -> str:
 
 def _solve(arguments: Arguments, started: float) -> int:
     samplers = _samplers(arguments.sampler)
-    _check_writable(arguments.out)
+    check_writable(arguments.out)
     if arguments.files[-1].endswith(".pddl"):
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
@@ -156,6 +160,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         domain[0] if domain else None,
         streams=arguments.streams,
         samplers=samplers,
+        registry=registry(),
         steering=arguments.steering,
     )
     shown = _Progress(quiet=arguments.quiet or arguments.json)
@@ -217,6 +222,16 @@ def _conclude(shown: _Progress, arguments: Arguments, written: Path | None, verd
         shown.line(f"\n{arguments.out} not written: the plan does not hold.")
 
 
+def registry() -> Registry:
+    """The samplers that package grounding supplies in `grounding.registry.GROUNDINGS`: relation to name to a factory.
+
+    This is the one place where the planner meets them.
+    """
+    if importlib.util.find_spec("grounding.registry") is None:
+        return {}
+    return importlib.import_module("grounding.registry").GROUNDINGS
+
+
 def _left(seconds: float, started: float) -> float:
     """What remains of the time that the user gave; at least half, since a first run compiles kernels as it loads."""
     return max(seconds - (time.monotonic() - started), 0.5 * seconds)
@@ -239,23 +254,6 @@ def _samplers(pairs: tuple[str, ...]) -> dict[str, str]:
             raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
         chosen[relation] = name
     return chosen
-
-
-def _check_writable(path: Path) -> None:
-    """Refuse an output that cannot be written before time is spent on a plan."""
-    elsewhere = "Choose another place with --out"
-    try:
-        if path.is_dir():
-            raise InputError("the output is a folder", file=path, remedy=f"Name a file: --out {path / 'plan.json'}")
-        if path.exists() and not path.is_file():
-            raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
-        folder = path.parent
-        while not folder.exists():
-            folder = folder.parent
-        with tempfile.TemporaryFile(dir=folder):  # the only test that root, too, can trust
-            pass
-    except OSError as error:
-        raise InputError(f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere) from None
 
 
 def _say(text: str) -> None:

@@ -48,6 +48,7 @@ class Incremental(Run):
     ) -> None:
         self.found: dict[Fact, Instance | None] = {}
         super().__init__(problem, make_rng, deadline, progress)
+        self.streams.ahead = True
 
     def solve(self, most: int | None = None) -> Result:
         """Sample a level, search and bind what is left, until a plan is found or nothing is new.

@@ -168,4 +168,5 @@ class Run:
             effort=self.effort,
             explanation=explanation,
             warnings=tuple(self.streams.warnings),
+            memory=self.streams.memory,
         )

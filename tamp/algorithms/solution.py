@@ -78,6 +78,7 @@ class Result:
         certified: Static facts that streams certified and the plan rests on.
         objects: Names, types and values of everything in it.
         explanation: Why there is no plan, a line a cause.
+        memory: What the streams have learned in the run, as they keep it.
     """
 
     outcome: Outcome
@@ -88,6 +89,7 @@ class Result:
     effort: Effort = field(default_factory=Effort)
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    memory: Mapping[str, object] = field(default_factory=dict[str, object])
 
 
 Progress = Callable[[Effort], None]

@@ -141,10 +141,16 @@ class Streams:
         self.statistics = {name: StreamStatistics() for name in streams}
         self.warnings: list[str] = []
         self.wild: dict[Fact, None] = {}
+        self.memory: dict[str, Any] = {}
         self.running: Instance | None = None
+        self.ahead = False
         self._make_rng = make_rng
         self._deadline = deadline
         self._instances: dict[tuple[str, tuple[str, ...], frozenset[Fact]], Instance] = {}
+
+    def remember(self, earlier: Streams) -> None:
+        """Go on with what another part of the same run has learned, and add to its warnings."""
+        self.memory, self.warnings = earlier.memory, earlier.warnings
 
     def instance(self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()) -> Instance:
         """The instance of a stream for these inputs; the same one each time."""
@@ -215,7 +221,7 @@ class Streams:
         if instance.iterator is None:
             key = repr((instance.stream.name, instance.inputs, sorted(instance.fluents)))
             shown = [tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)]
-            call = Call(self._make_rng(key), self._deadline, shown)
+            call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, self._warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
                 instance.exhausted = True
