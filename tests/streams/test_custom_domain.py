@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -129,7 +130,7 @@ def test_a_cost_that_python_computes(root: Path, tmp_path: Path) -> None:
     solution = tamp.solve(problem, max_time=30.0, seed=0)
     assert solution.solved
     moves = [action for action in solution.plan if action.name == "move"]
-    bases = [solution.values[action.arguments[0]] for action in moves]
+    bases: list[Any] = [solution.values[action.arguments[0]] for action in moves]
     assert [action.cost for action in moves] == [3.0 + 0.5 * abs(base.array[0]) for base in bases]
     (tmp_path / "dear.streams.pddl").write_text(streams + "\n  (:predicate (hot ?b) (standing ?b)))")
     (tmp_path / "dear.pddl").write_text(domain.replace("(hand-empty)", "(hand-empty) (hot ?b - base-conf)", 1))
