@@ -38,7 +38,7 @@ class Types:
 
 
 def parse_types(nodes: Sequence[Node]) -> Types:
-    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all: competition domains do."""
+    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in competitions."""
     entries = typed_list(nodes, "a type")
     parents: dict[str, tuple[str, ...]] = {}
     for entry in entries:

@@ -241,5 +241,5 @@ def test_no_domain(text: str) -> None:
 
 
 def test_unsupported_words_are_said_to_be() -> None:
-    with pytest.raises(InputError, match="unknown section ':durative-action'"):
+    with pytest.raises(InputError, match="':durative-action' is not supported"):
         parse_domain("(define (domain d) (:durative-action a))")
