@@ -64,8 +64,8 @@ class Arguments:
     """How the base moves: se2 (in any direction) or reeds-shepp (like a car)."""
     search: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: greedy)")] = None
     """Of a PDDL problem: greedy (lazy, preferred operators), eager, wastar, or astar (optimal)."""
-    heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: ff or lmcut)")] = None
-    """Of a PDDL problem: ff, hadd, landmarks; hmax, lmcut and blind are admissible."""
+    heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: by search)")] = None
+    """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
     json: bool = False

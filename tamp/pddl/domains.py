@@ -39,7 +39,8 @@ def parse_domain(
     """
     name, sections = read_sections(text, "domain", SECTIONS, file)
     check_requirements(items_of(sections, ":requirements"))
-    types, more_parents = parse_types(items_of(sections, ":types"))
+    declared = parse_types(items_of(sections, ":types"))
+    types = declared.parents
     constants = parse_objects(items_of(sections, ":constants"), types, "a constant")
     predicates = parse_predicates(items_of(sections, ":predicates"), types)
     functions = parse_functions(items_of(sections, ":functions"), types)
@@ -52,7 +53,9 @@ def parse_domain(
     counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
-    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, more_parents)
+    names = Domain(
+        name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents, declared.notes
+    )
 
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
     derived_names = {rule_head(section, names) for section in rules}

@@ -11,7 +11,7 @@ from tamp.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, 
 def lint(
     domain: Domain, streams: StreamFile | None = None, goal: Formula | None = None, initial: Collection[Fact] = ()
 ) -> tuple[str, ...]:
-    """Warnings, each with file, line and column, in the order of their places.
+    """Warnings, each with file, line and column, in the order of their places after the parser's own.
 
     Args:
         domain: Parsed.
@@ -29,7 +29,7 @@ def lint(
     if goal is not None:
         found += _unachievable(domain, streams, goal, initial)
     found.sort(key=lambda row: (row[0].file or "", row[0].line, row[0].column, row[1]))
-    return tuple(dict.fromkeys(warning(place, message) for place, message in found))
+    return tuple(dict.fromkeys((*domain.notes, *(warning(place, message) for place, message in found))))
 
 
 def _unused_predicates(

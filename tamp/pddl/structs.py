@@ -121,7 +121,8 @@ class Predicate:
 class Domain:
     """A parsed domain. `types` maps each type to its parent; "object" is the root and its own parent.
 
-    A type declared below `(either a b)` has further parents, in `more_parents`; so ask `is_a`.
+    A type declared below `(either a b)` or twice has further parents, in `more_parents`; so ask `is_a`. `notes` are
+    oddities that are no errors, each with its place.
     """
 
     name: str
@@ -133,6 +134,7 @@ class Domain:
     derived: tuple[Derived, ...]
     file: str | None = None
     more_parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    notes: tuple[str, ...] = ()
 
     def is_a(self, type_: str, ancestor: str) -> bool:
         """Whether `type_` is `ancestor` or below it."""

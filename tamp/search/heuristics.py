@@ -20,10 +20,12 @@ class Estimate:
     Attributes:
         value: The estimated cost to the goal, infinite in a dead end.
         plan: The operators of a relaxed plan, where the heuristic makes one; those applicable are preferred.
+        achieving: Picks those of the applicable operators that are preferred for another reason.
     """
 
     value: float
     plan: tuple[int, ...] = ()
+    achieving: Callable[[list[int]], list[int]] | None = None
 
 
 class Heuristic(Protocol):
@@ -98,7 +100,7 @@ def landmarks(successors: Successors) -> Heuristic:
         if not known.possible:
             return Estimate(math.inf)
         remaining = known.remaining(closed, parent)
-        return Estimate(known.cost(remaining), tuple(known.achievers(remaining)))
+        return Estimate(known.cost(remaining), achieving=lambda operators: known.achieving(operators, remaining))
 
     return estimate
 

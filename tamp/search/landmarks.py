@@ -64,7 +64,7 @@ class Landmarks:
         self._complements = self._all >> self._size
         self._weights = self._weigh(situation.effects, situation.costs)
         self._needs = self._first_needs(sets, before, effects)
-        self._achievers = self._find_achievers()
+        self._changes = self._find_changes()
 
     def remaining(self, closed: State, parent: State | None) -> Mask:
         """The landmarks that are still to come, or to come again.
@@ -90,12 +90,10 @@ class Landmarks:
         weights = self._weights
         return sum(weights[fact] for fact in bits(remaining))
 
-    def achievers(self, remaining: Mask) -> list[int]:
-        """The operators that add one of these landmarks, sorted."""
-        found: set[int] = set()
-        for fact in bits(remaining):
-            found.update(self._achievers.get(fact, ()))
-        return sorted(found)
+    def achieving(self, operators: list[int], remaining: Mask) -> list[int]:
+        """Those of the operators that make one of these landmarks true."""
+        changes = self._changes
+        return [i for i in operators if changes[i] & remaining]
 
     def _holding(self, closed: State) -> Mask:
         return (closed & self._all) | (~closed & self._complements) << self._size
@@ -123,13 +121,13 @@ class Landmarks:
                     needs[fact] = needs[fact] & own if fact in needs else own
         return {fact: need & self._all for fact, need in needs.items() if need & self._all}
 
-    def _find_achievers(self) -> dict[int, list[int]]:
-        s = self._successors
-        achievers: dict[int, list[int]] = {}
-        for i in s.alive:
-            changed = s.added[i] | (~s.kept[i] & ~s.added[i]) << self._size & ((1 << 2 * self._size) - 1)
-            for _, _, added, deleted in s.conditional[i]:
-                changed |= added | deleted << self._size
-            for fact in bits(changed & self._all):
-                achievers.setdefault(fact, []).append(i)
-        return achievers
+    def _find_changes(self) -> list[Mask]:
+        """The landmarks that each operator may make true."""
+        s, whole = self._successors, (1 << self._size) - 1
+        changes: list[Mask] = []
+        for i, added in enumerate(s.added):
+            mask = added | (~s.kept[i] & ~added & whole) << self._size
+            for _, _, adds, deletes in s.conditional[i]:
+                mask |= adds | deletes << self._size
+            changes.append(mask & self._all)
+        return changes

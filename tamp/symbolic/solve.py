@@ -10,8 +10,8 @@ from tamp.algorithms.explanation import explain_infeasible
 from tamp.algorithms.solution import Outcome, StreamTask
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
-from tamp.search.forward import SEARCHES, Reason, search
-from tamp.search.heuristics import ADMISSIBLE, HEURISTICS
+from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
+from tamp.search.heuristics import ADMISSIBLE
 from tamp.search.instantiate import instantiate
 from tamp.search.operators import Operator
 from tamp.symbolic.problem import SymbolicProblem
@@ -67,10 +67,10 @@ def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
     """
     if search is not None and search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
-    if heuristic is not None and heuristic not in HEURISTICS:
-        raise InputError(f"unknown heuristic '{heuristic}'", found=heuristic, choices=HEURISTICS)
     search = search or SEARCH
-    return search, heuristic or ("lmcut" if search == "astar" else "ff")
+    heuristic = heuristic or ("lmcut" if search == "astar" else "ff+landmarks")
+    split_heuristics(heuristic)
+    return search, heuristic
 
 
 def solve_symbolic(
@@ -81,7 +81,7 @@ def solve_symbolic(
     Args:
         problem: From `load_symbolic`.
         search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind" is optimal.
-        heuristic: A name of `HEURISTICS`, by default "ff", for A* "lmcut".
+        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A* "lmcut".
         max_time: Seconds.
 
     Raises:
@@ -115,7 +115,7 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         name,
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
-        optimal=found.plan is not None and name == "astar" and heuristic in ADMISSIBLE,
+        optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
         explanation=explain_infeasible(StreamTask(task, (), {}), grounded, {}) if infeasible else (),
         expanded=found.expanded,
         evaluated=found.evaluated,
