@@ -33,10 +33,19 @@ SEARCH_LIMIT = 2000
 
 
 class Run:
-    """One run of planning: what it knows, and the steps that algorithms are made of."""
+    """One run of planning: what it knows, and the steps that algorithms are made of.
+
+    `pruned` leaves out the streams whose facts nothing asks for.
+    """
 
     def __init__(
-        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+        self,
+        problem: StreamTask,
+        make_rng: Callable[[str], Any],
+        deadline: Deadline,
+        progress: Progress,
+        *,
+        pruned: bool = True,
     ) -> None:
         task = problem.task
         self.problem = problem
@@ -60,7 +69,7 @@ class Run:
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
-        self.useful = [stream for stream in useful if stream.name not in tests]
+        self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
         self.refused: set[Fact] = set()
         self.names: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
