@@ -99,8 +99,9 @@ def value_key(value: Any) -> Any:
         hash(value)
     except TypeError:
         return (id(value),)
-    is_number = isinstance(value, Real) and type(value) is not bool
-    return (Real if is_number else type(value), value)
+    if isinstance(value, bool):
+        return (bool, value)
+    return (Real if isinstance(value, Real) else type(value), value)
 
 
 @dataclass
