@@ -24,3 +24,11 @@ def test_overlaps_and_blocks_left_behind_are_seen() -> None:
     carry[-1] = Action("place", ("b1", 7.2, None))
     assert holds(carry, problem)
     assert not holds(carry[:2], problem)
+
+
+def test_a_generator_goes_before_a_test_of_what_another_one_gives() -> None:
+    """Poses drawn for the ground could be in the red region as far as anybody knows: that is not tried first."""
+    solution = solve(make(4, 0), max_time=20.0)
+    assert solution.solved
+    assert solution.statistics["test-region"].calls <= 8
+    assert solution.effort.skeletons <= 20
