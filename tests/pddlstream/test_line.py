@@ -31,4 +31,4 @@ def test_a_generator_goes_before_a_test_of_what_another_one_gives() -> None:
     solution = solve(make(4, 0), max_time=20.0)
     assert solution.solved
     assert solution.statistics["test-region"].calls <= 8
-    assert solution.effort.skeletons <= 20
+    assert solution.effort.skeletons <= 4  # that no block is there already is learned at once, not one by one
