@@ -44,10 +44,16 @@ class Incremental(Run):
     """Keeps the real facts found so far; `imagined` looks at those instead of placeholders."""
 
     def __init__(
-        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+        self,
+        problem: StreamTask,
+        make_rng: Callable[[str], Any],
+        deadline: Deadline,
+        progress: Progress,
+        *,
+        pruned: bool = True,
     ) -> None:
         self.found: dict[Fact, Instance | None] = {}
-        super().__init__(problem, make_rng, deadline, progress)
+        super().__init__(problem, make_rng, deadline, progress, pruned=pruned)
         self.streams.ahead = True
 
     def solve(self, most: int | None = None) -> Result:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any
 
 from tamp.algorithms.statistics import StreamStatistics
@@ -90,12 +91,17 @@ class Objects:
 
 
 def value_key(value: Any) -> Any:
-    """What equal values have in common: 1, 1.0 and True are told apart, and all that has no hash."""
+    """What equal values have in common: numbers are equal as numbers (1 and 1.0), other values need the same type.
+
+    Whatever has no hash is told apart by identity.
+    """
     try:
         hash(value)
     except TypeError:
         return (id(value),)
-    return (type(value), value)
+    if isinstance(value, bool):
+        return (bool, value)
+    return (Real if isinstance(value, Real) else type(value), value)
 
 
 @dataclass

@@ -1,17 +1,17 @@
 """Predicates that Python decides, in conditions that need them to be false.
 
-A `:predicate` of a streams file is true where its function says so. Streams can only promise that something holds; so
-where a condition is helped by the predicate being false, it is rewritten over a complement, `not-P`, that a stream of
-its own promises.
+A `:predicate` of a streams file is true where its function says so, and what a test stream certifies is true where the
+test passes. Streams can only promise that something holds; so where a condition is helped by the predicate being false,
+it is rewritten over a complement, `not-P`, that a stream of its own promises.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from tamp.pddl.nodes import error
-from tamp.pddl.structs import And, Atom, Derived, Domain, Exists, Forall, Formula, Not, Or, Predicate
+from tamp.pddl.structs import And, Atom, Derived, Domain, Exists, Forall, Formula, Not, Or, Predicate, Stream
 
 
 def complement_name(predicate: str, domain: Domain) -> str:
@@ -20,6 +20,25 @@ def complement_name(predicate: str, domain: Domain) -> str:
     while name in domain.predicates:
         name += "~"
     return name
+
+
+def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> dict[str, Stream]:
+    """The test streams that a condition asks to fail, by the predicate that each certifies alone."""
+    asked = {atom.predicate for atom, sign in _all(domain, goal) if not sign}
+    makers: dict[str, list[Stream]] = {}
+    for stream in streams:
+        for atom in stream.certified:
+            makers.setdefault(atom.predicate, []).append(stream)
+    return {
+        predicate: made[0]
+        for predicate, made in makers.items()
+        if predicate in asked
+        and len(made) == 1
+        and not made[0].outputs
+        and not made[0].fluents
+        and len(made[0].certified) == 1
+        and sorted(made[0].certified[0].terms) == sorted(made[0].inputs)
+    }
 
 
 def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) -> tuple[Domain, Formula]:
@@ -63,6 +82,16 @@ def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
     """For each derived predicate, whether it is needed to hold, not to hold, or both."""
     derived = domain.derived_predicates
     signs: dict[str, set[bool]] = {}
+    for atom, sign in _all(domain, goal):
+        if atom.predicate in derived:
+            signs.setdefault(atom.predicate, set()).add(sign)
+    return signs
+
+
+def _all(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
+    """The atoms of all conditions, and of rules as they are used, each with whether it helps by holding."""
+    derived = domain.derived_predicates
+    seen: set[tuple[str, bool]] = set()
     stack = [*_atoms(goal, True)]
     for action in domain.actions:
         stack += _atoms(action.precondition, True)
@@ -70,12 +99,12 @@ def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
             stack += [(atom, sign) for atom, one in _atoms(effect.condition, True) for sign in (one, not one)]
     while stack:
         atom, sign = stack.pop()
-        if atom.predicate in derived and sign not in signs.setdefault(atom.predicate, set()):
-            signs[atom.predicate].add(sign)
+        yield atom, sign
+        if atom.predicate in derived and (atom.predicate, sign) not in seen:
+            seen.add((atom.predicate, sign))
             for rule in domain.derived:
                 if rule.head.predicate == atom.predicate:
                     stack += _atoms(rule.body, sign)
-    return signs
 
 
 def _untouched(body: Formula, head: str, names: dict[str, str]) -> Formula:

@@ -39,7 +39,7 @@ def _unused_predicates(
     made = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     made |= domain.derived_predicates
     shown: set[str] = set()
-    for stream in streams.streams if streams else ():
+    for stream in (*streams.streams, *streams.rules) if streams else ():
         shown |= {atom.predicate for atom in (*stream.domain, *stream.certified)} | set(stream.fluents)
     for function in streams.functions if streams else ():
         shown |= {atom.predicate for atom in function.domain}
@@ -58,7 +58,7 @@ def _unused_streams(
     if not whole:  # a goal may ask for any static predicate
         return
     needed |= {atom.predicate for function in streams.functions for atom in function.domain}
-    waiting = list(streams.streams)
+    waiting = [*streams.streams, *streams.rules]
     grows = True
     while grows:
         grows = False
@@ -68,7 +68,7 @@ def _unused_streams(
                 needed |= {atom.predicate for atom in stream.domain}
                 grows = True
     for stream in waiting:
-        if stream.place is not None:
+        if stream.place is not None and stream not in streams.rules:
             facts = " or ".join(dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified))
             yield stream.place, f"stream '{stream.name}' is never used: nothing asks for {facts}"
 
@@ -88,7 +88,8 @@ def _unachievable(
     """Goal atoms of predicates that nothing makes true, and that do not hold at the start either."""
     makers = {effect.atom.predicate for action in domain.actions for effect in action.effects if effect.adds}
     makers |= domain.derived_predicates | {"="}
-    makers |= {atom.predicate for stream in (streams.streams if streams else ()) for atom in stream.certified}
+    for stream in (*streams.streams, *streams.rules) if streams else ():
+        makers |= {atom.predicate for atom in stream.certified}
     given = {fact[0] for fact in initial}
     for atom in _atoms(goal, positive_only=True):
         if atom.predicate in makers or (atom.predicate in domain.types and atom.predicate not in domain.predicates):

@@ -11,7 +11,7 @@ from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
 from tamp.errors import InputError
-from tamp.pddl.complement import complement_name, with_complements
+from tamp.pddl.complement import complement_name, negated_tests, with_complements
 from tamp.pddl.formulas import RESERVED
 from tamp.pddl.lint import lint
 from tamp.pddl.nodes import Group, Node, Symbol, warning
@@ -21,6 +21,7 @@ from tamp.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stre
 from tamp.pddlstream.adapters import stream_function
 from tamp.pddlstream.facts import Names, goal_formula, initial_facts
 from tamp.rejection import Rejection
+from tamp.wild import Wild
 
 
 class PDDLProblem(NamedTuple):
@@ -70,7 +71,9 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
     bound += [_bound(rule, domain, _always) for rule in streams.rules]
     bound += [test for predicate in decided.values() for test in _tests(predicate, domain, functions[predicate.name])]
-    rewritten, goal = with_complements(domain, goal, decided)
+    negated = negated_tests(streams.streams, domain, goal)
+    bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
+    rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
     if unit_costs:
         actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
         rewritten = replace(rewritten, actions=actions)
@@ -105,6 +108,22 @@ def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) ->
         stream = Stream(f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place)
         made.append(BoundStream(stream, test, (), may_advise=False))
     return made[0], made[1]
+
+
+def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
+    """The stream that promises that a test does not pass."""
+    (atom,) = stream.certified
+    test = stream_function(stream, function)
+
+    def fails(*inputs: Any, call: Any) -> Any:
+        answer = test(*inputs, call=call)
+        passes, facts = (answer.value, answer.facts) if isinstance(answer, Wild) else (answer, ())
+        opposite = Rejection(f"{atom.predicate} holds") if passes is True else True
+        return Wild(opposite, facts) if facts else opposite
+
+    name = complement_name(atom.predicate, domain)
+    certified = (Atom(name, atom.terms, atom.place),)
+    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False)
 
 
 def _joined(files: Sequence[StreamFile]) -> StreamFile:

@@ -15,6 +15,7 @@ from tamp.algorithms.solution import Effort, Outcome, Result, StreamTask
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
+from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
 from tamp.pddlstream.problem import PDDLProblem, bind
 
 CLOSER_LOOK = 500
@@ -114,20 +115,38 @@ def solve(
 
 
 def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Result:
-    """Run the algorithm; what streams find besides their outputs can open a way that no stream promises."""
+    """Run the algorithm; when it finds no way, look at what the streams really give."""
 
     def make_rng(key: str) -> Random:
         digest = hashlib.blake2b(key.encode(), digest_size=8, key=str(seed).encode()).digest()
         return Random(int.from_bytes(digest, "little"))
 
     result = ALGORITHMS[algorithm](task, make_rng, deadline, _silent)
-    if result.outcome is not Outcome.INFEASIBLE or algorithm == "incremental" or not task.streams:
+    if result.outcome is not Outcome.INFEASIBLE or not task.streams:
         return result
-    second = Incremental(task, make_rng, deadline, _silent)
+    # Two things no stream promises: facts besides its outputs, and an output that equals a value of the goal.
+    second = Incremental(task, make_rng, deadline, _silent, pruned=False)
     looked = second.solve(CLOSER_LOOK)
-    if looked.outcome is Outcome.EXHAUSTED and second.streams.wild:
+    open_end = bool(second.streams.wild) or not all(isinstance(value, str) for value in _goal_values(task))
+    if looked.outcome is Outcome.EXHAUSTED and open_end:
         looked = second.solve()
-    return looked if looked.outcome is Outcome.SOLVED or second.streams.wild else result
+    return looked if looked.outcome is Outcome.SOLVED or open_end else result
+
+
+def _goal_values(task: StreamTask) -> list[Any]:
+    """The values that the goal names."""
+    stack: list[Formula] = [task.task.goal]
+    found: list[Any] = []
+    while stack:
+        formula = stack.pop()
+        match formula:
+            case Atom():
+                found += [task.values[term] for term in formula.terms if term in task.values]
+            case And(parts) | Or(parts):
+                stack += parts
+            case Not(body) | Exists(_, body) | Forall(_, body):
+                stack.append(body)
+    return found
 
 
 def _silent(effort: Effort) -> None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from heapq import heappop, heappush
 
+from tamp.search.derivation import GoalPrice
 from tamp.search.expansion import Expansion, Plan
 from tamp.search.heuristics import Estimate
 from tamp.search.successors import State, Successors
 
 BOOST = 1000
 """How much longer preferred operators are preferred after progress (Richter and Helmert 2009)."""
+
+END = -2
+"""Stands for an operator where a goal state waits for its price to be the lowest."""
 
 _Entry = tuple[float, int, float, State, State | None, int]
 """Priority, number among equals, cost, state, the state before, the operator."""
@@ -20,7 +24,8 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
     """Lazy search: a state is evaluated when it is expanded, until then its parent's estimate stands for it.
 
     Each heuristic has two queues, the second for successors by preferred operators; all take turns, after progress
-    those of the preferred get more. `weight` infinite is greedy search: costs do not count.
+    those of the preferred get more. `weight` infinite is greedy search: costs do not count. A goal state whose goal
+    rests on priced facts waits until nothing that is cheaper than it is left in a queue.
     """
     s = search.successors
     greedy = weight == math.inf
@@ -33,6 +38,8 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
     done: dict[State, float] = {}
     lowest = [math.inf for _ in kinds]
     number = 0
+    goal_price = GoalPrice(s)
+    least, end = math.inf, None
     while any(usual) or any(preferred):
         k = min((k for k in kinds if usual[k]), key=turns.__getitem__, default=None)
         p = min((k for k in kinds if preferred[k]), key=turns_preferred.__getitem__, default=None)
@@ -47,6 +54,8 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
         else:
             break
         _, _, cost, state, parent, operator = heappop(queue)
+        if state == end and operator == END:
+            return search.plan(state)
         if state in done and (greedy or cost >= done[state]):
             continue
         done[state] = cost
@@ -55,7 +64,15 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
             search.parents[state] = (parent, operator)
         closed = s.closure(state)
         if s.holds_goal(closed):
-            return search.plan(state)
+            price = goal_price(state)
+            if price == 0.0:
+                return search.plan(state)
+            if cost + price < least:  # what the goal rests on here has a price: there may be a cheaper end
+                least, end = cost + price, state
+                number += 1
+                for some in (usual[0], preferred[0]) if preferred[0] else (usual[0],):
+                    heappush(some, (price if greedy else least, number, least, state, None, END))
+            continue
         values = estimates.get(state)
         if values is None:
             found[state] = search.estimate(closed, None if parent is None else s.closure(parent))

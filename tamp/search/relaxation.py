@@ -94,8 +94,9 @@ class Relaxation:
                 effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
                 if effects:
                     self._add(i, s.before[i] | positive, s.absent[i] | negative, s.cost[i] + step, effects)
-        for axiom in s.grounded.axioms:
-            self._add(-1, s.mask(axiom.positive), s.mask(axiom.negative), 0.0, [s.number[axiom.head]])
+        for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+            cost = price if steps else 0.0
+            self._add(-1, s.mask(axiom.positive), s.mask(axiom.negative), cost, [s.number[axiom.head]])
         self._counts = list(map(len, self.before))
         self._needed: list[list[int]] = [[] for _ in range(2 * size)]
         for i, facts in enumerate(self.before):

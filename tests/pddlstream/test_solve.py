@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
 import pytest
@@ -219,6 +220,33 @@ def test_a_predicate_that_must_be_true(condition: str, algorithm: str) -> None:
     assert planned(solution)[-1].args == ((4, "on"),)
 
 
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("condition", ["(Even ?q) (not (Bad ?q))", "(Even ?q) (not (AtBad))"])
+def test_a_test_stream_that_must_fail(condition: str, algorithm: str) -> None:
+    """What PDDLStream calls a negated stream: a plan rests on the test having been asked, and having failed."""
+    streams = STREAMS.replace(
+        "(:stream next", "(:stream test-bad :inputs (?q) :domain (Conf ?q) :certified (Bad ?q))\n(:stream next"
+    )
+    domain = DOMAIN.replace("(Conf ?q) (Even ?q)", f"(Conf ?q) {condition}")
+    asked: list[int] = []
+
+    def bad(q: tuple[int, str]) -> bool:
+        asked.append(q[0])
+        return q[0] <= 2
+
+    solution = walk(domain=domain, streams=streams, algorithm=algorithm, test_bad=from_test(bad))
+    assert planned(solution)[-1].args == ((4, "on"),)
+    assert 4 in asked
+    wild = walk(
+        domain=domain,
+        streams=streams,
+        algorithm=algorithm,
+        test_bad=lambda q: WildOutput([()], [("Mark", q)]),
+        max_time=2.0,
+    )
+    assert not wild.solved
+
+
 def test_a_predicate_in_a_rule_that_is_needed_both_ways_is_refused() -> None:
     streams = STREAMS.replace("(:stream next", PREDICATE + "(:stream next")
     domain = DOMAIN.replace("(Conf ?q) (Even ?q)", "(Conf ?q) (not (AtBad))")
@@ -265,6 +293,41 @@ def test_wild_facts_open_a_way_that_no_stream_promises(algorithm: str) -> None:
     assert solution.outcome is Outcome.SOLVED
     assert [action.name for action in planned(solution)] == ["hop"]
     assert ("near", HOME, (8, "far")) in solution.certificate
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_a_stream_that_nothing_asks_for_may_be_wild(algorithm: str) -> None:
+    """Looking around certifies nothing that a condition names; the doors that it finds do."""
+    domain = """(define (domain rooms) (:predicates (Room ?r) (Door ?a ?b) (In ?r) (Seen ?r))
+      (:action go :parameters (?a ?b) :precondition (and (Door ?a ?b) (In ?a)) :effect (and (In ?b) (not (In ?a)))))"""
+    streams = "(define (stream rooms) (:stream look :inputs (?r) :domain (Room ?r) :certified (Seen ?r)))"
+
+    def around(r: int) -> WildOutput:
+        return WildOutput(values=[()], facts=[("Room", r + 1), ("Door", r, r + 1)] if r < 4 else [])
+
+    problem = PDDLProblem(domain, {}, streams, {"look": around}, [("Room", 0), ("In", 0)], ("In", 3))
+    solution = solve(problem, algorithm, max_time=20.0)
+    assert [action.args for action in planned(solution)] == [(0, 1), (1, 2), (2, 3)]
+    problem = problem._replace(goal=("exists", "?r", ("and", ("In", "?r"), ("Door", 7, "?r"))))
+    assert solve(problem, algorithm, max_time=20.0).outcome is Outcome.INFEASIBLE
+
+
+def test_a_value_of_the_goal_may_still_come_from_a_stream(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No call promises to give just this value, so only the end of the time says that none does."""
+    monkeypatch.setattr(import_module("tamp.pddlstream.solve"), "CLOSER_LOOK", 20)
+    assert len(planned(walk(("At", (40, "on"))))) == 40
+    assert walk(("At", (-1, "on")), max_time=1.0).outcome is Outcome.TIMEOUT
+
+
+def test_equal_numbers_are_one_object() -> None:
+    streams = """(define (stream s)
+      (:stream half :inputs (?a) :domain (Num ?a) :outputs (?b) :certified (and (Num ?b) (To ?a ?b))))"""
+    domain = """(define (domain n) (:predicates (Num ?a) (To ?a ?b) (At ?a))
+      (:action go :parameters (?a ?b) :precondition (and (To ?a ?b) (At ?a)) :effect (and (At ?b) (not (At ?a)))))"""
+    problem = PDDLProblem(
+        domain, {}, streams, {"half": from_fn(lambda a: (a / 2,))}, [("Num", 8), ("At", 8)], ("At", 2)
+    )
+    assert [action.args for action in planned(solve(problem))] == [(8, 4.0), (4.0, 2)]
 
 
 def test_wild_tests() -> None:
