@@ -48,7 +48,7 @@ def train_transfer(
     progress(f"measuring {count} scenes")
     measured = [measure(data[index]) for index in range(count)]
     holds = data.holds[:count]
-    positive = [one for one, good in zip(measured, holds, strict=True) if good and one.view.form.faces]
+    positive = [one for one, good in zip(measured, holds, strict=True) if good and one.view.faces]
     if not positive:
         raise InputError(f"none of the {count} scenes is a positive one", remedy="More --samples")
     chart = Chart.fit(positive)
@@ -58,7 +58,7 @@ def train_transfer(
     if ranks:
         from grounding.relational.training import Args, train_ranker
 
-        usable = [index for index, one in enumerate(measured) if one.view.form.faces]
+        usable = [index for index, one in enumerate(measured) if one.view.faces]
         rank, accuracy = train_ranker(
             [measured[index] for index in usable],
             holds[np.array(usable)],

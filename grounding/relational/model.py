@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grounding.layers import sigmoid
 from grounding.relational.chart import Chart
-from grounding.relational.measures import View
+from grounding.relational.measures import Measures, View
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
 from grounding.situation import Situation
@@ -44,13 +44,13 @@ class RelationalModel:
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """At most `count` poses T_world_body, the best first; none for a body that rests on no face."""
         view = View(situation)
-        if not view.form.faces:
+        if not len(view.faces):
             return np.zeros((0, 4, 4))
         poses, scores = np.zeros((0, 4, 4)), np.zeros(0)
         for _ in range(ROUNDS):
             drawn = self.transfer.draw(view, max(BEST_OF, 2 * count), rng)
-            poses = np.concatenate([poses, drawn])
-            scores = np.concatenate([scores, self._scores(view, drawn)])
+            poses = np.concatenate([poses, drawn.poses])
+            scores = np.concatenate([scores, self._scores(drawn)])
             if (scores > HOPELESS).sum() >= count:
                 break
         best = np.argsort(-scores, kind="stable")[:count]
@@ -59,17 +59,16 @@ class RelationalModel:
     def classify(self, situation: Situation, poses: Array) -> NDArray[np.float64]:
         """The probability that the relation holds with the body at each pose T_world_body, shape (n,)."""
         view = View(situation)
-        if not view.form.faces or not len(poses):
+        if not len(view.faces) or not len(poses):
             return np.zeros(len(poses))
         measured = view.measure(view.T_region_world @ poses)
         if self.ranker is not None and self.card["classifies"]:
             return sigmoid(self.ranker.logits(measured)).astype(float)
         return np.exp(-200.0 * self.chart.shortfall(measured)) * (np.abs(measured.low[:, 2]) < 0.03)
 
-    def _scores(self, view: View, poses: Array) -> Array:
-        measured = view.measure(poses)
+    def _scores(self, measured: Measures) -> Array:
         shortfall = self.chart.shortfall(measured)
-        steady = np.minimum(view.steadiness[measured.face], STEADY) / STEADY
+        steady = np.minimum(measured.view.steadiness[measured.face], STEADY) / STEADY
         overhang = np.clip(measured.sides.min(axis=1), -OVERHANG, 0.0) / OVERHANG
         scores = steady + 2.0 * overhang + np.minimum(measured.nearest, CLEAR) / CLEAR
         if self.ranker is not None and self.card["ranks"]:
