@@ -46,16 +46,35 @@ class Flow:
         logits = np.where(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3)
         face = np.argmax(logits + rng.gumbel(size=(count, len(logits))), axis=1)
         known, around = conditions[face], surroundings(view)
-        half = np.asarray(view.region.size[:2] / 2, np.float32)
+        half = (view.region.size[:2] / 2).astype(np.float32) * self._scale[:2]
         x = rng.standard_normal((count, COORDINATES), dtype=np.float32)
         for step in range(STEPS):
             time = np.full((count, 1), step / STEPS, np.float32)
-            pooled = np.zeros((count, POOLED), np.float32)
-            if len(around):
-                pairs = pair_features(x[:, :2] * self._scale[:2] * half, known, around)
-                pooled = dense(self._pair, np.concatenate(pairs, axis=2)).max(axis=1)
-            x = x + dense(self._velocity, np.concatenate([x, time, known, pooled], axis=1)) / STEPS
+            x = x + self.velocity(x, time, known, around, half) / STEPS
         return self.chart.decode(view, face, settled_coordinates(x.astype(float) * self._scale))
+
+    def velocity(
+        self,
+        x: NDArray[np.float32],
+        time: NDArray[np.float32],
+        known: NDArray[np.float32],
+        around: NDArray[np.float32],
+        half: NDArray[np.float32],
+    ) -> NDArray[np.float32]:
+        """Of samples (n, 7) at times (n, 1), shape (n, 7).
+
+        Args:
+            x: Coordinates in their scale.
+            time: From 0, noise, to 1.
+            known: Conditions, shape (n, CONDITION).
+            around: Shape (m, AROUND).
+            half: What takes the first two coordinates to metres, shape (2,).
+        """
+        pooled = np.zeros((len(x), POOLED), np.float32)
+        if len(around):
+            pairs = pair_features(x[:, :2] * half, known, around)
+            pooled = dense(self._pair, np.concatenate(pairs, axis=2)).max(axis=1)
+        return dense(self._velocity, np.concatenate([x, time, known, pooled], axis=1))
 
 
 def settled_coordinates(coordinates: Array) -> Array:

@@ -76,7 +76,7 @@ class FlowNet(nn.Module):
 
 @dataclass(frozen=True, eq=False)
 class Scenes:
-    """Of n positive scenes: what is known, what is around (n, m, AROUND) and what of it is missing, half sizes x scale."""
+    """Of n positive scenes: what is known, what is around (n, m, AROUND), what of it is missing, half sizes scaled."""
 
     known: Tensor
     around: Tensor
