@@ -38,7 +38,7 @@ def critic_gradient(critic: Ensemble, real: Tensor, fake: Tensor, mix: Tensor, p
     for weight, bias in zip(weights[:last], biases[:last], strict=True):
         hidden = torch.baddbmm(bias, inputs[-1], weight).relu_()
         inputs.append(hidden)
-        masks.append(hidden > 0)
+        masks.append(hidden.sign())
     slopes = [_weighted(scenes, inputs[0])]
     for weight, mask in zip(weights[:0:-1], masks[::-1], strict=True):
         slopes.insert(0, torch.bmm(slopes[0], weight.transpose(1, 2)).mul_(mask))

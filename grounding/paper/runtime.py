@@ -36,6 +36,7 @@ class PaperModel:
         arrays = weights.arrays
         self.classifier, self.generator = Network(arrays, "classifier"), Network(arrays, "generator")
         self._features = features_in(arrays, self.classifier)
+        _check_generator(self.generator, self._features.size)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """`count` poses, in no order: the generator moves argument 1 from where it is, each time by other noise."""
@@ -171,6 +172,16 @@ def unit(turns: Array) -> Array:
     """Quaternions of norm 1, shape (n, 4); no rotation for one that is zero."""
     norm = np.linalg.norm(turns, axis=1, keepdims=True)
     return np.where(norm > 1e-8, turns / np.maximum(norm, 1e-8), [0.0, 0.0, 0.0, 1.0])
+
+
+def _check_generator(network: Network, size: int) -> None:
+    inputs, outputs = network.main[0][0].shape[0], network.main[-1][1].shape[0]
+    wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
+    if (inputs, outputs) != (wanted, 7):
+        raise InputError(
+            f"the generator is given {inputs} numbers and returns {outputs}; it should be {wanted} and 7",
+            remedy="Train it again: tamp-learn train --help",
+        )
 
 
 def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:

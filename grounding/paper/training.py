@@ -60,6 +60,7 @@ def train(
                 "samples": size,
                 "seed": seed,
                 "iterations": iterations,
+                "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
                 "architecture": {name: list(array.shape) for name, array in arrays.items()},
             },
         )
