@@ -20,8 +20,8 @@ import tyro
 from benchmarks.common import record, table, times, wilson
 
 LADDER = (
-    "one_object", "two_objects", "four_objects", "eight_objects", "cluttered", "shelves", "blocked", "swap",
-    "impossible_reach", "impossible_size",
+    "one_object", "two_objects", "four_objects", "eight_objects", "cluttered", "packed", "shelves", "drawers",
+    "blocked", "swap", "impossible_reach", "impossible_size",
 )  # fmt: skip
 
 

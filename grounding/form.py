@@ -79,6 +79,13 @@ class Form:
         return self.vertices[chosen] if len(self.vertices) > FEW else self.vertices
 
     @cached_property
+    def radius(self) -> float:
+        """Of the sphere about the frame's origin that contains it, metres."""
+        return (
+            float(np.linalg.norm(self.vertices, axis=1).max()) if self._unit is self else self._unit.radius * self.scale
+        )
+
+    @cached_property
     def outer_box(self) -> Array:
         """`corners` of `outer` alone, shape (2, 3)."""
         return np.stack([self.outer.min(axis=0), self.outer.max(axis=0)])

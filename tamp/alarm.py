@@ -6,6 +6,7 @@ import gc
 import signal
 import sys
 import threading
+import time
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -13,6 +14,9 @@ from tamp.clock import Deadline, OutOfTime
 
 GRACE = 0.1
 """Seconds after the deadline at which whatever still runs is interrupted."""
+
+SOONEST = 1e-4
+"""The least that a timer is set to, seconds: none at all would never ring."""
 
 AGAIN = 0.25
 """Seconds until the next interruption, should the first one have been swallowed."""
@@ -42,25 +46,31 @@ def _look_away(frame: FrameType, event: str, argument: object) -> None:
 class Alarm:
     """Raises OutOfTime in a block shortly after the deadline, even inside a function that never returns.
 
-    Works in the main thread of systems with SIGALRM; elsewhere the deadline is only kept by those who look at it. A
-    timer that was running before goes on afterwards, later by the time that the block took.
+    Works in the main thread of systems with SIGALRM; elsewhere the deadline is only kept by those who look at it. One
+    alarm may run inside another: the outer one's time goes on.
 
     Args:
-        deadline: When to ring, but for GRACE.
+        deadline: When to ring, but for the grace.
+        grace: Seconds after the deadline.
+        again: Seconds between one ring and the next, should the first one have been swallowed.
+        caller: The end of the file name of what calls the functions that may never return.
     """
 
-    def __init__(self, deadline: Deadline) -> None:
+    def __init__(self, deadline: Deadline, grace: float = GRACE, again: float = AGAIN, caller: str = CALLER) -> None:
         self._deadline = deadline
+        self._grace, self._again, self._caller = grace, again, caller
         self._armed = False
         self._swallowed = False
+        self._began = 0.0
         self._before: tuple[Any, tuple[float, float]] | None = None
 
     def __enter__(self) -> Alarm:
         usable = sys.platform != "win32" and threading.current_thread() is threading.main_thread()
         if usable and self._deadline.seconds < threading.TIMEOUT_MAX:
             self._before = signal.signal(signal.SIGALRM, self._ring), signal.getitimer(signal.ITIMER_REAL)
+            self._began = time.monotonic()
             self._armed = True
-            signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + GRACE, AGAIN)
+            signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again)
         return self
 
     def __exit__(
@@ -74,20 +84,22 @@ class Alarm:
         if self._swallowed:
             sys.settrace(None)
         if self._before is not None:
-            handler, timer = self._before
-            signal.setitimer(signal.ITIMER_REAL, *timer)
+            handler, (left, interval) = self._before
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
             signal.signal(signal.SIGALRM, handler)
             self._before = None
+            if left > 0.0:
+                signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - self._began), SOONEST), interval)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
         if not self._armed:
             return
         if _swallows(frame):
-            signal.setitimer(signal.ITIMER_REAL, SOON, AGAIN)
+            signal.setitimer(signal.ITIMER_REAL, SOON, self._again)
             return
         if self._swallowed:
             sys.settrace(_look_away)
-            while frame is not None and not frame.f_code.co_filename.endswith(CALLER):
+            while frame is not None and not frame.f_code.co_filename.endswith(self._caller):
                 frame.f_trace = self._insist
                 frame = frame.f_back
         self._swallowed = True

@@ -8,13 +8,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
 from tamp.errors import InputError
 from tamp.initial import initial_state
+from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import Stream, StreamFile, Task
+from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, mix, parse_choice
 from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation
 from tamp.streams.registry import SAMPLERS, STREAMS
@@ -30,10 +33,6 @@ METRIC = "minimize total-cost"
 
 STEERINGS = ("se2", "reeds-shepp")
 """How the base may move: in any direction, or like a car."""
-
-
-Grounding = Generator | Classifier
-"""What grounds a relation: its generator, its classifier, or an object that is both."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +67,7 @@ def load_problem(
     streams: str | Path | None = None,
     samplers: Mapping[str, str] | None = None,
     groundings: Mapping[str, Grounding] | None = None,
+    registry: Registry | None = None,
     functions: Mapping[str, Callable[..., Any]] | None = None,
     steering: str = "se2",
 ) -> Problem:
@@ -77,10 +77,14 @@ def load_problem(
         problem: A YAML file, or the name of a shipped problem.
         domain: A PDDL file or the name of a shipped domain; by default the one that the problem names.
         streams: The streams file; by default `<domain>.streams.pddl` beside the domain.
-        samplers: Relation to the name of the sampler that serves it, over those that the problem names.
+        samplers: Relation to the sampler that serves it, over those that the problem names: NAME, NAME:mixed or
+            NAME:alone. Hand-made ones are alone by themselves, others are mixed with the first hand-made one.
         groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
-            samplers. A relation of the user's own is served to the streams sample-<relation> and test-<relation>.
-        functions: Further stream functions by name, f(context, *inputs, call=...).
+            samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
+            served to the streams sample-<relation> and test-<relation>.
+        registry: Further samplers: relation to name to what makes the object.
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
+            f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
 
     Raises:
@@ -112,21 +116,24 @@ def load_problem(
             column_offset=passage.column - 1,
         )
     _check_metric(loaded)
-    chosen = {relation: next(iter(known)) for relation, known in SAMPLERS.items()}
-    chosen |= _chosen(loaded.samplers, loaded)
-    chosen |= _chosen(samplers or {}, None)
-    generators: dict[str, Generator] = {relation: SAMPLERS[relation][name]() for relation, name in chosen.items()}
-    generators |= {name: item for name, item in (groundings or {}).items() if isinstance(item, Generator)}
-    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), generators, steering)
+    served = _Served.of(loaded, samplers or {}, groundings or {}, registry or {})
+    mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
+    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering)
     check_overlaps(loaded)
     _check_start(loaded, context)
-    bound = _bind(declared, parsed, context, {**_grounded(groundings or {}), **(functions or {})})
+    bound = _bind(declared, parsed, context, {**served.functions(), **(functions or {})})
+    _refuse_decided(declared)
+    costs = tuple(
+        BoundFunction(function, partial((functions or {})[function.name], context))
+        for function in declared.functions
+        if function.name in (functions or {})
+    )
     task = Task(loaded.scene.name, parsed, start.objects, frozenset(start.facts), goal, {})
     return Problem(
         name=loaded.scene.name,
         scene=loaded.scene,
         context=context,
-        stream_task=StreamTask(task, bound, start.values),
+        stream_task=StreamTask(task, bound, start.values, costs),
         goal=" ".join(loaded.goal.text.split()),
         files={
             "problem": (loaded.path.resolve(),),
@@ -134,20 +141,65 @@ def load_problem(
             "streams": (streams_path.resolve(),),
             "meshes": tuple(path.resolve() for path in loaded.meshes),
         },
-        samplers=chosen | dict.fromkeys(groundings or {}, "given"),
-        warnings=(*loaded.warnings, *_unused(functions or {}, declared)),
+        samplers={relation: choice.text for relation, choice in served.choices.items()},
+        warnings=(*loaded.warnings, *_unused(functions or {}, declared), *lint(parsed, declared, goal, start.facts)),
     )
 
 
-def _grounded(groundings: Mapping[str, Grounding]) -> dict[str, Callable[..., Any]]:
-    """The stream functions of relations that have no built-in ones."""
-    made: dict[str, Callable[..., Any]] = {}
-    for relation, grounding in groundings.items():
-        if relation not in SAMPLERS and isinstance(grounding, Generator):
-            made[f"sample-{relation}"] = partial(sample_relation, generator=grounding)
-        if isinstance(grounding, Classifier):
-            made[f"test-{relation}"] = partial(test_relation, classifier=grounding)
-    return made
+@dataclass(frozen=True)
+class _Served:
+    """What serves the relations: the choices, and the objects by relation."""
+
+    choices: dict[str, Choice]
+    generators: dict[str, Generator]
+    classifiers: dict[str, Classifier]
+
+    @classmethod
+    def of(
+        cls,
+        loaded: LoadedProblem,
+        samplers: Mapping[str, str],
+        groundings: Mapping[str, Grounding],
+        registry: Registry,
+    ) -> _Served:
+        known: dict[str, dict[str, Callable[[], Grounding]]] = {}
+        given = {relation: {GIVEN: partial(_same, item)} for relation, item in groundings.items()}
+        for source in (SAMPLERS, registry, given):
+            for relation, makers in source.items():
+                known.setdefault(relation, {}).update(makers)
+        choices = {relation: Choice(next(iter(makers)), alone=True) for relation, makers in SAMPLERS.items()}
+        for relation, text in loaded.samplers.items():
+            try:
+                choices[relation] = parse_choice(relation, text, known)
+            except InputError as error:
+                raise error.at(loaded.path, _line(loaded, "samplers", relation)) from None
+        choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
+        for relation, item in groundings.items():
+            if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
+                choices[relation] = Choice(GIVEN, alone=False)
+        made: dict[str, Grounding] = {name: known[name][choice.name]() for name, choice in choices.items()}
+        for relation, item in made.items():
+            if not isinstance(item, Generator):
+                what = f"sampler '{choices[relation].name}' for '{relation}' has no method propose"
+                raise InputError(what, remedy="tamp/streams/relations.py says what it is asked")
+        generators = {relation: item for relation, item in made.items() if isinstance(item, Generator)}
+        judging = {**made, **groundings}
+        classifiers = {relation: item for relation, item in judging.items() if isinstance(item, Classifier)}
+        return cls(choices, generators, classifiers)
+
+    def functions(self) -> dict[str, Callable[..., Any]]:
+        """The stream functions of relations that have no built-in ones."""
+        functions: dict[str, Callable[..., Any]] = {}
+        for relation, generator in self.generators.items():
+            if relation not in SAMPLERS:
+                functions[f"sample-{relation}"] = partial(sample_relation, relation=relation, generator=generator)
+        for relation, classifier in self.classifiers.items():
+            functions[f"test-{relation}"] = partial(test_relation, classifier=classifier)
+        return functions
+
+
+def _same(item: Grounding) -> Grounding:
+    return item
 
 
 def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
@@ -189,20 +241,6 @@ def _read(path: Path) -> str:
         raise InputError(f"cannot read it: {reason}", file=path) from error
 
 
-def _chosen(samplers: Mapping[str, str], loaded: LoadedProblem | None) -> dict[str, str]:
-    """The samplers as they were given, checked; `loaded` when it was by the problem file."""
-    for relation, name in samplers.items():
-        error: InputError | None = None
-        if relation not in SAMPLERS:
-            error = InputError(f"unknown relation '{relation}'", found=relation, choices=SAMPLERS)
-        elif name not in SAMPLERS[relation]:
-            what = f"unknown sampler '{name}' for '{relation}'"
-            error = InputError(what, found=name, choices=SAMPLERS[relation])
-        if error is not None:
-            raise error if loaded is None else error.at(loaded.path, _line(loaded, "samplers", relation))
-    return dict(samplers)
-
-
 def _bind(
     declared: StreamFile, domain: Any, context: Context, functions: Mapping[str, Callable[..., Any]]
 ) -> tuple[BoundStream, ...]:
@@ -214,11 +252,27 @@ def _bind(
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
         bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
-    return tuple(bound)
+    return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
+
+
+def _always(*inputs: Any, call: Any) -> bool:
+    return True
+
+
+def _refuse_decided(declared: StreamFile) -> None:
+    for predicate in declared.predicates:
+        place = predicate.place
+        raise InputError(
+            f"'{predicate.name}' is a :predicate, which scenes do not have",
+            file=declared.file,
+            line=place.line if place else None,
+            column=place.column if place else None,
+            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+        )
 
 
 def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
-    names = [stream.name for stream in declared.streams]
+    names = [one.name for one in (*declared.streams, *declared.functions)]
     return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
 
 
@@ -239,10 +293,8 @@ def _check_start(loaded: LoadedProblem, context: Context) -> None:
     scene = loaded.scene
     conf = context.conf(scene.robot.base, context.home)
     poses = {name: scene.bodies[name].pose for name in scene.movable}
-    hit = context.collisions.arrangement(poses).hits(conf)
-    if hit is not None:
+    if (hit := context.collisions.arrangement(poses).hits(conf)) is not None:
         link, other = hit
-        remedy = (
-            "Move its base, or what stands there" if {link, other} & set(scene.bodies) else "Give it another 'arm:'"
-        )
+        outside = {link, other} & set(scene.bodies)
+        remedy = "Move its base, or what stands there" if outside else "Give it another 'arm:'"
         raise loaded.error(f"the robot starts in collision: {link} hits {other}", "robot", remedy)

@@ -9,6 +9,7 @@ from tamp.algorithms.solution import Effort, Outcome
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.pddl.structs import Fact
 from tamp.problem import Problem
+from tamp.streams.mixture import Account
 from tamp.trajectories import Trajectory
 
 
@@ -43,6 +44,7 @@ class Solution:
         certified: The facts that streams certified and the plan rests on.
         explanation: Why there is no plan, a line a cause.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
+        samplers: What became of the proposals of each relation's generators, those that were asked.
     """
 
     problem: Problem
@@ -57,6 +59,7 @@ class Solution:
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
+    samplers: Mapping[str, tuple[Account, ...]] = field(default_factory=dict[str, "tuple[Account, ...]"])
 
     @property
     def solved(self) -> bool:

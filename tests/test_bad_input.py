@@ -97,6 +97,16 @@ CASES = [
     Case("unknown-steering", says=r"'se3'.*se2, reeds-shepp.*Did you mean 'se2'", options=("--steering", "se3")),
     Case("unknown-sampler-option", says=r"'unifrm'.*Did you mean 'uniform'", options=("--sampler", "on=unifrm")),
     Case("unknown-relation-option", says=r"'onn'.*Did you mean 'on'", options=("--sampler", "onn=uniform")),
+    Case(
+        "sampler-mode", says=r"unknown mode 'allone'.*Did you mean 'alone'", options=("--sampler", "on=uniform:allone")
+    ),
+    Case(
+        "sampler-mode-in-the-file",
+        "domain: cupboard",
+        "samplers: {on: uniform:mxed}",
+        r"'mxed'.*Did you mean 'mixed'",
+        2,
+    ),
     Case("sampler-without-a-name", says=r"RELATION=NAME.*on=uniform", options=("--sampler", "uniform")),
     Case("missing-streams", says=r"nowhere\.pddl: cannot read it: No such file", options=("--streams", "nowhere.pddl")),
     # The goal

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.machinery
 import json
 import re
 import shutil
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import types
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,7 @@ import pytest
 
 from tamp.cli import BAD_INPUT, INTERRUPTED, NO_PLAN, SOLVED, run
 from tamp.data import find_problem
+from tamp.streams.placements import SurfacePlacements
 from tamp.streams.registry import STREAMS
 from tamp.verification.report import Report, Violation
 from tamp.verification.verify import verify
@@ -217,6 +220,22 @@ def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     assert document["inputs"]["domain"]["path"] == str(tmp_path / "mine.pddl")
     assert document["seed"] == 3 and document["options"]["samplers"]["on"] == "surface"
     assert verify(tmp_path / "plan.json").holds
+
+
+def test_samplers_that_grounding_supplies(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    supplied = types.ModuleType("grounding.registry")
+    supplied.__spec__ = importlib.machinery.ModuleSpec("grounding.registry", None)
+    supplied.GROUNDINGS = {"on": {"flow": SurfacePlacements}}  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "grounding.registry", supplied)
+    for word in ("flow", "flow:alone"):
+        assert run(["one_object", "--sampler", f"on={word}", "--out", str(tmp_path / "plan.json")]) == SOLVED
+        assert json.loads((tmp_path / "plan.json").read_text())["options"]["samplers"]["on"] == word
+    assert run(["one_object", "--sampler", "on=flaw"]) == BAD_INPUT
+    assert "unknown sampler 'flaw' for 'on'. Choices: surface, uniform, flow. Did you mean 'flow'?" in (
+        capsys.readouterr().err
+    )
 
 
 def test_names_in_upper_case_and_names_that_are_taken(tmp_path: Path) -> None:

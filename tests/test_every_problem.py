@@ -19,7 +19,18 @@ IMPOSSIBLE = {"impossible_reach": ("soup_can", "reach"), "impossible_size": ("pi
 """Problems without a plan: the object that the reason must name, and what it must say of it."""
 
 LADDER = {
-    *("one_object", "two_objects", "four_objects", "eight_objects", "cluttered", "shelves", "blocked", "swap"),
+    *(
+        "one_object",
+        "two_objects",
+        "four_objects",
+        "eight_objects",
+        "cluttered",
+        "shelves",
+        "blocked",
+        "swap",
+        "packed",
+        "drawers",
+    ),
     *IMPOSSIBLE,
 }
 

@@ -67,6 +67,7 @@ class _Adaptive(Run):
                     return self.result(Outcome.EXHAUSTED)
                 if self._stuck(patience):
                     second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
+                    second.streams.remember(self.streams)
                     result = second.solve(SECOND_OPINION * patience)
                     if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED):
                         return result
@@ -92,7 +93,8 @@ class _Adaptive(Run):
             return self.solved(skeleton, values)
         skeleton.rounds += 1
         self.effort.draws = self.binder.units
-        if self.bury(skeleton):
+        absorbed = self.absorb()
+        if self.bury(skeleton) or absorbed:
             self.optimism, self.grounded = self.imagined()
         return None
 

@@ -197,9 +197,7 @@ def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
     waits: list[set[int]] = []
     users: dict[int, list[int]] = {}
     for position, node in enumerate(calls):
-        terms: list[Term] = [*node.inputs]
-        if node.stream.is_fluent:
-            terms += [term for (_, shown), _ in node.fluents for term in shown]
+        terms: list[Term] = [*node.inputs, *(term for (_, shown), _ in node.fluents for term in shown)]
         waits.append({makers[term] for term in terms if isinstance(term, int)})
         for maker in waits[-1]:
             users.setdefault(maker, []).append(position)

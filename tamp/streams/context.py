@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tamp.streams.relations import Generator
+from tamp.streams.mixture import Mixture
 from tamp.streams.resting import Resting, resting_of
 from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
@@ -29,13 +29,13 @@ class Context:
     Attributes:
         scene: The problem's geometry.
         robot: Its robot.
-        generators: Relation to the generator that serves it.
+        mixtures: Relation to the generators that serve it.
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
     """
 
     scene: Scene
     robot: Robot
-    generators: Mapping[str, Generator]
+    mixtures: Mapping[str, Mixture]
     steering: str = "se2"
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
@@ -97,10 +97,17 @@ class Context:
             self._fixed_only[grasp] = self.collisions.arrangement({}, attachment)
         return self._fixed_only[grasp]
 
-    def scene_at(self, poses: Mapping[str, Pose], absent: str | None = None) -> Scene:
-        """The scene with bodies where they are at a step of the plan; `absent` stays at its start."""
+    def scene_at(self, poses: Mapping[str, Pose], proposed: str | None = None) -> Scene:
+        """The scene at a step of the plan: movable bodies at their poses there, those in the hand absent.
+
+        The one that a pose is proposed for stays, at its start: its shape is wanted. Without any poses nothing is known
+        about the step, and everything is at its start.
+        """
+        if not poses:
+            return replace(self.scene, bodies=dict(self.scene.bodies))
         bodies = {
-            name: replace(body, pose=poses[name]) if name in poses and name != absent else body
+            name: replace(body, pose=poses[name]) if name in poses and name != proposed else body
             for name, body in self.scene.bodies.items()
+            if not body.movable or name in poses or name == proposed
         }
         return replace(self.scene, bodies=bodies)

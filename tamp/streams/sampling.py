@@ -1,8 +1,7 @@
-"""Streams of grasps and placements: what a generator proposes, put to rest and certified."""
+"""Streams of grasps and placements: what generators propose, put to rest and certified."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
+from tamp.streams.drawing import draw
 from tamp.streams.grasps import sample_grasps
 from tamp.streams.reach import within_reach
 from tamp.streams.resting import Face, fits, rest
@@ -17,9 +17,6 @@ from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
 from tamp.world.scene import CONTACT_GAP, Box, Cavity, Part, Surface
-
-BATCH = 16
-"""Poses asked of a generator at once."""
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
@@ -53,23 +50,15 @@ def _placements(
     if refusal is not None:
         yield refusal
         return
-    scene = context.scene_at({name: pose for _, name, pose in call.fluents}, absent=body)
-    while True:
-        proposals = context.generators[relation].propose(scene, (body, region.name), BATCH, call.rng)
-        if not proposals:
-            return
-        refused: Counter[Rejection] = Counter()
-        for proposal in proposals:
-            pose = rest(resting, proposal, region, T_world_region)
-            hit = None if isinstance(pose, Rejection) else context.collisions.between(body, pose, {})
-            if isinstance(pose, Rejection):
-                refused[pose] += 1
-            elif hit is not None:
-                refused[Rejection(f"hits {hit}")] += 1
-            else:
-                yield pose
-        if len(proposals) == refused.total():  # a batch is one try: a generator may be poor, but not slow
-            yield refused.most_common(1)[0][0]
+
+    def judge(proposal: Pose) -> Pose | Rejection:
+        pose = rest(resting, proposal, region, T_world_region)
+        if isinstance(pose, Rejection):
+            return pose
+        hit = context.collisions.between(body, pose, {})
+        return pose if hit is None else Rejection(f"hits {hit}")
+
+    yield from draw(context, relation, context.mixtures[relation], (body, region.name), judge, call)
 
 
 def _refusal(context: Context, body: str, region: Surface | Cavity, T_world_region: Pose) -> Rejection | None:

@@ -1,0 +1,98 @@
+"""Asking a generator that anyone may have written: what comes back are poses, in time, or the reason why not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import islice
+
+from numpy.random import Generator as Random
+
+from tamp.alarm import Alarm
+from tamp.clock import Deadline, OutOfTime
+from tamp.streams.relations import Generator
+from tamp.world.pose import Pose
+from tamp.world.scene import Scene
+
+FAR = 1000.0
+"""Metres from the origin beyond which a position is taken for a mistake."""
+
+FILE = "streams/asking.py"
+"""Where the alarm stops to insist: what calls the generator."""
+
+
+class Misbehaved(Exception):
+    """A generator did what no generator should; the message says what, with "it" for its name."""
+
+
+def ask(
+    generator: Generator,
+    scene: Scene,
+    arguments: Sequence[str],
+    count: int,
+    rng: Random,
+    deadline: Deadline,
+    seconds: float = math.inf,
+) -> list[Pose]:
+    """At most `count` poses, best first, of finite numbers and with unit quaternions.
+
+    Args:
+        generator: Of any behaviour.
+        scene: Its own to keep.
+        arguments: Of the relation.
+        count: How many are wanted.
+        rng: Its own.
+        deadline: Of the run; OutOfTime is raised when it passes meanwhile.
+        seconds: How long the generator may take.
+
+    Raises:
+        Misbehaved: It raised, took too long, or proposed not a single pose among what it proposed.
+    """
+    limit = Deadline(min(seconds, deadline.left()))
+    try:
+        if math.isinf(seconds):  # the alarm of the run will do
+            return _poses(generator.propose(scene, arguments, count, rng), count)
+        with Alarm(limit, grace=0.0, again=0.02, caller=FILE):
+            return _poses(generator.propose(scene, arguments, count, rng), count)
+    except OutOfTime:
+        if deadline.passed:
+            raise
+        raise Misbehaved(f"it took more than {seconds:.2f} s to propose poses") from None
+    except Misbehaved:
+        raise
+    except (Exception, SystemExit, GeneratorExit) as error:
+        text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise Misbehaved(f"it raised {text}") from error
+
+
+def _poses(proposed: object, count: int) -> list[Pose]:
+    if not isinstance(proposed, Iterable):
+        raise Misbehaved(f"it proposes a {type(proposed).__name__}, not a list of poses")
+    poses: list[Pose] = []
+    wrong = ""
+    for item in islice(proposed, count):
+        try:
+            poses.append(_pose(item))
+        except Misbehaved as error:
+            wrong = str(error)
+    if wrong and not poses:
+        raise Misbehaved(wrong)
+    return poses
+
+
+def _pose(item: object) -> Pose:
+    if not isinstance(item, Pose):
+        raise Misbehaved(f"it proposes a {type(item).__name__}, not a pose")
+    try:
+        x, y, z = (float(number) for number in item.position)
+        a, b, c, d = (float(number) for number in item.quaternion)
+    except (TypeError, ValueError):
+        raise Misbehaved("it proposes a pose that does not consist of seven numbers") from None
+    norm = math.hypot(a, b, c, d)
+    if not (math.isfinite(norm) and norm > 1e-6 and all(math.isfinite(number) for number in (x, y, z))):
+        raise Misbehaved("it proposes numbers that are not finite, or no rotation")
+    if max(abs(x), abs(y), abs(z)) > FAR:
+        raise Misbehaved(f"it proposes a position more than {FAR:g} m away")
+    if abs(norm - 1.0) < 1e-9:  # as it is, to the last bit
+        norm = 1.0
+    return Pose((x, y, z), (a / norm, b / norm, c / norm, d / norm))

@@ -1,0 +1,71 @@
+"""Which generators serve a relation: a name, and whether it is mixed with the hand-made one or alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from tamp.errors import InputError
+from tamp.streams.mixture import Mixture
+from tamp.streams.registry import SAMPLERS
+from tamp.streams.relations import Classifier, Generator
+
+Grounding = Generator | Classifier
+"""What grounds a relation: its generator, its classifier, or an object that is both."""
+
+Registry = Mapping[str, Mapping[str, Callable[[], Grounding]]]
+"""Relation to sampler name to what makes it; it may raise InputError."""
+
+GIVEN = "given"
+"""The name of an object that was given in the place of a name."""
+
+MODES = ("mixed", "alone")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A sampler, by name, for a relation.
+
+    Attributes:
+        name: In the registry.
+        alone: Whether no other generator takes part.
+    """
+
+    name: str
+    alone: bool
+
+    @property
+    def text(self) -> str:
+        """As `--sampler` takes it, without the mode that is usual."""
+        if self.alone == (self.name in HAND_MADE):
+            return self.name
+        return f"{self.name}:{'alone' if self.alone else 'mixed'}"
+
+
+HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
+"""The samplers that are alone unless it is said that they are mixed."""
+
+
+def parse_choice(relation: str, text: str, known: Registry) -> Choice:
+    """Read NAME, NAME:mixed or NAME:alone.
+
+    Raises:
+        InputError: Unknown relation, name or mode.
+    """
+    if relation not in known:
+        raise InputError(f"unknown relation '{relation}'", found=relation, choices=known)
+    name, colon, mode = text.partition(":")
+    if name not in known[relation]:
+        raise InputError(f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation])
+    if colon and mode not in MODES:
+        remedy = f"For example: {relation}={name}:alone"
+        raise InputError(f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy)
+    return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
+
+
+def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
+    """The chosen generator, with the relation's hand-made one beside it unless it is to be alone."""
+    trusted = next(iter(SAMPLERS.get(relation, {})), None)
+    if choice.alone or trusted is None or choice.name == trusted:
+        return Mixture((choice.name,), (generator,))
+    return Mixture((choice.name, trusted), (generator, SAMPLERS[relation][trusted]()))
