@@ -41,7 +41,7 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     tilt = np.linalg.norm(measured.tilt, axis=1, keepdims=True)
     steady = view.steadiness[measured.face][:, None]
     extents = measured.high - measured.low
-    constant = [float(view.region.hollow), *np.minimum(view.region.size, 2.0).tolist()]
+    constant = np.concatenate([[float(view.region.hollow)], np.minimum(view.region.size, 2.0)])
     pose = np.concatenate(
         [
             np.tanh(8 * lengths),
@@ -49,7 +49,7 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
             np.tanh(4 * tilt), np.tanh(40 * tilt), steady, np.tanh(4 * (steady - tilt)),
             8 * np.sort(extents[:, :2], axis=1), 8 * extents[:, 2:],
             np.tanh(20 * np.minimum(heights[:, :1], 0.0)),
-            np.repeat([constant], len(tilt), axis=0),
+            np.repeat(constant[None], len(tilt), axis=0),
             measured.poses[:, 2:3, 2],
             np.log(np.maximum(extents[:, 2:], 1e-3)),
             np.log(np.maximum(extents[:, :2].min(axis=1, keepdims=True), 1e-3)),
@@ -58,7 +58,7 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     )  # fmt: skip
     around = view.obstacles
     if not around.count:
-        return pose.astype(np.float32), np.tile(np.float32([1, 1, 1, 1, 0]), (len(pose), 1, 1))
+        return pose.astype(np.float32), np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
     apart = np.minimum(measured.apart, REACH)
     over = np.maximum(
         measured.low[:, None, 2] - around.top, around.bottom - measured.high[:, None, 2]
