@@ -178,7 +178,7 @@ class PosedClouds:
         turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
         return cls(
             torch.tensor(unit, dtype=torch.float32, device=device),
-            torch.tensor(data.arrays["body"][there], device=device),
+            torch.tensor(data.arrays["body"][there].astype(np.int64), device=device),
             torch.tensor(turn, dtype=torch.float32, device=device),
         )
 
