@@ -35,5 +35,5 @@ def stored_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from tamp import load_problem, solve
     from tamp.plan_file import write_plan
 
-    solution = solve(load_problem("one_object"), max_time=60.0, seed=0)
+    solution = solve(load_problem("one_object"), max_time=60.0, seed=0, record=True)
     return write_plan(solution, tmp_path_factory.mktemp("stored") / "plan.json")

@@ -62,8 +62,8 @@ def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dic
         "actions": [
             {
                 "name": action.name,
-                "objects": list(action.objects),
-                "text": " ".join([action.name, *action.objects]),
+                "about": action.text.removeprefix(action.name).strip(),
+                "text": action.text,
                 "start": action.start,
                 "end": action.end,
             }

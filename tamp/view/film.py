@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from tamp.verification.plan_file import PlanFile, Segment
+from tamp.pddl.structs import Fact
+from tamp.verification.plan_file import PlanFile, Segment, TimedAction
 from tamp.world.kinematics import Kinematics
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
@@ -17,12 +18,21 @@ from tamp.world.scene import Scene
 
 @dataclass(frozen=True)
 class Shown:
-    """An action: its name, the scene's objects among its arguments, when it starts and ends (seconds)."""
+    """An action: its name, the scene's objects among its arguments, when it starts and ends (seconds).
+
+    `where` says from where a body is taken, or where it is put, as far as the plan's facts tell.
+    """
 
     name: str
     objects: tuple[str, ...]
     start: float
     end: float
+    where: str = ""
+
+    @property
+    def text(self) -> str:
+        """In a few words."""
+        return " ".join(word for word in (self.name, *self.objects, self.where) if word)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +87,12 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     arm = robot.home if scene.robot.arm is None else scene.robot.arm
     maker = _Maker(scene, robot, np.array([*scene.robot.base, *arm, robot.opening]))
     places = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
+    facts = () if plan is None else (*plan.initial, *plan.certified)
     actions: list[Shown] = []
     for action in () if plan is None else plan.actions:
         objects = tuple(places[name] for name in action.arguments if name in places)
-        actions.append(Shown(action.name, objects, action.start, action.start + action.duration))
+        end = action.start + action.duration
+        actions.append(Shown(action.name, objects, action.start, end, _where(action, facts, places, scene)))
         clock = action.start
         for segment in action.segments:
             maker.follow(segment, clock)
@@ -88,6 +100,17 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     times = np.maximum.accumulate(np.array(maker.times))
     stays = {name: tuple(stays) for name, stays in maker.stays.items()}
     return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
+
+
+def _where(action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene) -> str:
+    """What a fact such as (supported mug p1 table) says of a body and a pose among the action's arguments."""
+    names = {name for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments} for name in fact[3:]}
+    place = next((places[name] for name in sorted(names) if name in places and name not in action.arguments), None)
+    if place is None:
+        return ""
+    if any(segment.attach is not None for segment in action.segments):
+        return f"from {place}"
+    return f"in {place}" if place in scene.cavities else f"on {place}"
 
 
 class _Maker:

@@ -119,7 +119,8 @@ def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[i
     """
     from PIL import Image
 
-    middle = next((action.end for action in film.actions if action.end >= film.duration / 2), 0.0)
+    ends = [action.end for action in film.actions[:-1]] or [film.duration]
+    middle = min(ends, key=lambda end: abs(end - film.duration / 2))
     chosen = times or ((0.0, middle, film.duration) if film.actions else (0.0,))
     studio = Studio(film, size)
     frames = [studio.frame(min(max(time, 0.0), film.duration)) for time in chosen]

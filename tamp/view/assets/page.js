@@ -238,7 +238,7 @@ function panel() {
   byId("head").textContent = data.story.head;
   data.actions.forEach((action, i) => {
     const item = make("li"), length = make("i", (action.end - action.start).toFixed(1) + " s");
-    item.append(length, make("b", action.name), " " + action.objects.join(" "));
+    item.append(length, make("b", action.name), " " + action.about);
     item.addEventListener("click", () => go(action.start));
     item.dataset.number = i + 1;
     byId("actions").append(item);
