@@ -13,6 +13,14 @@ MOST = 40
 """Skeletons that are told of."""
 
 
+COUNTS = {
+    "skeletons": ("skeleton", "skeletons"),
+    "searches": ("search", "searches"),
+    "expanded": ("state expanded", "states expanded"),
+}
+"""What is counted, and what one and several of it are called."""
+
+
 @dataclass(frozen=True)
 class Story:
     """Texts, ready to be shown.
@@ -51,8 +59,8 @@ def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
         return Story(_head(root, seconds))
     numbers = statistics.fields()
     streams = numbers["streams"].fields() if "streams" in numbers else {}
-    counts = {name: numbers[name].number(0.0) for name in ("skeletons", "searches", "expanded") if name in numbers}
-    texts = [f"{count:,.0f} {name if name != 'expanded' else 'states expanded'}" for name, count in counts.items()]
+    counts = [(words, numbers[name].number(0.0)) for name, words in COUNTS.items() if name in numbers]
+    texts = [f"{count:,.0f} {words[0] if count == 1 else words[1]}" for words, count in counts]
     return Story(
         head=_head(root, seconds),
         why=tuple(line.text() for line in (root["explanation"].items() if "explanation" in root else ())),

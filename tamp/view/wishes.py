@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -70,6 +71,9 @@ class Wishes:
             raise InputError("a picture is written as .png", file=self.png)
         if self.video is not None:
             check_suffix(self.video)
+        for time in self.at:
+            if not 0.0 <= time < math.inf:
+                raise InputError(f"--at: {time:g} is no time in a plan")
         if not 0.0 < self.speed <= 1000.0:
             raise InputError(f"--speed: {self.speed:g} is not between 0 and 1000")
         if self.size is not None and not all(16 <= side <= MOST_PIXELS for side in self.size):

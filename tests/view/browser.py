@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import shutil
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 from typing import Any, Self
 
@@ -94,8 +96,15 @@ class Browser:
         return answer["result"].get("value")
 
     def wait(self, condition: str) -> None:
-        """Until an expression is true; the test's own time limit ends it."""
+        """Until an expression is true.
+
+        Raises:
+            TimeoutError: It is not within a minute.
+        """
+        end = time.monotonic() + 60.0
         while not self.run(condition):
+            if time.monotonic() > end:
+                raise TimeoutError(f"{condition}; the page says {self.logged}")
             self.run("new Promise((done) => setTimeout(done, 50))")
 
     def frames(self) -> None:
@@ -108,8 +117,6 @@ class Browser:
 
     def screenshot(self, file: Path) -> None:
         """The page as a PNG file."""
-        import base64
-
         file.write_bytes(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
 
     def _next(self) -> dict[str, Any]:

@@ -122,6 +122,7 @@ def test_bad_input_is_one_line_and_exit_code_two(
             ([plan, "--png", out + ".png", "--size", "big"], "--size wants WIDTHxHEIGHT, not 'big'"),
             ([plan, "--png", out + ".png", "--size", "8x8"], "--size: 8x8 is not between 16x16 and 4096x4096"),
             ([plan, "--video", out + ".gif", "--speed", "0"], "--speed: 0 is not between 0 and 1000"),
+            ([plan, "--png", out + ".png", "--at", "nan"], "--at: nan is no time in a plan"),
             ([plan, "--html", str(tmp_path)], "the output is a folder"),
         ]
         for words, expected in cases:

@@ -111,7 +111,7 @@ def test_the_story_tells_streams_skeletons_and_time(document: dict[str, Any]) ->
     _, _, calls, share, seconds = rows["inverse-kinematics"]
     assert int(calls) > 0 and share.endswith("%") and seconds.endswith(" s")
     assert [row[0] for row in story["time"]] == ["total", "search", "timing"]
-    assert "skeletons" in story["search"]
+    assert re.fullmatch(r"1 skeleton · \d+ search(es)? · \d+ states expanded", story["search"])
 
 
 @pytest.mark.parametrize(
