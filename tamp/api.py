@@ -70,6 +70,7 @@ def solve(
     finally:
         alarm.disarm()
     total = deadline.elapsed()
+    used = _used(problem, result)
     by_stream = {name: statistics.seconds for name, statistics in result.statistics.items()}
     return Solution(
         problem=problem,
@@ -77,7 +78,7 @@ def solve(
         seed=seed,
         algorithm=algorithm,
         plan=plan,
-        values=_used(problem, result),
+        values=used,
         certified=result.certified,
         statistics=result.statistics,
         effort=result.effort,
@@ -89,7 +90,7 @@ def solve(
             "timing": total - planned,
             **by_stream,
         },
-        record=None if recorder is None else recorder.record(result.attempts()),
+        record=None if recorder is None else recorder.record(result.attempts(), used.values()),
         samplers=accounts(result.memory),
     )
 

@@ -17,10 +17,10 @@ from tamp.wild import Wild
 from tamp.world.pose import Pose
 
 LIMIT = 2000
-"""Samples that are kept of a run,"""
+"""Samples that are kept of a run, beside those of the plan,"""
 
 EACH = 200
-"""and of one stream for one body, so that one that is hard to place leaves room for the others."""
+"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves room for others."""
 
 
 @dataclass(eq=False)
@@ -63,15 +63,17 @@ class Recorder:
         self.dropped = 0
         self._limit, self._each = limit, each
         self._known: dict[Pose | Grasp, Sample] = {}
-        self._counts: Counter[tuple[str, str]] = Counter()
+        self._late: dict[Pose | Grasp, Sample] = {}
+        self._counts: Counter[tuple[str, str, bool]] = Counter()
 
     def watched(self, task: StreamTask) -> StreamTask:
         """The same task with streams that are listened to."""
         return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
 
-    def record(self, attempts: tuple[Attempt, ...]) -> Record:
-        """What was heard."""
-        return Record(tuple(self.samples), self.dropped, attempts)
+    def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
+        """What was heard, all of the values that the plan uses included."""
+        late = [self._late[value] for value in used if isinstance(value, Pose | Grasp) and value in self._late]
+        return Record((*self.samples, *late), self.dropped - len(late), attempts)
 
     def _watched(self, stream: BoundStream) -> BoundStream:
         def function(*inputs: Any, call: Call) -> Any:
@@ -92,28 +94,34 @@ class Recorder:
         if isinstance(value, Wild):
             value = value.value
         if isinstance(value, Pose | Grasp):
-            self._sample(stream, inputs, value)
+            self._sample(stream, inputs, value, refused=False)
         elif isinstance(value, Rejection):
             for kind in (Pose, Grasp):  # the first one is what the stream is about, others are those in its way
                 subject = next((part for part in inputs if isinstance(part, kind)), None)
-                if subject is not None and subject in self._known:
-                    self._known[subject].refusals[stream, value.reason] += 1
+                sample = None if subject is None else self._known.get(subject) or self._late.get(subject)
+                if sample is not None:
+                    sample.refusals[stream, value.reason] += 1
 
     def _refused(self, stream: str, inputs: tuple[Any, ...], pose: Pose, reason: str) -> None:
         """A generator's own proposal that its stream did not take."""
-        sample = self._sample(stream, inputs, pose)
+        sample = self._sample(stream, inputs, pose, refused=True)
         if sample is not None:
             sample.refusals[stream, reason] += 1
 
-    def _sample(self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp) -> Sample | None:
+    def _sample(self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool) -> Sample | None:
         if value in self._known:
             return self._known[value]
         names = tuple(part for part in inputs if isinstance(part, str))
-        kind = (stream, names[0] if names else "")
-        if not names or len(self.samples) >= self._limit or self._counts[kind] >= self._each:
+        if not names:
+            return None
+        sample = Sample(stream, names, value)
+        kind = (stream, names[0], refused)
+        if len(self.samples) >= self._limit or self._counts[kind] >= self._each:
             self.dropped += 1
+            if not refused:  # the plan may come to use it
+                self._late[value] = sample
             return None
         self._counts[kind] += 1
-        sample = self._known[value] = Sample(stream, names, value)
+        self._known[value] = sample
         self.samples.append(sample)
         return sample

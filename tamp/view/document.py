@@ -78,6 +78,7 @@ def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dic
                 "T": _matrix(shot.T),
                 "used": shot.used,
                 "test": shot.test,
+                "why": shot.why,
                 "others": list(shot.others),
                 "text": shot.text,
             }

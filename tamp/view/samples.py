@@ -22,7 +22,8 @@ class Shot:
         body: Whose.
         T: T_world_body of a placement, T_tool_body of a grasp; shape (4, 4).
         used: Whether the plan rests on it.
-        test: The stream that said no to it, or None.
+        test: The stream that said no to it most often, or None.
+        why: What it said.
         others: The bodies that it was said to hit.
         text: Everything about it in a line.
     """
@@ -32,6 +33,7 @@ class Shot:
     T: Array
     used: bool
     test: str | None
+    why: str
     others: tuple[str, ...]
     text: str
 
@@ -54,7 +56,7 @@ def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -
         body = names.get(field["body"].text(), "")
         if body in scene.bodies:
             T = field["T_tool_body"].pose()
-            made.append(Shot("grasp", body, T, True, None, (), f"grasp of {body}: in the plan"))
+            made.append(Shot("grasp", body, T, True, None, "", (), f"grasp of {body}: in the plan"))
     return tuple(made)
 
 
@@ -84,6 +86,7 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
         T=T,
         used=used,
         test=refusals[0][0] if refusals else None,
+        why=refusals[0][1] if refusals else "",
         others=tuple(name for name in scene.bodies if name.lower() in words and name != body),
         text=f"{what}: {verdict}" + (f" ({reasons})" if reasons else ""),
     )

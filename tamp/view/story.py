@@ -75,7 +75,7 @@ def _head(root: Field, seconds: Mapping[str, float]) -> str:
     took = f" in {seconds['total']:.2f} s" if "total" in seconds else ""
     seed = f" · seed {root['seed'].number():.0f}" if "seed" in root else ""
     if "message" in root and root["outcome"].text() != "solved":
-        return f"{root['message'].text()}{took}{seed}"
+        return f"{root['message'].text()}{took.replace(' in ', ' · ')}{seed}"
     count, moving = len(root["actions"].items()), root["duration"].number(0.0)
     return f"{count} action{'' if count == 1 else 's'}, {moving:.1f} s of motion, found{took}{seed}"
 

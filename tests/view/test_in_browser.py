@@ -134,8 +134,8 @@ def test_samples_are_shown_by_their_test_and_say_what_they_hit(browser: Browser,
     up[2, 3] = 1.9
     text = "soup_can by sample-on: rejected (test-pose-clear: hits table)"
     samples = (
-        Shot("placement", "soup_can", T, False, "test-pose-clear", ("table",), text),
-        Shot("placement", "soup_can", up, True, None, (), "soup_can by sample-on: in the plan"),
+        Shot("placement", "soup_can", T, False, "test-pose-clear", "hits table", ("table",), text),
+        Shot("placement", "soup_can", up, True, None, "", (), "soup_can by sample-on: in the plan"),
     )
     alone = film_of(dataclasses.replace(film.scene), film.robot)
     file = tmp_path / "samples.html"
@@ -144,8 +144,10 @@ def test_samples_are_shown_by_their_test_and_say_what_they_hit(browser: Browser,
     browser.open(file.as_uri())
     browser.wait("window.tamp !== undefined && document.title === 'one_object'")
     before = picture(browser, tmp_path)
-    labels = browser.run("[...document.querySelectorAll('#tests label')].map((label) => label.innerText.trim())")
-    assert labels == ["in the plan: 1", "rejected by test-pose-clear: 1"]
+    labels = browser.run(
+        "[...document.querySelectorAll('#tests label')].map((label) => label.innerText.trim().replace(/\\n+/g, '\\n'))"
+    )
+    assert labels == ["in the plan: 1", "rejected by test-pose-clear: 1\n1 hits table"]
     assert browser.run("document.getElementById('player').hidden") is True
     x, y = browser.run("onScreen(viewNow(), [0.0, 0.6, 1.4])")
     browser.mouse("mouseMoved", x + 2, y + 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -117,3 +118,17 @@ def test_samples_are_capped_and_counted() -> None:
     assert heard(recorder, draw, "can") == more
     assert [sample.arguments[0] for sample in recorder.samples] == ["mug"] * 3 + ["can"] * 2
     assert recorder.record(()).dropped == 11
+    late = recorder.record((), [more[7], poses[0], "a motion"])  # the plan's own are never dropped
+    assert late.samples[-1].value == more[7] and len(late.samples) == 6 and late.dropped == 10
+
+
+def test_refused_proposals_leave_room_for_accepted_ones() -> None:
+    recorder = Recorder(each=2)
+
+    def draw(body: str, call: Call) -> Iterator[Pose]:
+        for i in range(9):
+            call.refused(Pose((float(i), 0.0, 0.0)), "falls")
+            yield Pose((float(i), 1.0, 0.0))
+
+    heard(recorder, BoundStream(declared("draw", ("?o",), ("?p",)), draw, ((),)), "mug")
+    assert [len(sample.refusals) for sample in recorder.samples] == [1, 0, 1, 0]

@@ -222,15 +222,22 @@ function jump(step) {
 
 // ---- the panel
 
-function check(into, layer, text, colour, on = true) {
+function check(into, layer, text, colour, note) {
   const row = make("label"), box = make("input");
-  box.type = "checkbox"; box.checked = on; box.dataset.layer = layer;
-  if (!on) state.hidden.add(layer);
+  box.type = "checkbox"; box.checked = true; box.dataset.layer = layer;
   box.addEventListener("change", () => { if (box.checked) state.hidden.delete(layer); else state.hidden.add(layer); state.dirty = true; });
   row.append(box);
   if (colour) { const dot = make("i"); dot.style.background = colour; row.append(dot); }
   row.append(" " + text);
+  if (note) row.append(make("small", note));
   into.append(row);
+}
+
+// The most frequent reasons of samples, with their counts.
+function reasons(samples) {
+  const counts = new Map();
+  for (const { why } of samples) if (why) counts.set(why, (counts.get(why) || 0) + 1);
+  return [...counts].sort(([, a], [, b]) => b - a).slice(0, 4).map(([why, count]) => count + " " + why).join(", ");
 }
 
 function panel() {
@@ -254,7 +261,7 @@ function panel() {
   if (data.samples.some((s) => s.kind === "grasp")) check(layers, "grasps", "grasps (green: in the plan)", "#1a9641");
   byId("samples").hidden = groups.size === 0;
   for (const [name, group] of [...groups].sort(([a], [b]) => (a in KEPT ? 0 : 1) - (b in KEPT ? 0 : 1) || (a < b ? -1 : 1)))
-    check(byId("tests"), name, name + ": " + group.samples.length, group.colour);
+    check(byId("tests"), name, name + ": " + group.samples.length, group.colour, name in KEPT ? "" : reasons(group.samples));
   story();
 }
 
