@@ -24,8 +24,11 @@ CREASE = 0.75
 SUN: Array = unit(np.array([0.35, -0.5, 0.8]))
 """Where the light comes from."""
 
-MAP, BIAS = 2048, 0.012
-"""Cells across the map of shadows, and metres that a shadow's surface keeps from itself."""
+MAP, SMALL_MAP, SMALL = 2048, 1024, 400
+"""Cells across the map of shadows, and across that of a picture with fewer rows than SMALL."""
+
+BIAS = 0.012
+"""Metres that a shadow's surface keeps from itself."""
 
 SHADOW = 0.55
 """What is left of the sun's light in the shadow."""
@@ -91,14 +94,14 @@ def render(parts: Sequence[Triangles], camera: Camera, size: tuple[int, int]) ->
     depth, ids = np.full((rows, columns), np.inf), np.full((rows, columns), -1, dtype=np.int32)
     weights = np.zeros((rows, columns, 3), dtype=np.float32)
     _fill(screen, True, depth, ids, weights)
-    frame, scale, offset, shadows = _shadows(corners)
+    frame, scale, offset, shadows = _shadows(corners, SMALL_MAP if size[1] < SMALL else MAP)
     pixels = np.empty((rows, columns, 3))
     _shade(
         ids, weights, corners, normals, colours, np.array(camera.eye), SUN, np.array(BACKGROUND),
         frame, scale, offset, shadows, pixels,
     )  # fmt: skip
-    mean = pixels.reshape(size[1], FINE, size[0], FINE, 3).mean(axis=(1, 3))
-    return np.round(255.0 * mean).astype(np.uint8)
+    total = sum(pixels[down::FINE, across::FINE] for down in range(FINE) for across in range(FINE))
+    return np.round(255.0 / FINE**2 * total).astype(np.uint8)
 
 
 def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
@@ -113,17 +116,17 @@ def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
     return np.concatenate([plane + np.array([columns / 2, rows / 2]), depth[:, :, None]], axis=2)
 
 
-def _shadows(corners: Array) -> tuple[Array, Array, Array, Array]:
+def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
     """What the sun sees: the axes (3, 3) of its view, the scale and offset (3,) of its map, the map of distances."""
     side = unit(np.cross(SUN, np.array([0.0, 0.0, 1.0])))
     frame = np.stack([side, np.cross(SUN, side), -SUN], axis=1)
     raised = corners[corners[:, :, 2].max(axis=1) > 0.001]  # the floor throws no shadow
     seen = raised @ frame
     low, high = seen.min(axis=(0, 1)), seen.max(axis=(0, 1))
-    scale = np.full(3, (MAP - 3) / float((high - low)[:2].max()))
+    scale = np.full(3, (cells - 3) / float((high - low)[:2].max()))
     scale[2] = 1.0
     offset = 1.0 - low * scale  # columns, rows and distances from 1 on
-    depth, ids = np.full((MAP, MAP), np.inf), np.full((MAP, MAP), -1, dtype=np.int32)
+    depth, ids = np.full((cells, cells), np.inf), np.full((cells, cells), -1, dtype=np.int32)
     _fill(seen * scale + offset, False, depth, ids, np.zeros((1, 1, 3), dtype=np.float32))
     return frame, scale, offset, depth
 
