@@ -12,6 +12,7 @@ from tamp.algorithms.solution import Effort, Outcome, Progress, Result
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.problem import Problem
+from tamp.recording import Recorder
 from tamp.solution import Action, Solution
 from tamp.streams.mixture import accounts
 from tamp.trajectories import trajectories
@@ -24,6 +25,7 @@ def solve(
     seed: int = 0,
     algorithm: str = "adaptive",
     progress: Progress | None = None,
+    record: bool = False,
 ) -> Solution:
     """Plan.
 
@@ -35,6 +37,7 @@ def solve(
         seed: Of all randomness.
         algorithm: "adaptive" or "incremental".
         progress: Called now and then with what was done so far.
+        record: Keep what the streams drew and refused in `Solution.record`; the plan is the same.
 
     Raises:
         InputError: Unknown algorithm, or a time that is not positive.
@@ -49,21 +52,25 @@ def solve(
         digest = hashlib.blake2b(key.encode(), digest_size=8, key=str(seed).encode()).digest()
         return np.random.default_rng(int.from_bytes(digest, "little"))
 
+    recorder = Recorder() if record else None
+    task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
     alarm = Alarm(deadline)
     try:
         with alarm:
-            result = ALGORITHMS[algorithm](problem.stream_task, make_rng, deadline, progress or _silent)
+            result = ALGORITHMS[algorithm](task, make_rng, deadline, progress or _silent)
             planned = deadline.elapsed()
             plan = _timed(problem, result) if result.outcome is Outcome.SOLVED else ()
     except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         why = ("it ended before the first plan was tried, or before its motions were timed",)
         return Solution(
-            problem, outcome, seed, algorithm, explanation=why, seconds={"total": deadline.elapsed()}
+            problem, outcome, seed, algorithm, explanation=why, seconds={"total": deadline.elapsed()},
+            record=None if recorder is None else recorder.record(()),
         )  # fmt: skip
     finally:
         alarm.disarm()
     total = deadline.elapsed()
+    used = _used(problem, result)
     by_stream = {name: statistics.seconds for name, statistics in result.statistics.items()}
     return Solution(
         problem=problem,
@@ -71,7 +78,7 @@ def solve(
         seed=seed,
         algorithm=algorithm,
         plan=plan,
-        values=_used(problem, result),
+        values=used,
         certified=result.certified,
         statistics=result.statistics,
         effort=result.effort,
@@ -83,6 +90,7 @@ def solve(
             "timing": total - planned,
             **by_stream,
         },
+        record=None if recorder is None else recorder.record(result.attempts(), used.values()),
         samplers=accounts(result.memory),
     )
 

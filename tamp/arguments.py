@@ -55,6 +55,16 @@ class Arguments:
     """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
+    view: bool = False
+    """Open the plan, or the scene and what was tried, in the browser until Ctrl-C."""
+    html: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write the same as one HTML file that plays offline."""
+    png: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write a picture: start, middle and end."""
+    video: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write a moving picture (.gif or .webp)."""
+    record: bool = False
+    """Keep the samples tried in the plan file, for tamp-view; --view and --html do so too. The plan is the same."""
     json: bool = False
     """Print one JSON document instead of text."""
     quiet: bool = False
@@ -88,6 +98,9 @@ def parsed(arguments: list[str]) -> Arguments:
         )
     if not chosen.files[-1].endswith(".pddl") and (chosen.search or chosen.heuristic):
         raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
+    shown = [name for name in ("view", "html", "png", "video", "record") if getattr(chosen, name)]
+    if chosen.files[-1].endswith(".pddl") and shown:
+        raise InputError(f"--{shown[0]} is for problems with a scene; one in PDDL has none")
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
     if abs(chosen.seed) >= 2**64:

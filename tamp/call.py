@@ -13,6 +13,10 @@ def _unheard(message: str) -> None:
     pass
 
 
+def _unseen(value: Any, reason: str) -> None:
+    pass
+
+
 @dataclass(frozen=True, slots=True)
 class Call:
     """The circumstances of one stream call.
@@ -26,6 +30,7 @@ class Call:
         ahead: Whether values are drawn ahead of their use, so that being asked for another one says nothing about the
             last; else it was tried, and did not serve.
         warn: Tells the user something, once.
+        refused: Told of each proposal that the stream looked at and did not take, and why; for recordings.
     """
 
     rng: Any
@@ -34,3 +39,4 @@ class Call:
     memory: dict[str, Any] = field(default_factory=dict[str, Any])
     ahead: bool = False
     warn: Callable[[str], None] = _unheard
+    refused: Callable[[Any, str], None] = _unseen

@@ -56,10 +56,14 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
     from tamp.report import headline, summary
+    from tamp.view.wishes import Wishes, fulfil
 
     if arguments.algorithm not in ALGORITHMS:
         what = f"unknown algorithm '{arguments.algorithm}'"
         raise InputError(what, found=arguments.algorithm, choices=ALGORITHMS)
+    wishes = Wishes(html=arguments.html, png=arguments.png, video=arguments.video, view=arguments.view)
+    if wishes.any:
+        wishes.check()
     *domain, problem_name = arguments.files
     problem = load_problem(
         problem_name,
@@ -77,6 +81,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         seed=arguments.seed,
         algorithm=arguments.algorithm,
         progress=shown.update,
+        record=arguments.record or wishes.page,
     )
     shown.clear()
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
@@ -93,6 +98,10 @@ def _solve(arguments: Arguments, started: float) -> int:
     else:
         shown.line(summary(solution))
         _conclude(shown, arguments, written, verdict)
+    if wishes.any:
+        from tamp.view.open import film_of_solution
+
+        fulfil(wishes, *film_of_solution(solution), None, shown.line)
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
     return SOLVED if holds else NO_PLAN

@@ -12,6 +12,7 @@ from typing import Any
 
 from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.recording import Sample
 from tamp.solution import Action, Solution
 from tamp.streams.values import BaseConf, Grasp, Grip, Motion, Reach
 from tamp.streams.values import Path as Polyline
@@ -29,6 +30,7 @@ def plan_document(solution: Solution) -> dict[str, Any]:
     """The plan file's content. Only what stands under "timing" differs between two runs with one seed."""
     problem = solution.problem
     task = problem.stream_task.task
+    record = record_document(solution)
     return {
         "format": "tamp-plan",
         "version": 1,
@@ -55,7 +57,42 @@ def plan_document(solution: Solution) -> dict[str, Any]:
         "cost": solution.cost,
         "duration": _number(solution.duration),
         "statistics": _statistics(solution),
+        **({} if record is None else {"record": record}),
         "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
+    }
+
+
+def record_document(solution: Solution) -> dict[str, Any] | None:
+    """What was tried: samples, the skeletons; None when it was not recorded."""
+    record = solution.record
+    if record is None:
+        return None
+    chosen = {value for value in solution.values.values() if isinstance(value, Pose | Grasp)}
+    return {
+        "samples": [_sample(sample, sample.value in chosen) for sample in record.samples],
+        "dropped": record.dropped,
+        "skeletons": [
+            {
+                "actions": list(attempt.actions),
+                "rounds": attempt.rounds,
+                "bound": attempt.bound,
+                "failures": list(attempt.failures),
+            }
+            for attempt in record.attempts
+        ],
+    }
+
+
+def _sample(sample: Sample, used: bool) -> dict[str, Any]:
+    return {
+        "stream": sample.stream,
+        "arguments": [_body(name) for name in sample.arguments],
+        **_value(sample.value),
+        "used": used,
+        "refusals": [
+            {"stream": stream, "reason": reason, "count": count}
+            for (stream, reason), count in sample.refusals.most_common()
+        ],
     }
 
 

@@ -9,6 +9,7 @@ from tamp.algorithms.solution import Effort, Outcome
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.pddl.structs import Fact
 from tamp.problem import Problem
+from tamp.recording import Record
 from tamp.streams.mixture import Account
 from tamp.trajectories import Trajectory
 
@@ -44,6 +45,7 @@ class Solution:
         certified: The facts that streams certified and the plan rests on.
         explanation: Why there is no plan, a line a cause.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
+        record: What was tried, when `solve` was asked to record it.
         samplers: What became of the proposals of each relation's generators, those that were asked.
     """
 
@@ -59,6 +61,7 @@ class Solution:
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
+    record: Record | None = None
     samplers: Mapping[str, tuple[Account, ...]] = field(default_factory=dict[str, "tuple[Account, ...]"])
 
     @property

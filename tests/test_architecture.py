@@ -18,6 +18,7 @@ SYMBOLIC = ("tamp/pddl", "tamp/search", "tamp/algorithms")
 LONGEST = 300
 HEAVY = {"torch", "pybullet", "trimesh", "toppra", "scipy", "ompl", "fcl", "pinocchio", "eaik", "coacd", "matplotlib"}
 DISTRIBUTIONS = {
+    "PIL": "pillow",
     "fcl": "python-fcl",
     "pinocchio": "pin",
     "pybullet_data": "pybullet",
@@ -109,7 +110,7 @@ def test_torch_stays_where_training_is() -> None:
     }
 
 
-@pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli"])
+@pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli", "tamp.export.cli", "tamp.view.cli"])
 def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     code = f"import sys, json, {module}; print(json.dumps(sorted(sys.modules)))"
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)

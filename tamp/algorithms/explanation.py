@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Node, Skeleton
-from tamp.algorithms.solution import StreamTask
+from tamp.algorithms.solution import Attempt, StreamTask
 from tamp.algorithms.statistics import Experience, Record
 from tamp.algorithms.stream import Streams
 from tamp.pddl.structs import Fact
@@ -17,6 +17,21 @@ from tamp.search.operators import Grounded
 
 LINES = 6
 """How many causes are worth reading."""
+
+
+def explain_attempts(
+    problem: StreamTask, skeletons: Sequence[Skeleton], experience: Experience, bound: Skeleton | None
+) -> tuple[Attempt, ...]:
+    """What was tried, in the order in which it was found, and what failed in it."""
+    return tuple(
+        Attempt(
+            actions=tuple(" ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps),
+            rounds=skeleton.rounds,
+            bound=skeleton is bound,
+            failures=tuple(_failed(experience, skeleton)),
+        )
+        for skeleton in skeletons
+    )
 
 
 def explain_infeasible(

@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
 from tamp.algorithms.costs import Costs
-from tamp.algorithms.explanation import explain_failures
+from tamp.algorithms.explanation import explain_attempts, explain_failures
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
 from tamp.algorithms.skeleton import Skeleton
@@ -183,6 +184,9 @@ class Run:
         result = self.result(Outcome.SOLVED, ())
         result.actions = actions
         result.certified = tuple(sorted(fact for fact in certified if fact not in initial))
+        result.attempts = partial(
+            explain_attempts, self.problem, list(self.skeletons.values()), self.experience, skeleton
+        )
         return result
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
@@ -198,4 +202,5 @@ class Run:
             explanation=explanation,
             warnings=tuple(self.streams.warnings),
             memory=self.streams.memory,
+            attempts=partial(explain_attempts, self.problem, list(self.skeletons.values()), self.experience, None),
         )

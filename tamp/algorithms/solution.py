@@ -69,6 +69,27 @@ class Effort:
     search_seconds: float = 0.0
 
 
+@dataclass(frozen=True)
+class Attempt:
+    """A skeleton that was tried.
+
+    Attributes:
+        actions: Its actions with the objects of the problem among their arguments.
+        rounds: How often it was tried without success.
+        bound: Whether it became the plan.
+        failures: What failed most, a line a cause.
+    """
+
+    actions: tuple[str, ...]
+    rounds: int
+    bound: bool
+    failures: tuple[str, ...]
+
+
+def _none() -> tuple[Attempt, ...]:
+    return ()
+
+
 @dataclass
 class Result:
     """The symbolic side of a solution.
@@ -79,6 +100,7 @@ class Result:
         objects: Names, types and values of everything in it.
         explanation: Why there is no plan, a line a cause.
         memory: What the streams have learned in the run, as they keep it.
+        attempts: Says which skeletons were tried, to those who ask.
     """
 
     outcome: Outcome
@@ -90,6 +112,7 @@ class Result:
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     memory: Mapping[str, object] = field(default_factory=dict[str, object])
+    attempts: Callable[[], tuple[Attempt, ...]] = _none
 
 
 Progress = Callable[[Effort], None]

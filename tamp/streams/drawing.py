@@ -151,6 +151,7 @@ class _Drawer:
             if isinstance(pose, Rejection):
                 refused[pose] += 1
                 self.ledger.judged(source.account, pose.reason)
+                self.call.refused(proposal, pose.reason)
                 continue
             hit = next((name for name in self.poses if self._near(pose, name)), None)
             if hit is None:
@@ -158,6 +159,7 @@ class _Drawer:
                 source.clear = True
                 return pose
             self.ledger.judged(source.account, f"hits {hit}")
+            self.call.refused(pose, f"hits {hit}")
             source.clash = source.clash or pose
         return source.take_clash() if source.clear else None
 

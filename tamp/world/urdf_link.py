@@ -62,6 +62,19 @@ def read_link(path: Path) -> UrdfLink:
     return UrdfLink(collisions, visuals, _colour(root, links[0]))
 
 
+def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
+    """The visual elements of all links of a URDF file, by the links' names.
+
+    Raises:
+        InputError: Not XML, or a geometry that is unknown, not finite or not positive.
+    """
+    try:
+        root = ElementTree.fromstring(path.read_bytes())
+    except (OSError, ElementTree.ParseError) as error:
+        raise InputError(f"cannot read '{path.name}': {error}") from None
+    return {link.get("name", ""): _elements(path, link, "visual") for link in root.findall("link")}
+
+
 def _elements(path: Path, link: ElementTree.Element, kind: str) -> tuple[Element, ...]:
     found = [(element, element.find("geometry")) for element in link.findall(kind)]
     return tuple(_element(path, element, geometry) for element, geometry in found if geometry is not None)

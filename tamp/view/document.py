@@ -1,0 +1,138 @@
+"""Everything that a page shows, as JSON."""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import Any
+
+import numpy as np
+
+from tamp.view.film import Film
+from tamp.view.looks import body_meshes, robot_meshes
+from tamp.view.mesh import Mesh
+from tamp.view.picture import framing
+from tamp.view.samples import Shot
+from tamp.view.story import Story
+from tamp.world.bounds import bounds
+from tamp.world.pose import Array, Pose
+
+GRID = 65_535
+"""Steps on each side of a mesh in which its vertices are told."""
+
+
+def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dict[str, Any]:
+    """The film, the samples and the story; assets/page.js reads it."""
+    scene, robot = film.scene, film.robot
+    looks = robot_meshes(robot)
+    return {
+        "title": scene.name,
+        "robot": {
+            "links": [{"name": link.name, "meshes": _meshes(looks[link.name])} for link in robot.links],
+            "T_base_arm": _matrix(robot.T_base_arm.matrix),
+            "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
+            "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
+            "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
+            "fingers": [
+                {
+                    "link": finger.child,
+                    "origin": _matrix(finger.origin.matrix),
+                    "axis": list(finger.axis),
+                }
+                for finger in robot.fingers
+            ],
+        },
+        "bodies": [
+            {
+                "name": name,
+                "movable": body.movable,
+                "height": float(bounds(body.parts, Pose())[1][2]),
+                "meshes": _meshes(body_meshes(body)),
+                "stays": [
+                    {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)} for stay in film.stays[name]
+                ] if name in film.stays else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix)}],
+            }
+            for name, body in scene.bodies.items()
+        ],
+        "surfaces": [
+            {"name": place.name, "T": _matrix(scene.world_pose(place).matrix), "size": list(place.size[:2])}
+            for place in (*scene.surfaces.values(), *scene.cavities.values())
+        ],
+        "room": {"x": list(scene.room.x), "y": list(scene.room.y)},
+        "actions": [
+            {
+                "name": action.name,
+                "about": action.text.removeprefix(action.name).strip(),
+                "text": action.text,
+                "start": action.start,
+                "end": action.end,
+            }
+            for action in film.actions
+        ],
+        "times": _packed(film.times.astype("<f4")),
+        "rows": _packed(film.rows.astype("<f4")),
+        "samples": [
+            {
+                "kind": shot.kind,
+                "body": shot.body,
+                "T": _matrix(shot.T),
+                "used": shot.used,
+                "test": shot.test,
+                "why": shot.why,
+                "others": list(shot.others),
+                "text": shot.text,
+            }
+            for shot in shots
+        ],
+        "story": {
+            "head": story.head,
+            "why": list(story.why),
+            "skeletons": [{"text": text, "lines": list(lines)} for text, lines in story.skeletons],
+            "search": story.search,
+            "streams": [list(row) for row in story.streams],
+            "time": [list(row) for row in story.time],
+        },
+        "view": _view(film),
+    }  # fmt: skip
+
+
+def _view(film: Film) -> dict[str, Any]:
+    """The first camera, and the ball in which shadows are drawn."""
+    camera = framing(film, (1000, 800))
+    target, out = np.array(camera.target), np.array(camera.eye) - np.array(camera.target)
+    distance = float(np.linalg.norm(out))
+    room = film.scene.room
+    middle = [sum(room.x) / 2, sum(room.y) / 2, 0.5]
+    return {
+        "target": target.tolist(),
+        "yaw": math.atan2(out[1], out[0]),
+        "pitch": math.asin(out[2] / distance),
+        "distance": distance,
+        "angle": camera.angle,
+        "middle": middle,
+        "radius": math.hypot(room.x[1] - room.x[0], room.y[1] - room.y[0]) / 2 + 1.0,
+    }
+
+
+def _meshes(meshes: tuple[Mesh, ...]) -> list[dict[str, Any]]:
+    return [_mesh(mesh) for mesh in meshes if len(mesh.faces)]
+
+
+def _mesh(mesh: Mesh) -> dict[str, Any]:
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    step = np.maximum(high - low, 1e-9) / GRID
+    return {
+        "vertices": _packed(np.round((mesh.vertices - low) / step).astype("<u2")),
+        "faces": _packed(mesh.faces.astype("<u4")),
+        "low": low.tolist(),
+        "step": step.tolist(),
+        "colour": [round(part, 4) for part in mesh.colour],
+    }
+
+
+def _matrix(T: Array) -> list[float]:
+    return [round(float(number), 7) + 0.0 for number in T.ravel()]
+
+
+def _packed(array: np.ndarray) -> str:
+    return base64.b64encode(array.tobytes()).decode()

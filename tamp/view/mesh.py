@@ -1,0 +1,118 @@
+"""Triangles to draw."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tamp.world.pose import Array
+from tamp.world.scene import Box, Cylinder, Shape, Sphere
+
+Colour = tuple[float, float, float, float]
+ROUND = 40
+"""Corners of what is round."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of one colour: vertices (n, 3) in metres, faces (m, 3), counter-clockwise from outside."""
+
+    vertices: Array
+    faces: NDArray[np.integer]
+    colour: Colour
+
+    def moved(self, T_a_b: Array) -> Mesh:
+        """The mesh of frame b in frame a; T_a_b of shape (4, 4)."""
+        return Mesh(self.vertices @ T_a_b[:3, :3].T + T_a_b[:3, 3], self.faces, self.colour)
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors of length 1 in the same directions, shape (..., 3); what has no direction stays 0."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+
+
+def shape_mesh(shape: Shape, colour: Colour) -> Mesh:
+    """A convex shape in its own frame."""
+    if isinstance(shape, Box):
+        return _box(shape, colour)
+    if isinstance(shape, Cylinder):
+        half = shape.height / 2
+        return _turned([(0.0, -half), (shape.radius, -half), (shape.radius, half), (0.0, half)], colour)
+    if isinstance(shape, Sphere):
+        tilts = np.linspace(-math.pi / 2, math.pi / 2, ROUND // 2)
+        return _turned([(shape.radius * math.cos(a), shape.radius * math.sin(a)) for a in tilts], colour)
+    return Mesh(np.asarray(shape.vertices, dtype=float), shape.faces, colour)
+
+
+def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0) -> list[Mesh]:
+    """The triangles of a mesh file, a mesh for each of its colours.
+
+    Args:
+        file: In any format that trimesh reads.
+        scale: Factors that make it metres.
+        colour: Of all of it; None keeps the file's own.
+        cell: Metres: details smaller than this are left out; 0 keeps everything.
+    """
+    import trimesh  # takes half a second
+
+    loaded = trimesh.load_scene(file, process=False)
+    groups: dict[Colour, list[tuple[Array, NDArray[np.integer]]]] = {}
+    for geometry in loaded.geometry.values():
+        own = colour or _material(geometry)
+        vertices = np.asarray(geometry.vertices, dtype=float) * np.asarray(scale)
+        groups.setdefault(own, []).append((vertices, np.asarray(geometry.faces)))
+    meshes = [_joined(pieces, own) for own, pieces in groups.items()]
+    return [simplified(mesh, cell) if cell else mesh for mesh in meshes]
+
+
+def simplified(mesh: Mesh, cell: float) -> Mesh:
+    """A coarser mesh: the vertices in each cube of that many metres become one, their mean (vertex clustering)."""
+    cubes = np.round(mesh.vertices / cell).astype(np.int64)
+    _, member = np.unique(cubes, axis=0, return_inverse=True)
+    member = member.ravel()
+    counts = np.bincount(member)
+    means = np.stack([np.bincount(member, mesh.vertices[:, axis]) for axis in range(3)], axis=1) / counts[:, None]
+    faces = member[mesh.faces]
+    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])]
+    return Mesh(means, faces, mesh.colour)
+
+
+def _joined(pieces: list[tuple[Array, NDArray[np.integer]]], colour: Colour) -> Mesh:
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in pieces])
+    faces = [faces + start for (_, faces), start in zip(pieces, starts[:-1], strict=True)]
+    return Mesh(np.concatenate([vertices for vertices, _ in pieces]), np.concatenate(faces), colour)
+
+
+def _material(geometry: object) -> Colour:
+    visual = getattr(geometry, "visual", None)
+    material = getattr(visual, "material", None)
+    rgba = getattr(material, "main_color", None)
+    if rgba is None:
+        return (0.8, 0.8, 0.8, 1.0)
+    red, green, blue, alpha = (float(part) / 255.0 for part in rgba)
+    return (red, green, blue, alpha)
+
+
+def _box(shape: Box, colour: Colour) -> Mesh:
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = [(a, b, c) for a, b, c, _ in squares] + [(a, c, d) for a, _, c, d in squares]
+    return Mesh(corners * np.array(shape.size), np.array(faces), colour)
+
+
+def _turned(profile: list[tuple[float, float]], colour: Colour) -> Mesh:
+    """A profile of (radius, z), from the bottom to the top, turned about z."""
+    angles = np.linspace(0.0, 2 * math.pi, ROUND, endpoint=False)
+    rings = [np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1) for r, z in profile]
+    faces: list[tuple[int, int, int]] = []
+    for ring in range(len(profile) - 1):
+        low, high = ring * ROUND, (ring + 1) * ROUND
+        for i in range(ROUND):
+            j = (i + 1) % ROUND
+            faces += [(low + i, low + j, high + j), (low + i, high + j, high + i)]
+    return Mesh(np.concatenate(rings), np.array(faces), colour)

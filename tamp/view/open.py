@@ -1,0 +1,49 @@
+"""From what a user names, or has just planned, to a film and its story."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from tamp.errors import InputError
+from tamp.plan_file import plan_document, record_document, summary_document
+from tamp.solution import Solution
+from tamp.stored import open_plan
+from tamp.verification.plan_file import read_plan
+from tamp.view.film import Film, film_of
+from tamp.view.story import Story, story_of
+from tamp.world.load import load_scene
+from tamp.world.robot import ROBOTS
+
+Opened = tuple[Film, Story, dict[str, Any]]
+"""A film, its story, and the plan file's content (empty without a plan)."""
+
+
+def open_film(what: str, problem: str | None = None) -> Opened:
+    """A plan file (.json), or a problem by file or name.
+
+    Raises:
+        InputError: Neither, or something is wrong with it.
+    """
+    if what.endswith(".json"):
+        stored = open_plan(what, problem)
+        film = film_of(stored.loaded.scene, stored.robot, stored.plan)
+        return film, story_of(stored.document, Path(what)), stored.document
+    if problem is not None:
+        raise InputError("--problem goes with a plan", remedy="Name a plan file before it")
+    loaded = load_scene(what)
+    scene = loaded.scene
+    goal = " ".join(loaded.goal.text.split())
+    head = f"{len(scene.bodies)} bodies, {len(scene.movable)} movable · goal {goal}"
+    return film_of(scene, ROBOTS[scene.robot.model]()), Story(head), {}
+
+
+def film_of_solution(solution: Solution) -> Opened:
+    """What `solve` returned: the plan, or, when there is none, the scene with what was tried."""
+    problem = solution.problem
+    robot = problem.context.robot
+    if solution.solved:
+        document = plan_document(solution)
+        return film_of(problem.scene, robot, read_plan(document)), story_of(document), document
+    document = {**summary_document(solution), "record": record_document(solution)}
+    return film_of(problem.scene, robot), story_of(document), document

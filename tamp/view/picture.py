@@ -1,0 +1,212 @@
+"""Pictures of a film: PNG, and moving ones."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tamp.data import write_whole
+from tamp.errors import InputError
+from tamp.view.film import Film, holding, tool_path
+from tamp.view.looks import body_meshes, robot_meshes
+from tamp.view.mesh import Mesh, unit
+from tamp.view.moving import MOVING, check_suffix
+from tamp.view.raster import Camera, Triangles, render, triangles
+from tamp.world.bounds import bounds
+from tamp.world.kinematics import Kinematics
+from tamp.world.pose import Array
+
+FLOOR_COLOURS = ((0.86, 0.85, 0.83, 1.0), (0.83, 0.82, 0.8, 1.0))
+EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (0.2, 0.45, 0.85, 1.0), (0.95, 0.45, 0.1, 1.0), (0.3, 0.3, 0.35, 1.0)
+"""Of the hand's path, empty and with a body in it, and of the base's."""
+
+THICK = 0.006
+"""Half the thickness of a path's line, metres."""
+
+STEP = 0.02
+"""A path's line leaves out points that are nearer to each other, metres."""
+
+VIEW = np.array([0.28, -0.86, 0.62])
+"""Where from the scene's middle the eye is."""
+
+AROUND = 6
+"""Metres of floor around the room."""
+
+FILLED = 0.94
+"""The share of a picture's height and width that the scene takes."""
+
+FRAMES = 8
+"""Of a moving picture, a second."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Trail:
+    """The line of a path, and when each of its triangles is passed, shape (n,), increasing."""
+
+    line: Triangles
+    passed: Array
+
+    def until(self, time: float) -> Triangles:
+        """What was passed by then."""
+        count = int(np.searchsorted(self.passed, time, side="right"))
+        return Triangles(self.line.corners[:count], self.line.normals[:count], self.line.colours[:count])
+
+
+class Studio:
+    """What is drawn of a film, prepared once for all its pictures.
+
+    Args:
+        film: What happens.
+        size: Columns and rows of a picture.
+        camera: Who looks; by default somebody who has everything in view.
+    """
+
+    def __init__(self, film: Film, size: tuple[int, int], camera: Camera | None = None) -> None:
+        self.film, self.size = film, size
+        self.camera = camera or framing(film, size)
+        self._kinematics = Kinematics(film.robot)
+        looks = robot_meshes(film.robot)
+        self._robot = {name: [triangles(mesh) for mesh in meshes if len(mesh.faces)] for name, meshes in looks.items()}
+        bodies = film.scene.bodies
+        self._bodies = {name: [triangles(mesh) for mesh in body_meshes(body)] for name, body in bodies.items()}
+        self._floor = _floor(film)
+        self._trails = _trails(film, self._kinematics)
+
+    def frame(self, time: float) -> NDArray[np.uint8]:
+        """The picture at a time, with the paths up to then; rows x columns x RGB."""
+        row = self.film.row(time)
+        links = self._kinematics.link_poses(row[:10], float(row[10]))
+        parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
+        parts += [part.moved(links[name]) for name, some in self._robot.items() for part in some]
+        for name, pose in self.film.poses(time, self._kinematics).items():
+            parts += [part.moved(pose) for part in self._bodies[name]]
+        return render(parts, self.camera, self.size)
+
+
+def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
+    """A camera that has all bodies, and the robot wherever it goes, in view."""
+    boxes = [bounds(body.parts, body.pose) for body in film.scene.bodies.values()]
+    boxes += [(np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4])) for x, y in film.rows[::20, :2]]
+    boxes += [(np.array([*film.rows[0, :2], 0.4]), np.array([*film.rows[0, :2], 1.1]))]
+    corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
+    ahead = -VIEW / np.linalg.norm(VIEW)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    frame = np.stack([right, np.cross(ahead, right), ahead])
+    half = math.tan(math.radians(angle) / 2) * FILLED
+    reach = np.array([half * size[0] / size[1], half])
+    target, distance = corners.mean(axis=0), 1.0
+    for _ in range(20):  # until the corners' outline is in the middle, and fills the picture
+        seen = (corners - target) @ frame.T
+        distance = float(np.max(np.abs(seen[:, :2]) / reach - seen[:, 2:]))
+        plane = seen[:, :2] / (seen[:, 2:] + distance)
+        target = target + (plane.min(axis=0) + plane.max(axis=0)) / 2 * distance @ frame[:2]
+    return Camera(_three(target - ahead * distance), _three(target), angle)
+
+
+def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)) -> None:
+    """One picture, or one beside the other for several times; by default a plan's start, middle and end.
+
+    Raises:
+        InputError: The file cannot be written.
+    """
+    from PIL import Image
+
+    ends = [action.end for action in film.actions[:-1]] or [film.duration]
+    middle = min(ends, key=lambda end: abs(end - film.duration / 2))
+    chosen = times or ((0.0, middle, film.duration) if film.actions else (0.0,))
+    studio = Studio(film, size)
+    frames = [studio.frame(min(max(time, 0.0), film.duration)) for time in chosen]
+    image = Image.fromarray(np.concatenate(frames, axis=1))
+    _save(file, image, "PNG", {"optimize": True})
+
+
+def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)) -> None:
+    """A moving picture of the plan, `speed` times as fast as the robot.
+
+    Raises:
+        InputError: Nothing moves, the file's ending is unknown, or it cannot be written.
+    """
+    from PIL import Image
+
+    check_suffix(file)
+    suffix = file.suffix.lower()
+    if not film.actions:
+        raise InputError("nothing moves without a plan", file=file, remedy="A picture is made by --png")
+    images = [Image.fromarray(frame) for frame in _moving(Studio(film, size), speed)]
+    options = {"save_all": True, "append_images": images[1:], "duration": 1000 // FRAMES, "loop": 0}
+    if suffix == ".gif":  # colours that the scene has, the same in all frames
+        palette = images[len(images) // 2].quantize(128, dither=Image.Dither.NONE)
+        images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+        options["append_images"] = images[1:]
+    _save(file, images[0], MOVING[suffix], options)
+
+
+def _moving(studio: Studio, speed: float) -> Iterator[NDArray[np.uint8]]:
+    for time in np.append(np.arange(0.0, studio.film.duration, speed / FRAMES), studio.film.duration):
+        yield studio.frame(float(time))
+
+
+def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> None:
+    content = io.BytesIO()
+    image.save(content, kind, **options)  # pyright: ignore[reportAttributeAccessIssue]
+    try:
+        write_whole(file, content.getvalue())
+    except OSError as error:
+        raise InputError(f"cannot write the picture: {error.strerror}", file=file) from error
+
+
+def _floor(film: Film) -> list[Triangles]:
+    """Tiles of two shades, a metre wide, under the room and around it."""
+    room = film.scene.room
+    xs = range(math.floor(room.x[0]) - AROUND, math.ceil(room.x[1]) + AROUND)
+    ys = range(math.floor(room.y[0]) - AROUND, math.ceil(room.y[1]) + AROUND)
+    tiles: list[Triangles] = []
+    for shade, colour in enumerate(FLOOR_COLOURS):
+        corners = [(x, y) for x in xs for y in ys if (x + y) % 2 == shade]
+        vertices = [(x + dx, y + dy, 0.0) for x, y in corners for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        faces = [(4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))]
+        tiles.append(triangles(Mesh(np.array(vertices), np.array(faces), colour)))
+    return tiles
+
+
+def _trails(film: Film, kinematics: Kinematics) -> list[_Trail]:
+    full = np.array([*holding(film), False])
+    tool = tool_path(film, kinematics)
+    base = np.column_stack([film.rows[:, :2], np.full(len(film.rows), 0.01)])
+    lines = [(tool, ~full, EMPTY_COLOUR), (tool, full, FULL_COLOUR), (base, np.full(len(full), True), DRIVE_COLOUR)]
+    trails = [_trail(points, film.times, shown, colour) for points, shown, colour in lines]
+    return [trail for trail in trails if len(trail.passed)]
+
+
+def _trail(points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]) -> _Trail:
+    """Three-sided rods along the stretches of a polyline that are shown."""
+    kept = [0]
+    for i in range(1, len(points)):
+        if np.linalg.norm(points[i] - points[kept[-1]]) >= STEP or shown[i] != shown[kept[-1]]:
+            kept.append(i)
+    ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(-1, 2)
+    starts, stops = points[ends[:, 0]], points[ends[:, 1]]
+    along = stops - starts
+    steep = np.abs(along[:, 2]) > 0.9 * np.linalg.norm(along, axis=1)
+    side = unit(np.cross(along, np.where(steep[:, None], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])))
+    up = unit(np.cross(side, along))
+    turns = np.array([0.5, 2.6, 4.7])[:, None, None]
+    ring = THICK * (np.cos(turns) * side + np.sin(turns) * up)
+    vertices = np.concatenate([starts + ring, stops + ring]).transpose(1, 0, 2).reshape(-1, 3)
+    rod = [(i, j, 3 + j) for i, j in ((0, 1), (1, 2), (2, 0))] + [
+        (i, 3 + j, 3 + i) for i, j in ((0, 1), (1, 2), (2, 0))
+    ]
+    faces = (6 * np.arange(len(ends))[:, None, None] + np.array(rod)).reshape(-1, 3)
+    return _Trail(triangles(Mesh(vertices, faces, colour)), np.repeat(times[ends[:, 1]], len(rod)))
+
+
+def _three(vector: Array) -> tuple[float, float, float]:
+    return (float(vector[0]), float(vector[1]), float(vector[2]))

@@ -1,0 +1,31 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tamp.stored import Stored, open_plan
+from tamp.view.document import page_document
+from tamp.view.film import Film, film_of
+from tamp.view.samples import shots
+from tamp.view.story import story_of
+from tests.view.browser import program
+
+# Where no browser is installed, what needs one is left out; the other files test what goes into the page.
+collect_ignore = [] if program() else ["test_in_browser.py"]
+
+
+@pytest.fixture(scope="session")
+def stored(stored_plan: Path) -> Stored:
+    return open_plan(stored_plan)
+
+
+@pytest.fixture(scope="session")
+def film(stored: Stored) -> Film:
+    return film_of(stored.loaded.scene, stored.robot, stored.plan)
+
+
+@pytest.fixture(scope="session")
+def document(stored: Stored, film: Film) -> dict[str, Any]:
+    return page_document(film, story_of(stored.document), shots(stored.document, film.scene))

@@ -1,0 +1,87 @@
+"""Where the film has things is where the plan has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tamp import load_problem, solve
+from tamp.plan_file import write_plan
+from tamp.simulation.physics import World
+from tamp.stored import Stored, open_plan
+from tamp.view.film import Film, Stay, film_of, holding, tool_path
+from tamp.world.kinematics import Kinematics
+
+
+def test_actions_and_objects_are_the_plans(film: Film, stored: Stored) -> None:
+    assert [action.name for action in film.actions] == ["move", "pick", "move", "place"]
+    assert film.actions[1].objects == ("soup_can",)
+    assert film.actions[-1].end == pytest.approx(film.duration) == pytest.approx(stored.plan.duration)
+    assert [action.text for action in film.actions[:2]] == ["move", "pick soup_can from table"]
+    assert film.actions[3].text == "place soup_can on cupboard_top"
+    starts = [action.start for action in film.actions]
+    assert starts[0] == 0.0 and starts == sorted(starts)
+
+
+def test_the_robot_moves_without_jumps_and_stands_before_and_after(film: Film) -> None:
+    assert film.row(-1.0) == pytest.approx(film.rows[0])
+    assert film.row(film.duration + 1.0) == pytest.approx(film.rows[-1])
+    times = np.arange(0.0, film.duration, 0.02)
+    rows = np.array([film.row(time) for time in times])
+    assert np.abs(np.diff(rows, axis=0)).max() < 0.02 * 2.7  # rad/s, the fastest joint
+
+
+def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(film: Film, stored: Stored) -> None:
+    kinematics = Kinematics(film.robot)
+    kept, held, left = film.stays["soup_can"]
+    assert (kept.held, held.held, left.held) == (False, True, False)
+    for time in np.linspace(held.since, left.since - 1e-6, 7):
+        T_tool_world = np.linalg.inv(kinematics.tool(film.row(time)[:10]))
+        assert T_tool_world @ film.poses(time, kinematics)["soup_can"] == pytest.approx(held.T)
+    for time in (held.since, left.since):  # nothing jumps when it is grasped or let go
+        before, after = (film.poses(time + step, kinematics)["soup_can"] for step in (-1e-6, 1e-6))
+        assert before == pytest.approx(after, abs=1e-4)
+    goal = next(action.arguments[1] for action in stored.plan.actions if action.name == "place")
+    assert film.poses(film.duration, kinematics)["soup_can"] == pytest.approx(stored.plan.values[goal].data, abs=1e-4)
+
+
+def test_links_stand_where_another_engine_has_them(film: Film) -> None:
+    kinematics = Kinematics(film.robot)
+    with World(film.scene, film.robot) as world:
+        for time in np.linspace(0.0, film.duration, 9):
+            row = film.row(time)
+            world.set_robot(row[:3], row[3:10], float(row[10]))
+            ours = kinematics.link_poses(row[:10], float(row[10]))
+            for name, pose in world.link_poses().items():
+                assert ours[name] == pytest.approx(pose, abs=1e-5), name
+
+
+def test_the_hand_is_full_between_pick_and_place(film: Film) -> None:
+    full = holding(film)
+    assert len(full) == len(film.times) - 1
+    middle = [full[int(np.searchsorted(film.times, action.end - 0.3)) - 1] for action in film.actions]
+    assert middle == [False, True, True, False]
+    assert tool_path(film, Kinematics(film.robot)).shape == (len(film.times), 3)
+
+
+def test_a_scene_alone_stands_still(film: Film) -> None:
+    still = film_of(film.scene, film.robot)
+    assert still.duration == 0.0 and still.actions == ()
+    assert holding(still) == []
+    for name in film.scene.movable:
+        (stay,) = still.stays[name]
+        assert isinstance(stay, Stay)
+        assert film.scene.bodies[name].pose.matrix == pytest.approx(stay.T)
+
+
+def test_names_keep_the_scenes_case(tmp_path: Path) -> None:
+    text = Path(load_problem("one_object").files["problem"][0]).read_text(encoding="utf-8")
+    problem = tmp_path / "Mine.yaml"
+    problem.write_text(text.replace("soup_can", "Soup_Can"), encoding="utf-8")
+    plan = write_plan(solve(load_problem(problem), max_time=60.0), tmp_path / "plan.json")
+    opened = open_plan(plan)
+    film = film_of(opened.loaded.scene, opened.robot, opened.plan)
+    assert film.actions[1].objects == ("Soup_Can",)
+    assert len(film.stays["Soup_Can"]) == 3
