@@ -35,6 +35,7 @@ bench: $(VENV)/.developing  ## the quick benchmarks, a table each
 	$(BIN)/python -m benchmarks.inverse_kinematics --poses 500
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.search
+	$(BIN)/python -m benchmarks.classical --time 5
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null || { \

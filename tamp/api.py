@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from tamp.alarm import Alarm
-from tamp.algorithms.adaptive import solve_adaptive
-from tamp.algorithms.incremental import solve_incremental
-from tamp.algorithms.solution import Effort, Outcome, Progress, Result, StreamTask
+from tamp.algorithms.registry import ALGORITHMS
+from tamp.algorithms.solution import Effort, Outcome, Progress, Result
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.solution import Action, Solution
 from tamp.streams.mixture import accounts
 from tamp.trajectories import trajectories
-
-Algorithm = Callable[[StreamTask, Callable[[str], np.random.Generator], Deadline, Progress], Result]
-
-ALGORITHMS: Mapping[str, Algorithm] = {"adaptive": solve_adaptive, "incremental": solve_incremental}
 
 
 def solve(

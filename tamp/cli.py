@@ -10,7 +10,6 @@ import math
 import os
 import shlex
 import sys
-import tempfile
 import time
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -18,10 +17,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from tamp.data import check_writable
 from tamp.errors import InputError
 
 if TYPE_CHECKING:
-    from tamp.solution import Solution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
@@ -33,6 +32,8 @@ class Arguments:
     """Plan for a mobile manipulator: a goal in PDDL over a scene in YAML becomes a plan of base and arm motions.
 
     Example: tamp-solve domains/cupboard.pddl problems/four_objects.yaml --seed 1 --out plan.json
+
+    A problem in PDDL (tamp-solve domain.pddl problem.pddl) is planned as it stands, without scene and robot.
 
     Exit status: 0 solved, 1 no plan (with the reason), 2 bad input, 130 interrupted.
     """
@@ -61,6 +62,10 @@ class Arguments:
     """adaptive, or incremental (simple, for comparison)."""
     steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"
     """How the base moves: se2 (in any direction) or reeds-shepp (like a car)."""
+    search: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: greedy)")] = None
+    """Of a PDDL problem: greedy (lazy, preferred operators), eager, wastar, or astar (optimal)."""
+    heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: by search)")] = None
+    """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
     json: bool = False
@@ -111,8 +116,8 @@ def _parse(arguments: list[str]) -> Arguments:
             f"expected [DOMAIN] PROBLEM, found {len(parsed.files)} files",
             remedy="For example: tamp-solve domains/cupboard.pddl problems/four_objects.yaml",
         )
-    if len(parsed.files) == 2 and parsed.files[1].endswith(".pddl"):
-        raise InputError(f"expected [DOMAIN] PROBLEM, found the domain '{parsed.files[1]}' last")
+    if not parsed.files[-1].endswith(".pddl") and (parsed.search or parsed.heuristic):
+        raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
     if math.isnan(parsed.time) or parsed.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {parsed.time:g}")
     if abs(parsed.seed) >= 2**64:
@@ -136,11 +141,13 @@ def _sentence(box: str) -> str:
 
 def _solve(arguments: Arguments, started: float) -> int:
     samplers = _samplers(arguments.sampler)
-    _check_writable(arguments.out)
+    check_writable(arguments.out)
+    if arguments.files[-1].endswith(".pddl"):
+        return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
     from tamp.algorithms.solution import Outcome
     from tamp.api import ALGORITHMS, solve
-    from tamp.plan_file import summary_document, write_plan
+    from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
     from tamp.report import headline, summary
 
@@ -166,7 +173,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         progress=shown.update,
     )
     shown.clear()
-    verdict = _judge(solution) if solution.solved and arguments.verify else None
+    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None
     if arguments.json:
@@ -179,15 +186,40 @@ def _solve(arguments: Arguments, started: float) -> int:
         _say(json.dumps(document, indent=2))
     else:
         shown.line(summary(solution))
-        if verdict is not None:
-            shown.line(f"\n{verdict.text()}")
-        if written is not None:
-            shown.line(f"\n{written} written. Check it: tamp-verify {shlex.quote(str(written))}")
-        elif verdict is not None:
-            shown.line(f"\n{arguments.out} not written: the plan does not hold.")
+        _conclude(shown, arguments, written, verdict)
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
     return SOLVED if holds else NO_PLAN
+
+
+def _solve_symbolic(arguments: Arguments, started: float) -> int:
+    """A domain and a problem in PDDL."""
+    from tamp.symbolic.command import plan_files
+
+    shown = _Progress(quiet=arguments.quiet or arguments.json)
+    ended = plan_files(
+        arguments.files,
+        search=arguments.search,
+        heuristic=arguments.heuristic,
+        left=lambda: _left(arguments.time, started),
+        out=arguments.out,
+        judge=_judge if arguments.verify else None,
+        show=shown.line,
+    )
+    if arguments.json:
+        _say(ended.json())
+    _conclude(shown, arguments, ended.written, ended.verdict)
+    return INTERRUPTED if ended.interrupted else SOLVED if ended.written is not None else NO_PLAN
+
+
+def _conclude(shown: _Progress, arguments: Arguments, written: Path | None, verdict: Report | None) -> None:
+    """The last lines: what the judge says, and where the plan is."""
+    if verdict is not None:
+        shown.line(f"\n{verdict.text()}")
+    if written is not None:
+        shown.line(f"\n{written} written. Check it: tamp-verify {shlex.quote(str(written))}")
+    elif verdict is not None:
+        shown.line(f"\n{arguments.out} not written: the plan does not hold.")
 
 
 def registry() -> Registry:
@@ -205,14 +237,13 @@ def _left(seconds: float, started: float) -> float:
     return max(seconds - (time.monotonic() - started), 0.5 * seconds)
 
 
-def _judge(solution: Solution) -> Report:
+def _judge(text: str) -> Report:
     """What the independent judge says about the plan file that would be written."""
     import json
 
-    from tamp.plan_file import plan_text
     from tamp.verification.verify import verify
 
-    return verify(json.loads(plan_text(solution)))
+    return verify(json.loads(text))
 
 
 def _samplers(pairs: tuple[str, ...]) -> dict[str, str]:
@@ -223,23 +254,6 @@ def _samplers(pairs: tuple[str, ...]) -> dict[str, str]:
             raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
         chosen[relation] = name
     return chosen
-
-
-def _check_writable(path: Path) -> None:
-    """Refuse an output that cannot be written before time is spent on a plan."""
-    elsewhere = "Choose another place with --out"
-    try:
-        if path.is_dir():
-            raise InputError("the output is a folder", file=path, remedy=f"Name a file: --out {path / 'plan.json'}")
-        if path.exists() and not path.is_file():
-            raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
-        folder = path.parent
-        while not folder.exists():
-            folder = folder.parent
-        with tempfile.TemporaryFile(dir=folder):  # the only test that root, too, can trust
-            pass
-    except OSError as error:
-        raise InputError(f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere) from None
 
 
 def _say(text: str) -> None:

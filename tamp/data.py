@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import tempfile
 import uuid
 from pathlib import Path
 
@@ -61,6 +62,27 @@ def write_whole(path: Path, content: bytes) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def check_writable(path: Path) -> None:
+    """Refuse an output that cannot be written before time is spent on a plan.
+
+    Raises:
+        InputError: A folder, no regular file, or no place where one can write.
+    """
+    elsewhere = "Choose another place with --out"
+    try:
+        if path.is_dir():
+            raise InputError("the output is a folder", file=path, remedy=f"Name a file: --out {path / 'plan.json'}")
+        if path.exists() and not path.is_file():
+            raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
+        folder = path.parent
+        while not folder.exists():
+            folder = folder.parent
+        with tempfile.TemporaryFile(dir=folder):  # the only test that root, too, can trust
+            pass
+    except OSError as error:
+        raise InputError(f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere) from None
 
 
 def _find(name: str | Path, kind: str, suffix: str, names: list[str], folders: tuple[Path, ...]) -> Path:

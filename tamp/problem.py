@@ -8,11 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
 from tamp.errors import InputError
 from tamp.initial import initial_state
+from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import Stream, StreamFile, Task
 from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, mix, parse_choice
@@ -81,7 +83,8 @@ def load_problem(
             samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
             served to the streams sample-<relation> and test-<relation>.
         registry: Further samplers: relation to name to what makes the object.
-        functions: Further stream functions by name, f(context, *inputs, call=...).
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
+            f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
 
     Raises:
@@ -119,12 +122,18 @@ def load_problem(
     check_overlaps(loaded)
     _check_start(loaded, context)
     bound = _bind(declared, parsed, context, {**served.functions(), **(functions or {})})
+    _refuse_decided(declared)
+    costs = tuple(
+        BoundFunction(function, partial((functions or {})[function.name], context))
+        for function in declared.functions
+        if function.name in (functions or {})
+    )
     task = Task(loaded.scene.name, parsed, start.objects, frozenset(start.facts), goal, {})
     return Problem(
         name=loaded.scene.name,
         scene=loaded.scene,
         context=context,
-        stream_task=StreamTask(task, bound, start.values),
+        stream_task=StreamTask(task, bound, start.values, costs),
         goal=" ".join(loaded.goal.text.split()),
         files={
             "problem": (loaded.path.resolve(),),
@@ -133,7 +142,7 @@ def load_problem(
             "meshes": tuple(path.resolve() for path in loaded.meshes),
         },
         samplers={relation: choice.text for relation, choice in served.choices.items()},
-        warnings=(*loaded.warnings, *_unused(functions or {}, declared)),
+        warnings=(*loaded.warnings, *_unused(functions or {}, declared), *lint(parsed, declared, goal, start.facts)),
     )
 
 
@@ -243,11 +252,27 @@ def _bind(
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
         bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
-    return tuple(bound)
+    return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
+
+
+def _always(*inputs: Any, call: Any) -> bool:
+    return True
+
+
+def _refuse_decided(declared: StreamFile) -> None:
+    for predicate in declared.predicates:
+        place = predicate.place
+        raise InputError(
+            f"'{predicate.name}' is a :predicate, which scenes do not have",
+            file=declared.file,
+            line=place.line if place else None,
+            column=place.column if place else None,
+            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+        )
 
 
 def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
-    names = [stream.name for stream in declared.streams]
+    names = [one.name for one in (*declared.streams, *declared.functions)]
     return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
 
 
@@ -268,10 +293,8 @@ def _check_start(loaded: LoadedProblem, context: Context) -> None:
     scene = loaded.scene
     conf = context.conf(scene.robot.base, context.home)
     poses = {name: scene.bodies[name].pose for name in scene.movable}
-    hit = context.collisions.arrangement(poses).hits(conf)
-    if hit is not None:
+    if (hit := context.collisions.arrangement(poses).hits(conf)) is not None:
         link, other = hit
-        remedy = (
-            "Move its base, or what stands there" if {link, other} & set(scene.bodies) else "Give it another 'arm:'"
-        )
+        outside = {link, other} & set(scene.bodies)
+        remedy = "Move its base, or what stands there" if outside else "Give it another 'arm:'"
         raise loaded.error(f"the robot starts in collision: {link} hits {other}", "robot", remedy)

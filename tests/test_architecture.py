@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -16,7 +17,13 @@ ROOT = Path(__file__).resolve().parent.parent
 SYMBOLIC = ("tamp/pddl", "tamp/search", "tamp/algorithms")
 LONGEST = 300
 HEAVY = {"torch", "pybullet", "trimesh", "toppra", "scipy", "ompl", "fcl", "pinocchio", "eaik", "coacd", "matplotlib"}
-DISTRIBUTIONS = {"fcl": "python-fcl", "pinocchio": "pin", "pybullet_data": "pybullet", "yaml": "pyyaml"}
+DISTRIBUTIONS = {
+    "fcl": "python-fcl",
+    "pinocchio": "pin",
+    "pybullet_data": "pybullet",
+    "sklearn": "scikit-learn",
+    "yaml": "pyyaml",
+}
 """Where a package's import name is not its name on PyPI."""
 
 
@@ -80,9 +87,19 @@ def test_no_global_state_no_asserts_no_probing() -> None:
 def test_dependencies_are_what_the_code_imports() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = {line.partition(">=")[0].lower() for line in project["dependencies"]}
+    learning = {re.split("[>=]=", line)[0] for line in project["optional-dependencies"]["learn"]}
     own = {"tamp", "grounding", *sys.stdlib_module_names}
-    needed = {name for file in sources("tamp", "grounding") for name in imported(file)} - own
-    assert {DISTRIBUTIONS.get(name, name) for name in needed} == declared
+    needed = {
+        folder: {DISTRIBUTIONS.get(name, name) for file in sources(folder) for name in imported(file)} - own
+        for folder in ("tamp", "grounding")
+    }
+    assert not needed["tamp"] & learning
+    assert (needed["tamp"] | needed["grounding"]) - learning == declared
+
+
+def test_torch_stays_where_training_is() -> None:
+    files = {str(file.relative_to(ROOT)) for file in sources("grounding") if {"torch", "sklearn"} & {*imported(file)}}
+    assert files == {"grounding/relational/training.py"}
 
 
 @pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli"])

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from importlib.metadata import Distribution, distribution
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -93,14 +93,9 @@ def test_constraints_pin_exactly_what_is_installed() -> None:
         canonicalize_name(name): version
         for name, _, version in (line.partition("==") for line in lines if "==" in line)
     }
-    installed = {name: package.version for name, package in closure("tamp", frozenset({"dev"})).items()}
-    assert {name: version for name, version in installed.items() if pins.get(canonicalize_name(name)) != version} == {}
-    extra = set(pins) - set(installed)
-    try:
-        learning = set(closure("torch", frozenset()))
-    except PackageNotFoundError:  # the usual case: only training installs it
-        learning = {"filelock", "fsspec", "jinja2", "markupsafe", "mpmath", "sympy"}
-    assert extra <= learning | {"torch"}
+    packages = closure("tamp", frozenset({"dev"}))
+    installed = {name: package.version.partition("+")[0] for name, package in packages.items()}  # torch 2.13.0+cpu
+    assert installed == pins
 
 
 if __name__ == "__main__":

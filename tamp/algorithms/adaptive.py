@@ -93,7 +93,8 @@ class _Adaptive(Run):
             return self.solved(skeleton, values)
         skeleton.rounds += 1
         self.effort.draws = self.binder.units
-        if self.bury(skeleton):
+        absorbed = self.absorb()
+        if self.bury(skeleton) or absorbed:
             self.optimism, self.grounded = self.imagined()
         return None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Term
@@ -71,6 +71,8 @@ class Binder:
                     if self.units == spent_before:  # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
+                    if not conflict:
+                        self._settle(nodes, index)
                     return None
                 target = max(conflict)
                 for dropped in range(target + 1, len(levels)):
@@ -81,6 +83,26 @@ class Binder:
                 if self._deadline.passed:
                     raise OutOfTime
         return values
+
+    def _settle(self, nodes: Sequence[Node], failed: int) -> None:
+        """Ask the later tests of real values too, once one failed for good: the next search learns from all.
+
+        Not those that rest on what a test of this skeleton has yet to certify.
+        """
+        tests = [node for node in nodes if node.stream.is_test]
+        pending = {atom.predicate for node in tests for atom in node.stream.declaration.certified}
+        for node in nodes[failed + 1 :]:
+            declaration = node.stream.declaration
+            words = [term for term in node.inputs if isinstance(term, str)]
+            asks = node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            if not asks or any(atom.predicate in pending for atom in declaration.domain):
+                continue
+            instance = self._streams.instance(node.stream.name, tuple(words))
+            if not instance.exhausted:
+                if self._deadline.passed:
+                    raise OutOfTime
+                self.units += 1
+                self._note(node, instance, self._streams.draw(instance) is not None)
 
     def _enter(
         self, skeleton: Skeleton, index: int, makers: dict[int, int], values: dict[int, str], tries: int

@@ -44,10 +44,16 @@ class Incremental(Run):
     """Keeps the real facts found so far; `imagined` looks at those instead of placeholders."""
 
     def __init__(
-        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+        self,
+        problem: StreamTask,
+        make_rng: Callable[[str], Any],
+        deadline: Deadline,
+        progress: Progress,
+        *,
+        pruned: bool = True,
     ) -> None:
         self.found: dict[Fact, Instance | None] = {}
-        super().__init__(problem, make_rng, deadline, progress)
+        super().__init__(problem, make_rng, deadline, progress, pruned=pruned)
         self.streams.ahead = True
 
     def solve(self, most: int | None = None) -> Result:
@@ -113,6 +119,8 @@ class Incremental(Run):
                 if outputs is not None:
                     for fact in self.streams.certified(instance, outputs):
                         self.found.setdefault(fact, instance)
+                for fact in self.streams.wild:
+                    self.found.setdefault(fact, None)
             if instance.exhausted and not instance.results and instance.last is not None:
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh
@@ -124,7 +132,7 @@ class Incremental(Run):
         optimism = imagine(fluent, [*self.known, *self.found], levels=1)
         optimism.assumed = self.assumed
         grounded = instantiate(
-            self.problem.task,
+            self.task,
             [*self.found, *optimism.makers],
             {**self.objects.types, **optimism.types},
             assumed=frozenset(self.assumed),

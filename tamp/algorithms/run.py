@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
+from tamp.algorithms.costs import Costs
 from tamp.algorithms.explanation import explain_failures
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
@@ -26,15 +28,27 @@ from tamp.search.operators import Grounded
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
 
+UNTRIED = 0.2
+"""The price of resting on a test of values that are not drawn yet, in units of an action's cost."""
+
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
 
 
 class Run:
-    """One run of planning: what it knows, and the steps that algorithms are made of."""
+    """One run of planning: what it knows, and the steps that algorithms are made of.
+
+    `pruned` leaves out the streams whose facts nothing asks for.
+    """
 
     def __init__(
-        self, problem: StreamTask, make_rng: Callable[[str], Any], deadline: Deadline, progress: Progress
+        self,
+        problem: StreamTask,
+        make_rng: Callable[[str], Any],
+        deadline: Deadline,
+        progress: Progress,
+        *,
+        pruned: bool = True,
     ) -> None:
         task = problem.task
         self.problem = problem
@@ -44,7 +58,10 @@ class Run:
         self.objects = Objects(
             {**task.domain.constants, **task.objects},
             {**{name: name for name in task.domain.constants}, **problem.values},
+            by_value=problem.by_value,
         )
+        self.costs = Costs(problem.functions, self.objects, task.costs)
+        self.task = replace(task, costs=self.costs)
         self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
@@ -55,7 +72,7 @@ class Run:
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
-        self.useful = [stream for stream in useful if stream.name not in tests]
+        self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
         self.refused: set[Fact] = set()
         self.names: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
@@ -71,7 +88,7 @@ class Run:
         )
         optimism.assumed = self.assumed
         grounded = instantiate(
-            self.problem.task,
+            self.task,
             [*self.real, *optimism.makers],
             {**self.objects.types, **optimism.types},
             assumed=frozenset(self.assumed),
@@ -84,7 +101,10 @@ class Run:
         """A plan of the optimistic task, priced by experience."""
         started = time.perf_counter()
         grounded, prices = with_nogoods(self.grounded, self.experience)
-        prices |= self.experience.prices()
+        prices |= self.doubts() | self.experience.prices()
+        unit = self._usual_cost()
+        if unit > 1.0:
+            prices = {fact: unit * price for fact, price in prices.items()}
         found = search(grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline)
         self.effort.expanded += found.expanded
         if found.reason is Reason.LIMIT:  # with many prices many plans look alike: then any plan will do
@@ -93,6 +113,20 @@ class Run:
         self.effort.searches += 1
         self.effort.search_seconds += time.perf_counter() - started
         return found
+
+    def doubts(self) -> dict[Fact, float]:
+        """A price for each test of placeholders not tried yet: a generator that certifies the same goes first."""
+        known, makers = self.experience.facts, self.optimism.makers
+        return {
+            fact: UNTRIED
+            for fact, guess in makers.items()
+            if guess.stream.is_test and guess.level > 1 and fact[0] not in self.assumed and fact not in known
+        }
+
+    def _usual_cost(self) -> float:
+        """The mean cost of the operators: prices are in units of it where actions cost more than one."""
+        operators = self.grounded.operators
+        return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
         """The plan's skeleton; the same one when the plan was found before."""
@@ -133,12 +167,17 @@ class Run:
                 self.dead.setdefault(key, instance.last or Rejection("does not hold"))
                 self.refused.update(self.streams.certified(instance, ()))
 
+    def absorb(self) -> bool:
+        """Take over the facts that streams found besides; whether there were new ones."""
+        before = len(self.real)
+        self.real.update(self.streams.wild)
+        return len(self.real) > before
+
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""
-        actions = tuple(
-            GroundAction(name, substitute((name, terms), values)[1:], step.cost)
-            for (name, terms), step in zip(skeleton.actions, skeleton.steps, strict=True)
-        )
+        lifted = {action.name: action for action in self.task.domain.actions}
+        bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
+        actions = tuple(GroundAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
         initial = self.problem.task.initial
         certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
         result = self.result(Outcome.SOLVED, ())

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.algorithms.stream import BoundStream, Objects
 from tamp.pddl.structs import Fact, Task
@@ -29,11 +30,15 @@ class StreamTask:
         task: Objects, initial facts (static ones too) and goal.
         streams: Bound to their functions.
         values: The objects' values, where they are more than their names.
+        functions: Costs that Python computes.
+        by_value: Whether equal values are one object.
     """
 
     task: Task
     streams: tuple[BoundStream, ...]
     values: Mapping[str, object]
+    functions: tuple[BoundFunction, ...] = ()
+    by_value: bool = False
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any
 
 from tamp.algorithms.statistics import StreamStatistics
@@ -12,6 +13,7 @@ from tamp.call import Call
 from tamp.clock import Deadline, OutOfTime
 from tamp.pddl.structs import Atom, Fact, Stream
 from tamp.rejection import Rejection
+from tamp.wild import Wild
 
 StreamFunction = Callable[..., Any]
 """f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a Rejection a try, and
@@ -23,11 +25,12 @@ ADVISORY = "sample-"
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function, and the types of its outputs."""
+    """A declared stream, its function, and the types of its outputs; whether its name may make it an adviser."""
 
     declaration: Stream
     function: StreamFunction
     output_types: tuple[tuple[str, ...], ...]
+    may_advise: bool = True
 
     @property
     def name(self) -> str:
@@ -47,7 +50,7 @@ class BoundStream:
     @property
     def is_advisory(self) -> bool:
         """Whether it may look at the state, yet certifies nothing about it."""
-        return bool(self.declaration.fluents) and self.name.startswith(ADVISORY)
+        return self.may_advise and bool(self.declaration.fluents) and self.name.startswith(ADVISORY)
 
 
 @dataclass
@@ -57,14 +60,23 @@ class Objects:
     Attributes:
         types: Name to types.
         values: Name to value; a body's value is its name.
+        by_value: Whether equal values have one name; values without a hash are told apart by identity.
     """
 
     types: dict[str, tuple[str, ...]]
     values: dict[str, Any]
+    by_value: bool = False
+    _names: dict[Any, str] = field(default_factory=dict[Any, str])
     _counts: dict[str, int] = field(default_factory=dict[str, int])
+
+    def __post_init__(self) -> None:
+        if self.by_value:
+            self._names = {value_key(value): name for name, value in self.values.items()}
 
     def add(self, value: Any, types: tuple[str, ...], prefix: str) -> str:
         """Name a new value: p1, p2, ... in the order in which they come."""
+        if self.by_value and value_key(value) in self._names:
+            return self._names[value_key(value)]
         while True:
             count = self._counts.get(prefix, 0) + 1
             self._counts[prefix] = count
@@ -73,7 +85,23 @@ class Objects:
                 break
         self.types[name] = types
         self.values[name] = value
+        if self.by_value:
+            self._names[value_key(value)] = name
         return name
+
+
+def value_key(value: Any) -> Any:
+    """What equal values have in common: numbers are equal as numbers (1 and 1.0), other values need the same type.
+
+    Whatever has no hash is told apart by identity.
+    """
+    try:
+        hash(value)
+    except TypeError:
+        return (id(value),)
+    if isinstance(value, bool):
+        return (bool, value)
+    return (Real if isinstance(value, Real) else type(value), value)
 
 
 @dataclass
@@ -118,6 +146,7 @@ class Streams:
         self.objects = objects
         self.statistics = {name: StreamStatistics() for name in streams}
         self.warnings: list[str] = []
+        self.wild: dict[Fact, None] = {}
         self.memory: dict[str, Any] = {}
         self.running: Instance | None = None
         self.ahead = False
@@ -160,7 +189,13 @@ class Streams:
         try:
             value = self._advance(instance)
             self.running = None
+            more: Sequence[tuple[Any, ...]] = ()
+            if isinstance(value, Wild):
+                value, more = value.value, value.facts
             names = () if isinstance(value, Rejection) else self._name_outputs(instance, value)
+            for predicate, *values in more:
+                words = [self.objects.add(part, ("object",), "x") for part in values]
+                self.wild[str(predicate).lower(), *words] = None
         except OutOfTime:
             raise
         except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
@@ -196,7 +231,7 @@ class Streams:
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
                 instance.exhausted = True
-                if isinstance(made, Rejection):
+                if isinstance(made, Rejection | Wild):
                     return made
                 return () if made else Rejection("does not hold")
             instance.iterator = iter(made)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
 
+from tamp.errors import closest
 from tamp.pddl.formulas import RESERVED
-from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error
+from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, warning
 from tamp.pddl.structs import Predicate
 from tamp.pddl.typed import known_types, parameters, refuse_duplicates, typed_list
 
@@ -26,28 +28,40 @@ def check_requirements(nodes: Sequence[Node]) -> None:
             raise error(symbol, f"unknown requirement '{symbol.written}'", found=symbol.text, choices=REQUIREMENTS)
 
 
-def parse_types(nodes: Sequence[Node]) -> tuple[dict[str, str], dict[str, tuple[str, ...]]]:
-    """Read `:types`: each type's parent, and the further parents of those below `(either ...)`."""
+@dataclass(frozen=True)
+class Types:
+    """The declared types: each one's parent, its further parents, and oddities that are no errors."""
+
+    parents: dict[str, str]
+    more_parents: dict[str, tuple[str, ...]]
+    notes: tuple[str, ...]
+
+
+def parse_types(nodes: Sequence[Node]) -> Types:
+    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in competitions."""
     entries = typed_list(nodes, "a type")
-    for entry in entries:
-        as_name(entry.name, "a type")
-    refuse_duplicates((entry.name for entry in entries), "type")
-    types = {"object": "object", **dict.fromkeys((entry.name.text for entry in entries), "object")}
-    more: dict[str, tuple[str, ...]] = {}
     parents: dict[str, tuple[str, ...]] = {}
     for entry in entries:
-        name = entry.name.text
-        parents[name] = known_types(entry.types, types) or ("object",)
-        if name == "object" and parents[name] != ("object",):
+        name = as_name(entry.name, "a type").text
+        above = tuple(symbol.text for symbol in entry.types)
+        parents[name] = tuple(dict.fromkeys((*parents.get(name, ()), *above)))
+        if name == "object" and parents[name] not in ((), ("object",)):
             raise error(entry.name, "'object' is the root of all types, it cannot stand below another one")
-        types[name] = parents[name][0]
-        if len(parents[name]) > 1:
-            more[name] = parents[name][1:]
+    parents.setdefault("object", ())
+    notes: list[str] = []
+    for symbol in (symbol for entry in entries for symbol in entry.types):
+        if symbol.text not in parents:
+            near = closest(symbol.text, sorted(parents.keys() - {"object"}))
+            meant = f". Did you mean '{near}'?" if near else ""
+            notes.append(warning(symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"))
+            parents[as_name(symbol, "a type").text] = ()
     for entry in entries:
         cycle = _cycle(entry.name.text, parents)
         if cycle and entry.name.text != "object":
             raise error(entry.name, f"types form a cycle: {' - '.join(cycle)}")
-    return types, more
+    full = {name: tuple(t for t in above if t != "object") or ("object",) for name, above in parents.items()}
+    first = {"object": "object", **{name: above[0] for name, above in full.items()}}
+    return Types(first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes))
 
 
 def parse_objects(

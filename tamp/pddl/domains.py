@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Mapping, Set
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,20 +22,30 @@ SECTIONS = (
 ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
 
-def parse_domain(text: str, file: str | Path | None = None) -> Domain:
+def parse_domain(
+    text: str, file: str | Path | None = None, undeclared: Mapping[str, Predicate] | None = None
+) -> Domain:
     """Read a PDDL domain.
 
     Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
+
+    Args:
+        text: The domain.
+        file: For messages: where the text comes from.
+        undeclared: Predicates that may be used although the domain does not declare them.
 
     Raises:
         InputError: With file, line and column of what is wrong.
     """
     name, sections = read_sections(text, "domain", SECTIONS, file)
     check_requirements(items_of(sections, ":requirements"))
-    types, more_parents = parse_types(items_of(sections, ":types"))
+    declared = parse_types(items_of(sections, ":types"))
+    types = declared.parents
     constants = parse_objects(items_of(sections, ":constants"), types, "a constant")
     predicates = parse_predicates(items_of(sections, ":predicates"), types)
     functions = parse_functions(items_of(sections, ":functions"), types)
+    known = (types, predicates, functions)
+    predicates |= {n: p for n, p in (undeclared or {}).items() if not any(n in names for names in known)}
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
@@ -43,7 +53,9 @@ def parse_domain(text: str, file: str | Path | None = None) -> Domain:
     counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
-    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, more_parents)
+    names = Domain(
+        name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents, declared.notes
+    )
 
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
     derived_names = {rule_head(section, names) for section in rules}

@@ -45,6 +45,11 @@ def error(
     )
 
 
+def warning(where: Node | Place, message: str) -> str:
+    """A message at a node's place, for what is odd but no error."""
+    return str(error(where, message))
+
+
 def show(node: Node) -> str:
     """The node in a few characters, for messages."""
     if isinstance(node, Symbol):

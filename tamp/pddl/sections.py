@@ -9,6 +9,9 @@ from pathlib import Path
 from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, show
 from tamp.pddl.sexpr import read_one
 
+UNSUPPORTED = (":durative-action", ":event", ":process", ":constraints", ":preference")
+"""Sections of PDDL's larger levels: time, processes, preferences."""
+
 
 @dataclass(frozen=True, slots=True)
 class Section:
@@ -73,6 +76,8 @@ def _section(node: Node, kind: str, known: Sequence[str]) -> Section:
     if not group.items:
         raise error(group, f"expected a section of the {kind}, found '()'", choices=known)
     keyword = as_symbol(group.items[0], f"a section's keyword, one of {', '.join(known)}")
+    if keyword.text in UNSUPPORTED:
+        raise error(keyword, f"'{keyword.written}' is not supported")
     if keyword.text not in known:
         message = f"unknown section '{keyword.written}' of the {kind}"
         raise error(keyword, message, found=keyword.text, choices=known)

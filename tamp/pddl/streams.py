@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from tamp.pddl.formulas import Scope, parse_conjunction, parse_function_term, scope_of
+from tamp.pddl.formulas import Scope, parse_atom, parse_conjunction, parse_function_term, scope_of
 from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, as_variable, error
+from tamp.pddl.optimizers import check_optimizer
 from tamp.pddl.sections import Section, keyword_values, read_sections
 from tamp.pddl.structs import Atom, Domain, Function, Parameter, Stream, StreamFile
 from tamp.pddl.typed import refuse_duplicates
 
-SECTIONS = (":stream", ":function", ":predicate", ":rule")
+SECTIONS = (":stream", ":function", ":predicate", ":rule", ":optimizer")
 STREAM_KEYWORDS = (":inputs", ":domain", ":fluents", ":outputs", ":certified")
 
 
@@ -22,21 +23,25 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None) -> 
         InputError: With file, line and column of what is wrong.
     """
     name, sections = read_sections(text, "stream", SECTIONS, file)
-    for section in sections:
-        if section.keyword.text in (":predicate", ":rule"):
-            remedy = "A stream without outputs tests a relation"
-            raise error(section.keyword, f"'{section.keyword.text}' is not supported yet", remedy=remedy)
-    streams = [section for section in sections if section.keyword.text == ":stream"]
-    functions = [section for section in sections if section.keyword.text == ":function"]
+    by_keyword = {keyword: [s for s in sections if s.keyword.text == keyword] for keyword in SECTIONS}
+    streams = [_stream(section, domain) for section in by_keyword[":stream"]]
+    rules = [_rule(number, section, domain) for number, section in enumerate(by_keyword[":rule"], start=1)]
+    notes = [note for s in by_keyword[":optimizer"] for note in check_optimizer(s, [*streams, *rules], domain)]
     result = StreamFile(
         name.text,
-        tuple(_stream(section, domain) for section in streams),
-        tuple(_function(section, domain) for section in functions),
+        tuple(streams),
+        tuple(_function(section, domain, parse_function_term) for section in by_keyword[":function"]),
         None if file is None else str(file),
+        tuple(_function(section, domain, parse_atom) for section in by_keyword[":predicate"]),
+        tuple(rules),
+        tuple(notes),
     )
-    refuse_duplicates((as_symbol(section.items[0], "a name") for section in streams), "stream")
-    heads = (as_group(section.items[0], "a function").items[0] for section in functions)
-    refuse_duplicates((as_symbol(head, "a function") for head in heads), "function")
+    refuse_duplicates((as_symbol(section.items[0], "a name") for section in by_keyword[":stream"]), "stream")
+    for keyword in (":function", ":predicate"):
+        heads = (as_group(section.items[0], f"a {keyword[1:]}").items[0] for section in by_keyword[keyword])
+        refuse_duplicates((as_symbol(head, "a name") for head in heads), keyword[1:])
+    for predicate in result.predicates:
+        _check_static(predicate, domain)
     return result
 
 
@@ -79,7 +84,6 @@ def _stream(section: Section, domain: Domain) -> Stream:
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
-    _check_covered(outputs, certified, f"output of {owner} is never certified")
     fluents = tuple(_fluent(node, domain) for node in _list(values.get(":fluents"), ":fluents"))
     return Stream(
         name.text,
@@ -92,15 +96,39 @@ def _stream(section: Section, domain: Domain) -> Stream:
     )
 
 
-def _function(section: Section, domain: Domain) -> Function:
-    """`(:function (f ?a ?b) CONDITION)` as in PDDLStream, or with the keywords :inputs and :domain."""
+def _rule(number: int, section: Section, domain: Domain) -> Stream:
+    """`(:rule :inputs (?a) :domain (f ?a) :certified (g ?a))`: what holds whenever the domain does."""
+    owner = f"rule {number}"
+    values = keyword_values(section.items, owner, (":inputs", ":domain", ":certified"))
+    inputs = _variables(values.get(":inputs"), ":inputs")
+    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}")
+    certified = _atoms(values.get(":certified"), _scope(domain, inputs), domain, f":certified of {owner}")
+    if not certified:
+        raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
+    _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
+    names = tuple(symbol.text for symbol in inputs)
+    return Stream(owner.replace(" ", ""), names, condition, (), certified, (), section.group.place)
+
+
+def _check_static(predicate: Function, domain: Domain) -> None:
+    """A predicate that Python decides never changes."""
+    for names, what in ((domain.fluent_predicates, "changed by actions"), (domain.derived_predicates, "derived")):
+        if predicate.name in names and predicate.place:
+            raise error(predicate.place, f"'{predicate.name}' is {what}, so Python cannot decide it")
+
+
+def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], Atom]) -> Function:
+    """`(:function (f ?a ?b) CONDITION)` as in PDDLStream, or with the keywords :inputs and :domain.
+
+    A `:predicate` looks the same; `parse` reads the head.
+    """
     if not section.items:
-        raise error(section.group, "expected a function such as (distance ?a ?b)")
-    head = as_group(section.items[0], "a function such as (distance ?a ?b)")
+        raise error(section.group, "expected a head such as (distance ?a ?b)")
+    head = as_group(section.items[0], "a head such as (distance ?a ?b)")
     arguments = [as_variable(item) for item in head.items[1:]]
     refuse_duplicates(arguments, "argument")
     scope = _scope(domain, arguments)
-    term = parse_function_term(head, scope)
+    term = parse(head, scope)
     rest = section.items[1:]
     if len(rest) == 1 and isinstance(rest[0], Group):
         node: Node | None = rest[0]

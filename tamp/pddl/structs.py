@@ -121,7 +121,8 @@ class Predicate:
 class Domain:
     """A parsed domain. `types` maps each type to its parent; "object" is the root and its own parent.
 
-    A type declared below `(either a b)` has further parents, in `more_parents`; so ask `is_a`.
+    A type declared below `(either a b)` or twice has further parents, in `more_parents`; so ask `is_a`. `notes` are
+    oddities that are no errors, each with its place.
     """
 
     name: str
@@ -133,6 +134,7 @@ class Domain:
     derived: tuple[Derived, ...]
     file: str | None = None
     more_parents: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    notes: tuple[str, ...] = ()
 
     def is_a(self, type_: str, ancestor: str) -> bool:
         """Whether `type_` is `ancestor` or below it."""
@@ -189,17 +191,31 @@ class Function:
 
 @dataclass(frozen=True)
 class StreamFile:
-    """A parsed streams file."""
+    """A parsed streams file.
+
+    Attributes:
+        streams: Those that need a function.
+        functions: Costs that Python computes.
+        predicates: Static predicates that Python decides.
+        rules: What follows from certified facts, as streams without outputs that always succeed.
+        notes: Oddities that are no errors, each with its place.
+    """
 
     name: str
     streams: tuple[Stream, ...]
     functions: tuple[Function, ...] = ()
     file: str | None = None
+    predicates: tuple[Function, ...] = ()
+    rules: tuple[Stream, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Task:
-    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts."""
+    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts.
+
+    `notes` are oddities of its file that are no errors, each with its place.
+    """
 
     name: str
     domain: Domain
@@ -207,3 +223,4 @@ class Task:
     initial: frozenset[Fact]
     goal: Formula
     costs: Mapping[Fact, float]
+    notes: tuple[str, ...] = ()

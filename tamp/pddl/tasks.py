@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from tamp.pddl.declarations import check_requirements, parse_objects
 from tamp.pddl.effects import TOTAL_COST, parse_number
 from tamp.pddl.formulas import Scope, parse_atom, parse_formula, parse_function_term, scope_of
-from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, show
+from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, show, warning
 from tamp.pddl.sections import Section, items_of, read_sections, single
 from tamp.pddl.sexpr import read, read_one
 from tamp.pddl.structs import Domain, Fact, Formula, Task
 
-SECTIONS = (":domain", ":requirements", ":objects", ":init", ":goal", ":metric")
+SECTIONS = (":domain", ":requirements", ":objects", ":init", ":goal", ":metric", ":length")
 
 
 def parse_goal(
@@ -61,12 +62,14 @@ def parse_facts(
 def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Task:
     """Read a plain PDDL problem file.
 
+    Costs count where it has a `:metric`; without one every action counts one, whatever the domain says.
+
     Raises:
         InputError: With file, line and column of what is wrong.
     """
     name, sections = read_sections(text, "problem", SECTIONS, file)
     check_requirements(items_of(sections, ":requirements"))
-    _check_domain(single(sections, ":domain"), domain)
+    notes = _check_domain(single(sections, ":domain"), domain)
     objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", domain.constants)
     scope = scope_of(domain, objects)
     facts: set[Fact] = set()
@@ -82,8 +85,14 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     goal = single(sections, ":goal")
     if goal is None or len(goal.items) != 1:
         raise error(goal.group if goal else name, "a problem has one (:goal CONDITION)")
-    _check_metric(single(sections, ":metric"))
-    return Task(name.text, domain, scope.objects, frozenset(facts), parse_formula(goal.items[0], scope), costs)
+    metric = single(sections, ":metric")
+    _check_metric(metric)
+    if metric is None and any(action.cost != 1.0 for action in domain.actions):
+        domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
+        what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
+        notes = (*notes, warning(name, what))
+    formula = parse_formula(goal.items[0], scope)
+    return Task(name.text, domain, scope.objects, frozenset(facts), formula, costs, notes)
 
 
 def _fact(node: Node, scope: Scope) -> Fact:
@@ -117,14 +126,16 @@ def _negative(node: Group, scope: Scope) -> None:
     _fact(node.items[1], scope)
 
 
-def _check_domain(section: Section | None, domain: Domain) -> None:
+def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
+    """A note when the problem names another domain: collections of problems do, where a domain has variants."""
     if section is None:
-        return
+        return ()
     if len(section.items) != 1:
         raise error(section.group, "a problem has one (:domain NAME)")
     name = as_name(section.items[0], "the domain's name")
     if name.text != domain.name:
-        raise error(name, f"the problem is for domain '{name.written}'", found=name.text, choices=(domain.name,))
+        return (warning(name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"),)
+    return ()
 
 
 def _check_metric(section: Section | None) -> None:

@@ -62,6 +62,7 @@ class Relaxation:
     Attributes:
         owner: The operator that each relaxed operator belongs to, -1 for axioms.
         before: The preconditions of each relaxed operator.
+        of_operator: The relaxed operators of each operator.
     """
 
     def __init__(self, successors: Successors, *, steps: bool) -> None:
@@ -73,7 +74,7 @@ class Relaxation:
         self._costs: list[float] = []
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
-        self._of_operator: dict[int, list[int]] = {}
+        self.of_operator: dict[int, list[int]] = {}
         derived = s.mask(axiom.head for axiom in s.grounded.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
@@ -93,8 +94,9 @@ class Relaxation:
                 effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
                 if effects:
                     self._add(i, s.before[i] | positive, s.absent[i] | negative, s.cost[i] + step, effects)
-        for axiom in s.grounded.axioms:
-            self._add(-1, s.mask(axiom.positive), s.mask(axiom.negative), 0.0, [s.number[axiom.head]])
+        for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+            cost = price if steps else 0.0
+            self._add(-1, s.mask(axiom.positive), s.mask(axiom.negative), cost, [s.number[axiom.head]])
         self._counts = list(map(len, self.before))
         self._needed: list[list[int]] = [[] for _ in range(2 * size)]
         for i, facts in enumerate(self.before):
@@ -113,7 +115,7 @@ class Relaxation:
         self._costs.append(cost)
         self._effects.append(effects)
         if owner >= 0:
-            self._of_operator.setdefault(owner, []).append(number)
+            self.of_operator.setdefault(owner, []).append(number)
         for fact in bits(absent & self._negated):
             self._negative.setdefault(fact, []).append(number)
 
@@ -126,9 +128,22 @@ class Relaxation:
                     costs[effect - self._size] = min(costs[effect - self._size], self._costs[i])
         return costs
 
+    @property
+    def goals(self) -> list[int]:
+        """The relaxed facts that the goal asks for."""
+        return self._goals + [self._size + fact for fact in self._negative_goals]
+
+    def holding(self, closed: State) -> list[int]:
+        """The relaxed facts that hold in a state with its derived facts: facts, and complements that the goal names."""
+        return [*bits(closed), *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1)]
+
+    def key(self, state: State) -> State:
+        """What states with the same situation have in common."""
+        return state & self._negated
+
     def situation(self, state: State) -> Situation:
         """The relaxed task as seen from a state."""
-        key = state & self._negated
+        key = self.key(state)
         known = self._situations.get(key)
         if known is None:
             if len(self._situations) > 10_000:
@@ -146,7 +161,7 @@ class Relaxation:
         for facts in s.triggered(state):
             removal = min(self._removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
-                for i in self._of_operator.get(operator, ()):
+                for i in self.of_operator.get(operator, ()):
                     if price <= removal and price < math.inf:
                         costs[i] += price
                     else:

@@ -47,6 +47,7 @@ class Successors:
         facts: By number, sorted.
         operators: Indices into `grounded.operators` are kept: entry i is about operator i.
         cost: The operators' costs with the prices of their static facts.
+        axiom_cost: The prices of the axioms' static facts.
         initial: The initial state, without derived facts.
     """
 
@@ -78,6 +79,7 @@ class Successors:
         self.goal_absent = mask(grounded.goal.negative)
         self.derived_mask = mask(axiom.head for axiom in grounded.axioms)
         self._strata = self._sort_axioms()
+        self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in grounded.axioms]
         self._watched, self._always = self._watch()
         self._watch_mask = sum(1 << i for i in self._watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}

@@ -80,7 +80,7 @@ class Resting:
     def faces(self) -> tuple[Face, ...]:
         """All ways to rest that withstand a tilt of STABLE, the present one first, then the steadiest."""
         down = -self.body.pose.rotation[2]
-        faces = _stable_faces(self.body)
+        faces = stable_faces(self.body)
         faces.sort(key=lambda face: (-round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)), -face.angle))
         return tuple(faces)
 
@@ -166,7 +166,8 @@ def _yaw_between(reference: Array, rotation: Array) -> float:
     return math.atan2(relative[1, 0] - relative[0, 1], relative[0, 0] + relative[1, 1])
 
 
-def _stable_faces(body: Body) -> list[Face]:
+def stable_faces(body: Body) -> list[Face]:
+    """All ways in which a body rests on a plane and withstands a tilt of STABLE, the largest facets first."""
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []

@@ -14,6 +14,7 @@ KINDS = {
     "certified": "a fact that the plan rests on does not hold",
     "precondition": "an action is not applicable",
     "state": "the facts and the geometry disagree",
+    "cost": "an action or the plan costs something else than it says",
     "goal": "the goal does not hold at the end",
     "time": "times that do not follow each other",
     "continuity": "the robot or a body jumps",
@@ -91,7 +92,8 @@ class Report:
         """For people: a line a violation and a summary."""
         lines = [f"  {violation}" for violation in self.violations]
         lines += [f"  note: {note}" for note in self.notes]
-        facts = [f"{self.actions} actions", f"{self.duration:.1f} s", f"{self.states:,} states checked"]
+        moving = [f"{self.duration:.1f} s"] if self.duration else []
+        facts = [f"{self.actions} actions", *moving, f"{self.states:,} states checked"]
         if self.nearest:
             pair = f"{self.nearest.first} - {self.nearest.second}"
             facts.append(f"least clearance {1000 * self.nearest.distance:.1f} mm ({pair})")

@@ -20,6 +20,7 @@ from tamp.verification.report import Report, Violation
 from tamp.verification.semantics import Semantics
 from tamp.verification.start import check_files, check_initial, check_objects
 from tamp.verification.sweep import Sweeper
+from tamp.verification.symbolic import is_symbolic, verify_symbolic
 from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.robot import ROBOTS
 
@@ -39,6 +40,9 @@ def verify(
     """
     began = time.monotonic()
     document = plan if isinstance(plan, dict) else Path(plan)
+    if is_symbolic(document):
+        given = [None if file is None else Path(file) for file in (problem, domain)]
+        return verify_symbolic(document, *given)
     read = read_plan(document)
     problem_file = source_file(read, "problem", None if problem is None else Path(problem))
     domain_file = source_file(read, "domain", None if domain is None else Path(domain))

@@ -11,7 +11,8 @@ from tamp.data import shipped
 from tamp.errors import InputError, closest
 from tamp.world.mesh_pieces import mesh_pieces
 from tamp.world.pose import Pose
-from tamp.world.scene import Box, Cylinder, Part, Sphere
+from tamp.world.scaling import scale_part, scale_pose
+from tamp.world.scene import Part
 from tamp.world.urdf_link import read_link
 
 Scale = tuple[float, float, float]
@@ -95,9 +96,9 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
     parts: list[Part] = []
     warnings: list[str] = []
     for element in link.collisions:
-        pose = _scaled(element.pose, factor)
+        pose = scale_pose(element.pose, factor)
         if element.shape is not None:
-            parts.append(Part(_scaled_shape(element.shape, factor), pose))
+            parts.append(scale_part(Part(element.shape, element.pose), factor))
         if element.mesh is not None:
             hulls, repaired = mesh_pieces(element.mesh, _times(element.scale, factor))
             parts += [Part(hull, pose) for hull in hulls]
@@ -111,22 +112,9 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
         mesh,
         visual=visual.mesh,
         visual_scale=_times(visual.scale, factor),
-        visual_pose=_scaled(visual.pose, factor),
+        visual_pose=scale_pose(visual.pose, factor),
     )
 
 
 def _times(scale: Scale, factor: float) -> Scale:
     return (scale[0] * factor, scale[1] * factor, scale[2] * factor)
-
-
-def _scaled(pose: Pose, factor: float) -> Pose:
-    x, y, z = pose.position
-    return Pose((x * factor, y * factor, z * factor), pose.quaternion)
-
-
-def _scaled_shape(shape: Box | Cylinder | Sphere, factor: float) -> Box | Cylinder | Sphere:
-    if isinstance(shape, Box):
-        return Box(_times(shape.size, factor))
-    if isinstance(shape, Cylinder):
-        return Cylinder(shape.radius * factor, shape.height * factor)
-    return Sphere(shape.radius * factor)

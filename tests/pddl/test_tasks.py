@@ -105,7 +105,6 @@ def test_problem(domain: Domain) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("(:domain cupboard)", "(:domain @@cupbord)", "the problem is for domain 'cupbord'. Choices: cupboard"),
         ("(:objects", "(@@:object", "unknown section ':object'"),
         ("mug - movable", "@@depot - body mug - movable", "'depot' is already a constant"),
         ("mug - movable", "mug @@mug - movable", "object 'mug' stands twice"),
@@ -123,3 +122,15 @@ def test_problem(domain: Domain) -> None:
 )
 def test_wrong_problem(old: str, new: str, message: str, domain: Domain, changed: Changed, raises_at: RaisesAt) -> None:
     raises_at(lambda text: parse_task(text, domain), changed(PROBLEM, old, new), message)
+
+
+def test_a_problem_for_another_domain_is_noted(domain: Domain) -> None:
+    task = parse_task(PROBLEM.replace("(:domain cupboard)", "(:domain cupbord)"), domain, "one.pddl")
+    assert task.notes == ("one.pddl:2:12: the problem is for domain 'cupbord', the domain is 'cupboard'",)
+
+
+def test_without_a_metric_every_action_costs_one(domain: Domain) -> None:
+    assert any(action.cost != 1.0 for action in domain.actions)
+    task = parse_task(PROBLEM.replace("(:metric minimize (total-cost))", ""), domain, "one.pddl")
+    assert {action.cost for action in task.domain.actions} == {1.0}
+    assert "one.pddl:1:18: the problem has no (:metric" in task.notes[0]

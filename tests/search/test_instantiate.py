@@ -16,7 +16,8 @@ DOMAIN = """(define (domain d) (:requirements :adl :derived-predicates :action-c
   (:predicates (at ?x - node) (edge ?x ?y - node) (seen ?x - node) (reach ?x ?y - node) (lamp) (dark))
   (:functions (total-cost) (length ?x ?y - node))
   {body})"""
-PROBLEM = "(define (problem p) (:domain d) (:objects {objects}) (:init {init}) (:goal {goal}))"
+PROBLEM = """(define (problem p) (:domain d) (:objects {objects}) (:init {init}) (:goal {goal})
+  (:metric minimize (total-cost)))"""
 MOVE = """(:action move :parameters (?x ?y - node) :precondition (and (at ?x) (edge ?x ?y))
   :effect (and (not (at ?x)) (at ?y)))"""
 

@@ -10,6 +10,7 @@ from random import Random
 import pytest
 
 from benchmarks.search import Instance, cupboard
+from tamp.pddl.parser import parse_domain, parse_task
 from tamp.pddl.structs import Fact
 from tamp.search.axioms import derive
 from tamp.search.forward import search
@@ -96,3 +97,22 @@ def test_informed_searches_pay_what_they_say(seed: int, name: str) -> None:
         assert result.plan.cost == pytest.approx(cost)
         assert best - 1e-9 <= cost <= 3 * best
     assert all(plan == found[0] for plan in found)
+
+
+@pytest.mark.parametrize("method", ["greedy", "wastar"])
+@pytest.mark.parametrize("cheap", ["p1", "p2"])
+def test_what_the_goal_is_derived_from_has_a_price(method: str, cheap: str) -> None:
+    """Two places make the goal true at the same cost; what says so of one of them is dear."""
+    domain = parse_domain("""(define (domain d) (:predicates (place ?p) (at ?p) (within ?p) (done))
+      (:action put :parameters (?p) :precondition (place ?p) :effect (at ?p))
+      (:derived (done) (exists (?p) (and (at ?p) (within ?p)))))""")
+    problem = "(define (problem p) (:domain d) (:objects p1 p2) (:init (place p1) (place p2)) (:goal (done)))"
+    grounded = instantiate(parse_task(problem, domain), [("within", "p1"), ("within", "p2")])
+    dear = "p2" if cheap == "p1" else "p1"
+    for blind in (None, "blind"):
+        result = search(grounded, search=method, price={("within", dear): 5.0}, heuristic=blind or "ff")
+        assert result.plan is not None
+        assert [operator.arguments for operator in result.plan.operators] == [(cheap,)]
+    only = search(grounded, search=method, price={("within", "p1"): 5.0, ("within", "p2"): 7.0}, heuristic="blind")
+    assert only.plan is not None
+    assert only.plan.cost == 1.0

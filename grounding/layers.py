@@ -1,0 +1,36 @@
+"""Fully connected networks in numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Layers = Sequence[tuple[Floats, Floats]]
+"""Weight (in, out) and bias (out,) of each layer."""
+
+
+def layers_of(arrays: Mapping[str, NDArray[Any]], name: str) -> Layers:
+    """The layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ..."""
+    layers = []
+    while f"{name}.{len(layers)}.weight" in arrays:
+        row = len(layers)
+        layers.append((arrays[f"{name}.{row}.weight"], arrays[f"{name}.{row}.bias"]))
+    return layers
+
+
+def dense(layers: Layers, x: NDArray[Any]) -> Floats:
+    """ReLU after every layer but the last; (..., in) to (..., out)."""
+    for row, (weight, bias) in enumerate(layers):
+        x = x @ weight + bias
+        if row < len(layers) - 1:
+            x = np.maximum(x, 0.0)
+    return x
+
+
+def sigmoid(x: NDArray[Any]) -> NDArray[Any]:
+    """Stable for large arguments."""
+    return np.where(x >= 0, 1.0 / (1.0 + np.exp(-np.abs(x))), np.exp(-np.abs(x)) / (1.0 + np.exp(-np.abs(x))))

@@ -1,0 +1,33 @@
+"""What every grounding is once it is trained: numpy only, for one relation."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from numpy.random import Generator as Random
+
+from grounding.situation import Situation
+from tamp.world.pose import Array
+
+
+class Model(Protocol):
+    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n, 4, 4)."""
+
+    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+        """At most `count` poses, the best first, shape (n, 4, 4); none when it knows of no way.
+
+        Args:
+            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models, where it starts.
+            count: How many are wanted.
+            rng: The only source of randomness.
+        """
+        ...
+
+    def classify(self, situation: Situation, poses: Array) -> Array:
+        """The probability that the relation holds with argument 1 at each of the poses, shape (n,).
+
+        Args:
+            situation: The arguments and their surroundings.
+            poses: T_world_body, shape (n, 4, 4).
+        """
+        ...

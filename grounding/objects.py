@@ -1,0 +1,84 @@
+"""The objects that data are made with: household shapes, pybullet's meshes, a folder of one's own. Training and test
+objects are disjoint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from grounding.form import Form
+from grounding.household import SHAPES, YCB
+from tamp.errors import InputError
+from tamp.world.meshes import SUFFIXES, find_mesh, load_mesh
+from tamp.world.scene import Part
+
+SPLITS = ("train", "test")
+HOUSEHOLD = {"train": 7, "test": 3}
+"""How many of each household shape."""
+RANDOM = {"train": range(0, 60), "test": range(500, 520)}
+"""Which of pybullet's random shapes."""
+MESHES: Mapping[str, Mapping[str, float]] = {
+    "train": {"duck_vhacd.urdf": 1.0, "lego/lego.urdf": 1.5, "jenga/jenga.urdf": 1.0, "domino/domino.urdf": 1.0},
+    "test": {"objects/mug.urdf": 0.85, "teddy_vhacd.urdf": 1.0},
+}
+"""Meshes of pybullet_data and the factors that make them a hand's size."""
+_SEED = 20261125
+_LARGEST = 0.28
+
+
+@lru_cache(maxsize=4)
+def object_templates(split: str, folder: Path | None = None) -> Mapping[str, tuple[Part, ...]]:
+    """The objects of a split by name, parts in metres; deterministic.
+
+    Args:
+        split: "train" or "test".
+        folder: With one mesh a subfolder, as the YCB set comes: those objects join the household ones.
+
+    Raises:
+        InputError: The folder has no meshes, or one of them is no usable mesh.
+    """
+    rng = np.random.default_rng([_SEED, SPLITS.index(split)])
+    found: dict[str, tuple[Part, ...]] = {}
+    for name, make in SHAPES.items():
+        for number in range(HOUSEHOLD[split]):
+            found[f"{name}_{split}_{number}"] = make(rng)
+    if split == "test":
+        found |= YCB
+    paths = {f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf" for number in RANDOM[split]}
+    found |= {name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts for name, path in paths.items()}
+    for path, scale in MESHES[split].items():
+        mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
+        found[Path(path).stem] = mesh.parts
+    if folder is not None:
+        found |= folder_templates(folder)
+    return {name: parts for name, parts in found.items() if _usable(parts)}
+
+
+def folder_templates(folder: Path) -> dict[str, tuple[Part, ...]]:
+    """One object for each subfolder of `folder`, named after it: its first mesh (OBJ, STL, URDF), at any depth.
+
+    Raises:
+        InputError: There are none, or one of them is no usable mesh.
+    """
+    found: dict[str, tuple[Part, ...]] = {}
+    for place in sorted(path for path in folder.iterdir() if path.is_dir()) if folder.is_dir() else []:
+        meshes = sorted(file for file in place.rglob("*") if file.suffix.lower() in SUFFIXES)
+        if meshes:
+            try:
+                found[place.name] = load_mesh(meshes[0]).parts
+            except InputError as error:
+                raise error.at(meshes[0]) from None
+    if not found:
+        raise InputError("no folders with a mesh each", file=folder, remedy=f"One of {', '.join(SUFFIXES)} in each")
+    return found
+
+
+def _usable(parts: tuple[Part, ...]) -> bool:
+    """Whether it is of a size that a hand moves, and rests on some face."""
+    form = Form(parts)
+    size = float(np.ptp(form.corners, axis=0).max())
+    return 0.02 < size < _LARGEST and bool(form.faces)

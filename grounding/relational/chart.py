@@ -1,0 +1,159 @@
+"""Relational coordinates, learned from a few demonstrations: what they have in common is a residual near zero.
+
+Height is measured between that level of the body and that level of the region whose distance varies least over the
+demonstrations; the horizontal position is a share of the room that is left; rotation is which face is down, a small
+tilt and a yaw. What all demonstrations keep (room at the sides, above, around) bounds what is proposed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grounding.relational.measures import Measures, View, face_descriptors, turns, upright
+from tamp.world.pose import Array
+from tamp.world.scene import CONTACT_GAP
+
+CONTAINED = 0.95
+"""The share of demonstrations within the rectangle from which on all are thought to be."""
+
+SLACK = 0.002
+"""Metres by which a bound may be missed."""
+
+LEVEL, FLAT = 0.003, 0.05
+"""Metres and sine: what physics leaves of a height or a tilt is noise up to these."""
+
+WIDEST = 0.12
+"""Sine of the largest tilt that is proposed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Demonstration:
+    """One positive example in relational coordinates.
+
+    Attributes:
+        coordinates: Horizontal shares x, y, height residual (m), tilt x, y (sines), cosine and sine of yaw: (7,).
+        face: Descriptor of the face that is down, (4,).
+        size: Logarithms of the body's extents, sorted, (3,).
+    """
+
+    coordinates: Array
+    face: Array
+    size: Array
+
+
+@dataclass(frozen=True)
+class Chart:
+    """The coordinates of one relation.
+
+    Attributes:
+        level: Of the body: 0 its lowest point, 1 its middle, 2 its highest one.
+        anchor: Of the region: 0 its plane, 1 its ceiling, 2 the foot of the argument's box, 3 the box's middle.
+        offset: The usual distance between the two, metres.
+        contained: Whether the whole body stays above the rectangle; else its centre of mass.
+        sides, balance, ceiling, apart, steadiness: What no demonstration falls below (metres, radians).
+    """
+
+    level: int
+    anchor: int
+    offset: float
+    contained: bool
+    sides: float
+    balance: float
+    ceiling: float
+    apart: float
+    steadiness: float
+
+    @classmethod
+    def fit(cls, measured: Sequence[Measures]) -> Chart:
+        """From positive examples, each of one pose."""
+        heights = np.array([_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured])  # (n, 3, 4)
+        finite = np.isfinite(heights).all(axis=0)
+        middle = np.median(np.where(finite, heights, 0.0), axis=0)
+        spread = np.where(finite, np.median(np.abs(heights - middle), axis=0), np.inf)
+        level, anchor = (int(v) for v in np.unravel_index(np.argmin(spread), spread.shape))
+        offset = float(middle[level, anchor])
+        sides = np.array([one.sides.min() for one in measured])
+        low = min(int(0.01 * len(measured)), len(measured) - 1)
+
+        def least(values: Array) -> float:
+            return float(np.sort(values)[low])
+
+        return cls(
+            level,
+            anchor,
+            max(offset, CONTACT_GAP) if abs(offset) < LEVEL else offset,
+            bool((sides > -SLACK).mean() >= CONTAINED),
+            least(sides),
+            least(np.array([one.balance.min() for one in measured])),
+            least(np.array([one.ceiling[0] for one in measured])),
+            min(least(np.array([one.nearest[0] for one in measured])), SLACK),
+            least(np.array([one.view.steadiness[one.face[0]] for one in measured])),
+        )
+
+    @classmethod
+    def from_card(cls, card: Mapping[str, Any]) -> Chart:
+        """The inverse of `dataclasses.asdict`."""
+        return cls(**card)
+
+    def encode(self, measured: Measures) -> Demonstration:
+        """One pose in these coordinates."""
+        height = float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor]) - self.offset
+        share = self._share(measured)[0]
+        yaw, tilt = float(measured.yaw[0]), measured.tilt[0]
+        height = 0.0 if abs(height) < LEVEL else height
+        tilt = np.zeros(2) if np.linalg.norm(tilt) < FLAT else tilt
+        coordinates = np.array([*share, height, *tilt, np.cos(yaw), np.sin(yaw)])
+        form = measured.view.form
+        size = np.sort(np.log(np.ptp(form.corners, axis=0)))
+        return Demonstration(coordinates, face_descriptors(form)[measured.face[0]], size)
+
+    def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Array:
+        """Poses T_region_body, shape (n, 4, 4), of faces (n,) and coordinates (n, 7)."""
+        tilt = np.clip(coordinates[:, 3:5], -WIDEST, WIDEST)
+        yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5])
+        poses = np.tile(np.eye(4), (len(face), 1, 1))
+        poses[:, :3, :3] = turns(yaw) @ upright(tilt) @ view.rotations[face]
+        still = view.measure(poses)
+        if self.contained:
+            middle = (still.low + still.high)[:, :2] / 2
+            room = view.region.size[:2] / 2 - (still.high - still.low)[:, :2] / 2
+        else:
+            middle, room = still.centre[:, :2], np.broadcast_to(view.region.size[:2] / 2, (len(face), 2))
+        poses[:, :2, 3] = np.clip(coordinates[:, :2], -1.0, 1.0) * np.maximum(room, 0.0) - middle
+        poses[:, 2, 3] = _anchors(view)[self.anchor] + self.offset + coordinates[:, 2] - _levels(still)[:, self.level]
+        return poses
+
+    def shortfall(self, measured: Measures) -> Array:
+        """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""
+        gaps = [
+            measured.sides.min(axis=1) - self.sides,
+            measured.balance.min(axis=1) - self.balance,
+            measured.ceiling - self.ceiling,
+            measured.nearest - self.apart,
+        ]
+        return np.maximum(-np.stack(gaps) - SLACK, 0.0).sum(axis=0)
+
+    def _share(self, measured: Measures) -> Array:
+        half = measured.view.region.size[:2] / 2
+        if not self.contained:
+            return np.clip(measured.centre[:, :2] / half, -1.0, 1.0)
+        room = np.maximum(half - (measured.high - measured.low)[:, :2] / 2, 1e-3)
+        return np.clip((measured.low + measured.high)[:, :2] / 2 / room, -1.0, 1.0)
+
+
+def _levels(measured: Measures) -> Array:
+    """The body's lowest, middle and highest heights, shape (n, 3)."""
+    low, high = measured.low[:, 2], measured.high[:, 2]
+    return np.stack([low, (low + high) / 2, high], axis=1)
+
+
+def _anchors(view: View) -> Array:
+    """The region's plane and ceiling, the foot and the middle of the argument's box, in the region's frame, (4,)."""
+    region = view.region
+    bottom, top = region.box[0, 2] - region.matrix[2, 3], region.box[1, 2] - region.matrix[2, 3]
+    return np.array([0.0, region.size[2], bottom, (bottom + top) / 2])

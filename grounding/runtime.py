@@ -1,0 +1,34 @@
+"""Trained groundings as the planner calls them: a scene and names in, world poses or a probability out. Numpy only."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.random import Generator as Random
+
+from grounding.model import Model
+from grounding.situation import situation_of
+from tamp.world.pose import Pose
+from tamp.world.scene import Scene
+
+
+class Grounding:
+    """A model behind the planner's Protocols of `tamp.streams.relations`.
+
+    Args:
+        model: What was trained.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+        """At most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the best first."""
+        poses = self.model.propose(situation_of(scene, arguments), count, rng)
+        return [Pose.from_matrix(pose) for pose in poses]
+
+    def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
+        """The probability that the relation holds where the body is."""
+        situation = situation_of(scene, arguments)
+        return float(np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0))

@@ -1,0 +1,127 @@
+"""What a grounding sees of a scene: the relation's two arguments and what is around them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from grounding.form import Form, form_of
+from tamp.world.bounds import bounds
+from tamp.world.pose import Array
+from tamp.world.scene import Body, Cavity, Scene, Surface
+
+SURROUNDINGS = 1.0
+"""Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section IV-B), metres."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A form somewhere: T_world_body, shape (4, 4)."""
+
+    form: Form
+    matrix: Array
+
+    @cached_property
+    def box(self) -> Array:
+        """The box around it along the world's axes: low and high corner, shape (2, 3), metres."""
+        centre, half = self.form.corners.mean(axis=0), np.ptp(self.form.corners, axis=0) / 2
+        if len(self.form.vertices) > 8:
+            points = self.form.vertices @ self.matrix[:3, :3].T
+            return np.stack([points.min(axis=0), points.max(axis=0)]) + self.matrix[:3, 3]
+        middle, reach = self.matrix[:3, :3] @ centre + self.matrix[:3, 3], np.abs(self.matrix[:3, :3]) @ half
+        return np.stack([middle - reach, middle + reach])
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Where on or in its support a body is wanted.
+
+    Attributes:
+        hollow: Whether it is a cavity; else a surface.
+        matrix: T_support_region: the middle of the surface or of the cavity's floor, z up, shape (4, 4).
+        size: x, y and free height in metres, shape (3,); the height above an open surface is infinite.
+        box: The argument's box in the support's frame, low and high corner, shape (2, 3): under a surface all of the
+            support down to its foot; around a cavity the whole container, or its compartment of several.
+    """
+
+    hollow: bool
+    matrix: Array
+    size: Array
+    box: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """Argument 0 (support or container), argument 1 (the body), and the surroundings.
+
+    Attributes:
+        support: Argument 0.
+        region: The surface or cavity of it that is meant.
+        body: Argument 1, where it is now: at its start, or where a demonstration has it.
+        others: The surroundings: bodies within SURROUNDINGS of an argument, neither of the two.
+    """
+
+    support: Placed
+    region: Region
+    body: Placed
+    others: tuple[Placed, ...]
+
+    @property
+    def T_world_region(self) -> Array:
+        """Shape (4, 4)."""
+        return self.support.matrix @ self.region.matrix
+
+
+def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
+    """What a scene shows about (body, surface or cavity), the planner's order of a relation's arguments.
+
+    Raises:
+        KeyError: No such body or region.
+    """
+    body, place = scene.bodies[arguments[0]], scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
+    support = scene.bodies[place.body]
+    placed = {name: Placed(form_of(item.parts), item.pose.matrix) for name, item in scene.bodies.items()}
+    others = [item for name, item in placed.items() if name not in (body.name, support.name)]
+    return near(placed[support.name], region_of(support, place), placed[body.name], others)
+
+
+def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
+    """The situation, with those of `others` that are surroundings."""
+    around = tuple(
+        other for other in others if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
+    )
+    return Situation(support, region, body, around)
+
+
+def region_of(support: Body, place: Surface | Cavity) -> Region:
+    """A surface or a cavity of a body as a region."""
+    low, high = bounds(support.parts, place.pose.inverse())  # T_region_support: the box along the region's axes
+    half = np.array(place.size[:2]) / 2
+    if isinstance(place, Surface):
+        corners = np.array([[-half[0], -half[1], min(float(low[2]), 0.0)], [half[0], half[1], 0.0]])
+        height = place.clearance
+    else:
+        height = place.size[2]
+        alone = len(support.cavities) == 1 and not support.surfaces
+        corners = np.stack([low, high]) if alone else np.array([[-half[0], -half[1], 0.0], [*half, height]])
+    return Region(
+        isinstance(place, Cavity),
+        place.pose.matrix,
+        np.array([*place.size[:2], height]),
+        _turned(corners, place.pose.matrix),
+    )
+
+
+def _turned(corners: Array, matrix: Array) -> Array:
+    middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
+    middle, half = matrix[:3, :3] @ middle + matrix[:3, 3], np.abs(matrix[:3, :3]) @ half
+    return np.stack([middle - half, middle + half])
+
+
+def gap(first: Array, second: Array) -> float:
+    """Distance between two boxes along the axes, metres; 0 when they overlap."""
+    apart = np.maximum(np.maximum(first[0] - second[1], second[0] - first[1]), 0.0)
+    return float(np.sqrt(apart @ apart))

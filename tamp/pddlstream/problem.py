@@ -1,0 +1,212 @@
+"""PDDLStream's problem tuple, bound to a task with streams."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tamp.algorithms.costs import BoundFunction
+from tamp.algorithms.solution import StreamTask
+from tamp.algorithms.stream import BoundStream
+from tamp.errors import InputError
+from tamp.pddl.complement import complement_name, negated_tests, with_complements
+from tamp.pddl.formulas import RESERVED
+from tamp.pddl.lint import lint
+from tamp.pddl.nodes import Group, Node, Symbol, warning
+from tamp.pddl.parser import output_types, parse_domain, parse_streams
+from tamp.pddl.sexpr import read
+from tamp.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
+from tamp.pddlstream.adapters import stream_function
+from tamp.pddlstream.facts import Names, goal_formula, initial_facts
+from tamp.rejection import Rejection
+from tamp.wild import Wild
+
+
+class PDDLProblem(NamedTuple):
+    """A problem in the parts and the order of PDDLStream's.
+
+    Attributes:
+        domain_pddl: The domain's text, or a Path to it.
+        constant_map: The values of the domain's constants.
+        stream_pddl: The streams' text or a Path to it, several of them, or None.
+        stream_map: A function for each stream, `:function` and `:predicate`, by name in any case.
+        init: Facts as tuples; ("=", ("Distance", a, b), 3.0) for costs.
+        goal: A condition as nested tuples.
+    """
+
+    domain_pddl: str | Path
+    constant_map: Mapping[str, Any]
+    stream_pddl: str | Path | Sequence[str | Path] | None
+    stream_map: Mapping[str, Any]
+    init: Sequence[Any]
+    goal: Any
+
+
+def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask, tuple[str, ...]]:
+    """The task with its streams, and warnings.
+
+    Raises:
+        InputError: Anything wrong with the texts, the map or the facts.
+    """
+    domain_text, domain_file = _text(problem.domain_pddl)
+    listed = problem.stream_pddl
+    sources = [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
+    undeclared: dict[str, Predicate] = {}
+    for text, file in sources:
+        for name, size, _ in _heads(read(text, file)):
+            undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
+    domain = parse_domain(domain_text, domain_file, undeclared)
+    files = [parse_streams(text, domain, file) for text, file in sources]
+    streams = _joined(files)
+    names = Names(_constants(problem.constant_map, domain))
+    facts, costs, types = initial_facts(problem.init, domain, names)
+    goal = goal_formula(problem.goal, domain, names)
+    warnings = [*_undeclared(sources, domain), *streams.notes, *lint(domain, streams, goal, facts)]
+    functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
+    used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
+    _check_map(functions, [one for group in used.values() for one in group])
+    decided = {predicate.name: predicate for predicate in streams.predicates}
+    bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
+    bound += [_bound(rule, domain, _always) for rule in streams.rules]
+    bound += [test for predicate in decided.values() for test in _tests(predicate, domain, functions[predicate.name])]
+    negated = negated_tests(streams.streams, domain, goal)
+    bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
+    rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
+    if unit_costs:
+        actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
+        rewritten = replace(rewritten, actions=actions)
+    objects = {name: types.get(name, ("object",)) for name in names.values if name not in domain.constants}
+    task = Task(domain.name, rewritten, objects, facts, goal, costs)
+    computed = tuple(BoundFunction(function, functions[function.name]) for function in streams.functions)
+    return StreamTask(task, tuple(bound), names.values, computed, by_value=True), tuple(warnings)
+
+
+def _bound(stream: Stream, domain: Domain, function: Any) -> BoundStream:
+    types = output_types(stream, domain)
+    outputs = tuple(types[name] for name in stream.outputs)
+    return BoundStream(stream, stream_function(stream, function), outputs, may_advise=False)
+
+
+def _always(*inputs: Any) -> bool:
+    return True
+
+
+def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) -> tuple[BoundStream, BoundStream]:
+    """The streams that promise a decided predicate, and its complement."""
+
+    def holds(*inputs: Any, call: Any) -> bool:
+        return bool(function(*inputs))
+
+    def does_not_hold(*inputs: Any, call: Any) -> bool | Rejection:
+        return Rejection(f"{predicate.name} holds") if function(*inputs) else True
+
+    made: list[BoundStream] = []
+    for name, test in ((predicate.name, holds), (complement_name(predicate.name, domain), does_not_hold)):
+        certified = (Atom(name, predicate.inputs, predicate.place),)
+        stream = Stream(f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place)
+        made.append(BoundStream(stream, test, (), may_advise=False))
+    return made[0], made[1]
+
+
+def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
+    """The stream that promises that a test does not pass."""
+    (atom,) = stream.certified
+    test = stream_function(stream, function)
+
+    def fails(*inputs: Any, call: Any) -> Any:
+        answer = test(*inputs, call=call)
+        passes, facts = (answer.value, answer.facts) if isinstance(answer, Wild) else (answer, ())
+        opposite = Rejection(f"{atom.predicate} holds") if passes is True else True
+        return Wild(opposite, facts) if facts else opposite
+
+    name = complement_name(atom.predicate, domain)
+    certified = (Atom(name, atom.terms, atom.place),)
+    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False)
+
+
+def _joined(files: Sequence[StreamFile]) -> StreamFile:
+    return StreamFile(
+        files[0].name if files else "",
+        tuple(one for file in files for one in file.streams),
+        tuple(one for file in files for one in file.functions),
+        files[0].file if files else None,
+        tuple(one for file in files for one in file.predicates),
+        tuple(one for file in files for one in file.rules),
+        tuple(one for file in files for one in file.notes),
+    )
+
+
+def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> None:
+    for one in declared:
+        if one.name not in functions:
+            place = one.place
+            raise InputError(
+                f"'{one.name}' has no function in the stream map",
+                file=place.file if place else None,
+                line=place.line if place else None,
+                column=place.column if place else None,
+                found=one.name,
+                choices=functions,
+            )
+    known = [one.name for one in declared]
+    for name in functions:
+        if name not in known:
+            raise InputError(f"the stream map has '{name}', which no stream is called", found=name, choices=known)
+
+
+def _constants(given: Mapping[str, Any], domain: Domain) -> dict[str, Any]:
+    """The domain's constants with their values, by default their names."""
+    lower = {name.lower(): value for name, value in given.items()}
+    for name in lower:
+        if name not in domain.constants:
+            choices = domain.constants
+            raise InputError(f"'{name}' is no constant of the domain", file=domain.file, found=name, choices=choices)
+    return {name: lower.get(name, name) for name in domain.constants}
+
+
+def _text(source: str | Path) -> tuple[str, Path | None]:
+    if isinstance(source, str):
+        return source, None
+    try:
+        return source.read_text(encoding="utf-8"), source
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot read it: {error}", file=source) from None
+
+
+def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
+    """The facts in a streams file: (name, number of arguments, where). PDDLStream's domains leave some undeclared."""
+    for node in nodes:
+        if not isinstance(node, Group) or not node.items:
+            continue
+        head = node.head
+        if head == "define":
+            yield from _heads(node.items[2:])
+        elif head in (":stream", ":rule", ":predicate", ":function", ":optimizer"):
+            items = list(node.items[1:])
+            if head == ":function" and items and isinstance(items[0], Group):
+                items = items[1:]
+            after = [b for a, b in zip([None, *items], items, strict=False) if not _lists(a)]
+            yield from _heads(after)
+        elif head in (":variables", ":constraint"):
+            yield from _heads([b for a, b in zip(node.items, node.items[1:], strict=False) if not _lists(a)])
+        elif head == "and":
+            yield from _heads(node.items[1:])
+        elif head is not None and head[0] not in "?:" and head not in RESERVED:
+            yield head, len(node.items) - 1, node
+
+
+def _lists(before: Node | None) -> bool:
+    """Whether what follows is a list of words, no condition."""
+    return isinstance(before, Symbol) and before.text in (":inputs", ":outputs", ":fluents", ":variables", ":objective")
+
+
+def _undeclared(sources: Sequence[tuple[str, Path | None]], domain: Domain) -> Iterator[str]:
+    seen: set[str] = set()
+    for text, file in sources:
+        for name, _, group in _heads(read(text, file)):
+            declared = domain.predicates.get(name)
+            if declared is not None and declared.place is None and name not in seen:
+                seen.add(name)
+                yield warning(group, f"predicate '{name}' is not among the domain's :predicates")

@@ -1,0 +1,153 @@
+"""Planning a problem that was written for PDDLStream."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any, NamedTuple, cast
+
+from tamp.alarm import Alarm
+from tamp.algorithms.incremental import Incremental
+from tamp.algorithms.registry import ALGORITHMS
+from tamp.algorithms.solution import Effort, Outcome, Result, StreamTask
+from tamp.algorithms.statistics import StreamStatistics
+from tamp.clock import Deadline, OutOfTime
+from tamp.errors import InputError
+from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
+from tamp.pddlstream.problem import PDDLProblem, bind
+
+CLOSER_LOOK = 500
+"""Draws after which a plan that no stream promises is given up, when none of them brought facts besides its outputs."""
+
+
+class Action(NamedTuple):
+    """An action of a plan: its name and the values of its parameters."""
+
+    name: str
+    args: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """How planning ended. Unpacks as PDDLStream's solutions do: plan, cost, certificate.
+
+    Attributes:
+        outcome: How it ended.
+        plan: The actions, or None.
+        cost: Of the plan; infinite without one.
+        certificate: What streams certified and the plan rests on, facts with values: ("Kin", "b0", conf, pose).
+        explanation: Why there is no plan, a line a cause.
+        warnings: What looks odd in the problem, and stream functions that failed.
+        statistics: By stream.
+        seconds: Wall-clock time.
+    """
+
+    outcome: Outcome
+    plan: list[Action] | None = None
+    cost: float = float("inf")
+    certificate: tuple[tuple[Any, ...], ...] = ()
+    explanation: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
+    effort: Effort = field(default_factory=Effort)
+    seconds: float = 0.0
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a plan."""
+        return self.outcome is Outcome.SOLVED
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.plan, self.cost, self.certificate))
+
+
+def solve(
+    problem: PDDLProblem | tuple[Any, ...],
+    algorithm: str = "adaptive",
+    *,
+    unit_costs: bool = False,
+    max_time: float = 30.0,
+    seed: int = 0,
+) -> Solution:
+    """Plan.
+
+    Args:
+        problem: The six parts of a problem, see `PDDLProblem`.
+        algorithm: "adaptive" or "incremental".
+        unit_costs: Whether every action costs one, whatever the domain says.
+        max_time: Seconds.
+        seed: Of the order in which the planner tries things; the stream functions' randomness is their own.
+
+    Raises:
+        InputError: Anything wrong with the problem or the names.
+    """
+    if algorithm not in ALGORITHMS:
+        raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
+    if not max_time > 0.0:
+        raise InputError(f"the time must be positive, not {max_time:g}")
+    task, warnings = bind(PDDLProblem(*cast(tuple[Any, ...], problem)), unit_costs=unit_costs)
+    deadline = Deadline(max_time)
+    alarm = Alarm(deadline)
+    try:
+        with alarm:
+            result = _run(task, algorithm, seed, deadline)
+    except (OutOfTime, KeyboardInterrupt) as end:
+        outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
+        return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
+    finally:
+        alarm.disarm()
+    values = result.objects.values
+    solved = result.outcome is Outcome.SOLVED
+    plan = [Action(action.name, tuple(values[word] for word in action.arguments)) for action in result.actions]
+    return Solution(
+        result.outcome,
+        plan if solved else None,
+        sum(action.cost for action in result.actions) if solved else float("inf"),
+        tuple((fact[0], *(values[word] for word in fact[1:])) for fact in result.certified),
+        result.explanation,
+        (*warnings, *result.warnings),
+        result.statistics,
+        result.effort,
+        deadline.elapsed(),
+    )
+
+
+def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Result:
+    """Run the algorithm; when it finds no way, look at what the streams really give."""
+
+    def make_rng(key: str) -> Random:
+        digest = hashlib.blake2b(key.encode(), digest_size=8, key=str(seed).encode()).digest()
+        return Random(int.from_bytes(digest, "little"))
+
+    result = ALGORITHMS[algorithm](task, make_rng, deadline, _silent)
+    if result.outcome is not Outcome.INFEASIBLE or not task.streams:
+        return result
+    # Two things no stream promises: facts besides its outputs, and an output that equals a value of the goal.
+    second = Incremental(task, make_rng, deadline, _silent, pruned=False)
+    looked = second.solve(CLOSER_LOOK)
+    open_end = bool(second.streams.wild) or not all(isinstance(value, str) for value in _goal_values(task))
+    if looked.outcome is Outcome.EXHAUSTED and open_end:
+        looked = second.solve()
+    return looked if looked.outcome is Outcome.SOLVED or open_end else result
+
+
+def _goal_values(task: StreamTask) -> list[Any]:
+    """The values that the goal names."""
+    stack: list[Formula] = [task.task.goal]
+    found: list[Any] = []
+    while stack:
+        formula = stack.pop()
+        match formula:
+            case Atom():
+                found += [task.values[term] for term in formula.terms if term in task.values]
+            case And(parts) | Or(parts):
+                stack += parts
+            case Not(body) | Exists(_, body) | Forall(_, body):
+                stack.append(body)
+    return found
+
+
+def _silent(effort: Effort) -> None:
+    pass

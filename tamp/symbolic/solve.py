@@ -1,0 +1,125 @@
+"""Planning a purely symbolic problem: instantiate, search, say how it ended."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+from tamp.alarm import Alarm
+from tamp.algorithms.explanation import explain_infeasible
+from tamp.algorithms.solution import Outcome, StreamTask
+from tamp.clock import Deadline, OutOfTime
+from tamp.errors import InputError
+from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
+from tamp.search.heuristics import ADMISSIBLE
+from tamp.search.instantiate import instantiate
+from tamp.search.operators import Operator
+from tamp.symbolic.problem import SymbolicProblem
+
+SEARCH = "greedy"
+"""The search when none is named."""
+
+OUTCOMES = {Reason.UNSOLVABLE: Outcome.INFEASIBLE, Reason.TIME: Outcome.TIMEOUT, Reason.LIMIT: Outcome.EXHAUSTED}
+
+
+@dataclass(frozen=True)
+class SymbolicSolution:
+    """How planning a symbolic problem ended.
+
+    Attributes:
+        plan: Operators in order, empty unless solved.
+        optimal: Whether the search proves that no plan is cheaper.
+        explanation: Why there is no plan, a line a cause.
+        operators: How many operators the task has.
+        facts: How many facts may change.
+        seconds: Wall-clock time: "total", "instantiation", "search".
+    """
+
+    problem: SymbolicProblem
+    outcome: Outcome
+    search: str
+    heuristic: str
+    plan: tuple[Operator, ...] = ()
+    optimal: bool = False
+    explanation: tuple[str, ...] = ()
+    expanded: int = 0
+    evaluated: int = 0
+    operators: int = 0
+    facts: int = 0
+    seconds: dict[str, float] = field(default_factory=dict[str, float])
+
+    @property
+    def solved(self) -> bool:
+        """Whether there is a plan."""
+        return self.outcome is Outcome.SOLVED
+
+    @property
+    def cost(self) -> float:
+        """The sum of the actions' costs."""
+        return sum(operator.cost for operator in self.plan)
+
+
+def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
+    """The names of a search and a heuristic that go together: A* asks for an admissible estimate.
+
+    Raises:
+        InputError: A name that is not known.
+    """
+    if search is not None and search not in SEARCHES:
+        raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
+    search = search or SEARCH
+    heuristic = heuristic or ("lmcut" if search == "astar" else "ff+landmarks")
+    split_heuristics(heuristic)
+    return search, heuristic
+
+
+def solve_symbolic(
+    problem: SymbolicProblem, *, search: str | None = None, heuristic: str | None = None, max_time: float = 30.0
+) -> SymbolicSolution:
+    """Plan.
+
+    Args:
+        problem: From `load_symbolic`.
+        search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind" is optimal.
+        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A* "lmcut".
+        max_time: Seconds.
+
+    Raises:
+        InputError: A name that is not known, or a task that cannot be instantiated.
+    """
+    search, heuristic = choose(search, heuristic)
+    deadline = Deadline(max_time)
+    alarm = Alarm(deadline)
+    try:
+        with alarm:
+            return _solve(problem, search, heuristic, deadline)
+    except (OutOfTime, KeyboardInterrupt) as end:
+        outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
+        return SymbolicSolution(problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()})
+    finally:
+        alarm.disarm()
+
+
+def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline) -> SymbolicSolution:
+    started = time.perf_counter()
+    task = problem.task
+    grounded = instantiate(task)
+    ready = time.perf_counter()
+    found = search(grounded, search=name, heuristic=heuristic, deadline=deadline)
+    done = time.perf_counter()
+    outcome = Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
+    infeasible = outcome is Outcome.INFEASIBLE
+    return SymbolicSolution(
+        problem,
+        outcome,
+        name,
+        heuristic,
+        plan=found.plan.operators if found.plan is not None else (),
+        optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
+        explanation=explain_infeasible(StreamTask(task, (), {}), grounded, {}) if infeasible else (),
+        expanded=found.expanded,
+        evaluated=found.evaluated,
+        operators=len(grounded.operators),
+        facts=len(grounded.reachable | grounded.initial),
+        seconds={"total": done - started, "instantiation": ready - started, "search": done - ready},
+    )

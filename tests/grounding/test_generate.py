@@ -1,0 +1,96 @@
+"""Data sets: what physics says of every sample, the same bytes for the same seed, no leak from training to test."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grounding import generate as module
+from grounding.dataset import Dataset, read_dataset
+from grounding.demonstrations import KINDS, POSITIVE
+from grounding.generate import Job, generate, kinds_of
+from grounding.objects import folder_templates
+from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
+from grounding.separation import Obstacles, separations
+from tamp.errors import InputError
+from tamp.simulation.drop import Drops
+
+
+@pytest.fixture(scope="module", params=["on", "inside"])
+def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Dataset:
+    return generate(Job(request.param, "train", 40), tmp_path_factory.mktemp("data") / "small.npz", workers=1)
+
+
+def test_labels_are_what_physics_says(data: Dataset) -> None:
+    items = ItemOf()
+    with Drops() as drops:
+        for example in data:
+            pose = example.situation.body.matrix[None]
+            holds = settled(example.situation, pose, drops, items)[0] is Verdict.HOLDS
+            assert holds == example.holds == (example.kind in POSITIVE), example.kind
+            assert not holds or paper_oracle(example.situation, pose)[0]
+    assert data.holds.sum() == len(data) / 2
+
+
+def test_kinds_have_the_papers_shares() -> None:
+    for relation, shares in KINDS.items():
+        kinds = kinds_of(relation, 400)
+        assert sum(shares.values()) == pytest.approx(1.0)
+        assert {kind: kinds.count(kind) / 400 for kind in shares} == pytest.approx(shares, abs=0.005)
+
+
+def test_training_and_test_share_no_body(data: Dataset, tmp_path: Path) -> None:
+    test = generate(Job(data.relation, "test", 4), tmp_path / "test.npz", workers=1)
+    for card in ("objects", "supports"):
+        assert data.card[card] and test.card[card] and not set(data.card[card]) & set(test.card[card])
+
+
+def test_same_seed_same_bytes_also_after_an_interruption(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CHUNK", 4)
+    job, whole, resumed = Job("on", "train", 8, seed=3), tmp_path / "whole.npz", tmp_path / "resumed.npz"
+    generate(job, whole, workers=1)
+
+    def stop(done: int, total: int) -> None:
+        if done == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        generate(job, resumed, workers=1, progress=stop)
+    assert not resumed.exists()
+    seen: list[int] = []
+    generate(job, resumed, workers=1, progress=lambda done, total: seen.append(done))
+    assert seen == [4, 8] and whole.read_bytes() == resumed.read_bytes()
+    again = read_dataset(whole)
+    assert all(np.array_equal(again.arrays[name], read_dataset(resumed).arrays[name]) for name in again.arrays)
+
+
+def test_a_damaged_data_set_is_refused(data: Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "small.npz"
+    generate(Job(data.relation, "train", 2), path, workers=1)
+    path.write_bytes(path.read_bytes()[:1000])
+    with pytest.raises(InputError, match="damaged"):
+        read_dataset(path)
+    with pytest.raises(InputError, match="no such data set"):
+        read_dataset(tmp_path / "none.npz")
+
+
+def test_a_folder_without_meshes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no folders with a mesh"):
+        folder_templates(tmp_path)
+
+
+def test_separations_never_promise_too_much(data: Dataset) -> None:
+    """They are lower bounds of the distances that the engine measures, and near to them for boxes."""
+    compared, items = 0, ItemOf()
+    with Drops() as drops:
+        for example in data:
+            situation, pose = example.situation, example.situation.body.matrix
+            drops.set_up(items(situation.body.form), [(items(o.form), o.matrix) for o in situation.others])
+            bounds = separations(situation.body.form, pose[None], Obstacles(situation.others))[0]
+            for contact in drops.contacts(pose, 0.05):
+                if contact.obstacle >= 0 and contact.distance > 0.0:
+                    compared += 1
+                    assert bounds[contact.obstacle] < contact.distance + 0.006
+    assert compared > 3
