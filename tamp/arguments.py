@@ -1,0 +1,124 @@
+"""The command line of tamp-solve."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from tamp.errors import InputError
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """Plan for a mobile manipulator: a goal in PDDL over a scene in YAML becomes a plan of base and arm motions.
+
+    Example: tamp-solve domains/cupboard.pddl problems/four_objects.yaml --seed 1 --out plan.json
+
+    A problem in PDDL (tamp-solve domain.pddl problem.pddl) is planned as it stands, without scene and robot.
+
+    Exit status: 0 solved, 1 no plan (with the reason), 2 bad input, 130 interrupted.
+    """
+
+    files: Annotated[
+        tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="[DOMAIN] PROBLEM", help_behavior_hint="")
+    ]
+    """Files, or names of shipped ones. The domain may be left out when the problem names it."""
+    time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
+    """When to give up, counted from the start of the command."""
+    seed: Annotated[int, tyro.conf.arg(metavar="NUMBER")] = 0
+    """Of all randomness: the same seed gives the same plan."""
+    out: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("plan.json")
+    """Where the plan is written; folders are made."""
+    streams: Annotated[
+        Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="(default: beside the domain)")
+    ] = None
+    """The domain's streams, DOMAIN.streams.pddl."""
+    sampler: Annotated[
+        tyro.conf.UseAppendAction[tuple[str, ...]],
+        tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
+    ] = ()
+    """Which sampler serves a relation, such as on=uniform. NAME:alone or NAME:mixed says whether the hand-made sampler
+    takes part; it does unless NAME is hand-made, too."""
+    algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
+    """adaptive, or incremental (simple, for comparison)."""
+    steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"
+    """How the base moves: se2 (in any direction) or reeds-shepp (like a car)."""
+    search: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: greedy)")] = None
+    """Of a PDDL problem: greedy (lazy, preferred operators), eager, wastar, or astar (optimal)."""
+    heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: by search)")] = None
+    """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
+    verify: bool = False
+    """Have the plan judged as by tamp-verify, and write it only when it holds."""
+    json: bool = False
+    """Print one JSON document instead of text."""
+    quiet: bool = False
+    """Print nothing but errors."""
+
+
+def parsed(arguments: list[str]) -> Arguments:
+    """What the words of a command line say.
+
+    Raises:
+        InputError: Something that the command does not know.
+    """
+    options = ["--" + option.name for option in fields(Arguments) if option.name != "files"] + ["--help"]
+    for word in arguments:
+        name = word.partition("=")[0]
+        if name.startswith("--") and name not in options:
+            raise InputError(f"unknown option '{name}'", found=name, choices=options)
+    complaint = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(complaint):
+            config = (tyro.conf.FlagCreatePairsOff,)
+            chosen = tyro.cli(Arguments, prog="tamp-solve", args=arguments, config=config)
+    except SystemExit as end:
+        if not end.code:  # --help
+            raise
+        raise InputError(_sentence(complaint.getvalue()), remedy="See tamp-solve --help") from None
+    if not 1 <= len(chosen.files) <= 2:
+        raise InputError(
+            f"expected [DOMAIN] PROBLEM, found {len(chosen.files)} files",
+            remedy="For example: tamp-solve domains/cupboard.pddl problems/four_objects.yaml",
+        )
+    if not chosen.files[-1].endswith(".pddl") and (chosen.search or chosen.heuristic):
+        raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
+    if math.isnan(chosen.time) or chosen.time <= 0.0:
+        raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
+    if abs(chosen.seed) >= 2**64:
+        raise InputError("--seed: the number must be below 2**64")
+    return chosen
+
+
+def _sentence(box: str) -> str:
+    """What tyro says in the first paragraph of its frame."""
+    lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
+    title, *said = [line for line in lines if line] or ["bad arguments"]
+    paragraph: list[str] = []
+    for line in said:
+        if set(line) <= {"─", "-"}:
+            if paragraph:
+                break
+            continue
+        paragraph.append(line)
+    return " ".join(paragraph).rstrip(".") or title
+
+
+def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
+    """Relation to name, of RELATION=NAME.
+
+    Raises:
+        InputError: Something else.
+    """
+    chosen: dict[str, str] = {}
+    for pair in pairs:
+        relation, equals, name = pair.partition("=")
+        if not (relation and equals and name):
+            raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
+        chosen[relation] = name
+    return chosen
