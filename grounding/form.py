@@ -88,6 +88,8 @@ class Form:
     @cached_property
     def outer_box(self) -> Array:
         """`corners` of `outer` alone, shape (2, 3)."""
+        if self._unit is not self:
+            return self._unit.outer_box * self.scale
         return np.stack([self.outer.min(axis=0), self.outer.max(axis=0)])
 
     @cached_property
@@ -106,6 +108,13 @@ class Form:
                     centre=face.centre * s)
             for face in self._unit.faces
         )  # fmt: skip
+
+    @cached_property
+    def piece_boxes(self) -> Array:
+        """The box around each part along the form's axes, shape (parts, 2, 3)."""
+        if self._unit is not self:
+            return self._unit.piece_boxes * self.scale
+        return np.array([piece.corners for piece in self.pieces]).reshape(-1, 2, 3)
 
     @cached_property
     def pieces(self) -> tuple[Form, ...]:

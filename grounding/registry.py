@@ -21,7 +21,7 @@ def _relational(weights: Weights) -> Model:
     return RelationalModel(weights)
 
 
-MODELS: Mapping[str, Callable[[Weights], Model]] = {"transfer": _relational}
+MODELS: Mapping[str, Callable[[Weights], Model]] = {"transfer": _relational, "flow": _relational}
 """Model name to what makes it of weights."""
 
 RELATIONS = ("on", "inside")

@@ -19,23 +19,30 @@ class Obstacles:
 
     Args:
         placed: The bodies, their matrices T_frame_body in any one frame whose z points up.
+
+    Attributes:
+        count: How many, m.
+        low: The least coordinates, shape (m, 3).
+        high: The largest coordinates, shape (m, 3).
     """
 
     def __init__(self, placed: Sequence[Placed]) -> None:
         self.count = len(placed)
         if not placed:
             return
+        matrices = np.array([item.matrix for item in placed])
         longest = max(len(item.form.outer) for item in placed)
-        stack = []
-        for item in placed:
-            points = item.form.outer @ item.matrix[:3, :3].T + item.matrix[:3, 3]
-            stack.append(np.concatenate([points, np.repeat(points[-1:], longest - len(points), axis=0)]))
-        self.points = np.stack(stack)  # (m, v, 3)
-        self.axes = np.stack([item.matrix[:3, :3].T for item in placed])  # (m, 3 axes, 3)
-        self.centres = (self.points.min(axis=1) + self.points.max(axis=1)) / 2
-        along = np.einsum("mvi,mai->mav", self.points, self.axes)
-        self.low, self.high = along.min(axis=2), along.max(axis=2)  # (m, 3)
-        self.bottom, self.top = self.points[:, :, 2].min(axis=1), self.points[:, :, 2].max(axis=1)
+        rows = np.arange(longest)
+        own = np.stack([item.form.outer[np.minimum(rows, len(item.form.outer) - 1)] for item in placed])  # (m, v, 3)
+        self.axes = matrices[:, :3, :3].transpose(0, 2, 1).reshape(-1, 3)  # (3 m, 3)
+        points = own @ matrices[:, :3, :3].transpose(0, 2, 1) + matrices[:, None, :3, 3]
+        self.points = np.ascontiguousarray(points.transpose(1, 0, 2))  # (v, m, 3)
+        self.low, self.high = self.points.min(axis=0), self.points.max(axis=0)
+        self.centres = (self.low + self.high) / 2
+        # along a body's own axes its own box is moved by where its origin is
+        origin = (self.axes.reshape(-1, 3, 3) @ matrices[:, :3, 3, None])[:, :, 0]
+        boxes = np.array([item.form.outer_box for item in placed])
+        self.along_low, self.along_high = (origin + boxes[:, 0]).ravel(), (origin + boxes[:, 1]).ravel()  # (3 m,)
 
 
 def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
@@ -56,30 +63,28 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     if not obstacles.count:
         return np.zeros((count, 0))
     rotations, positions = poses[:, :3, :3], poses[:, :3, 3]
-    points = form.outer @ rotations.transpose(0, 2, 1) + positions[:, None]  # (n, v, 3)
-    low, high = points.min(axis=1), points.max(axis=1)
+    points = (form.outer @ rotations.reshape(-1, 3).T).reshape(-1, count, 3) + positions  # (v, n, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
     # the vertical
-    best = np.maximum(low[:, None, 2] - obstacles.top, obstacles.bottom - high[:, None, 2])
+    best = np.maximum(low[:, 2:] - obstacles.high[:, 2], obstacles.low[:, 2] - high[:, 2:])
     # the obstacles' axes
-    axes = obstacles.axes.reshape(-1, 3)
-    along = points.reshape(-1, 3) @ axes.T  # (n v, m 3)
-    along = along.reshape(count, -1, len(axes))
-    own_low, own_high = along.min(axis=1), along.max(axis=1)
-    gaps = np.maximum(own_low - obstacles.high.ravel(), obstacles.low.ravel() - own_high)
+    along = (points.reshape(-1, 3) @ obstacles.axes.T).reshape(len(points), -1)  # (v, n 3 m)
+    own_low, own_high = along.min(axis=0).reshape(count, -1), along.max(axis=0).reshape(count, -1)
+    gaps = np.maximum(own_low - obstacles.along_high, obstacles.along_low - own_high)
     best = np.maximum(best, gaps.reshape(count, obstacles.count, 3).max(axis=2))
     # the body's axes
-    axes = rotations.transpose(0, 2, 1).reshape(-1, 3)
-    along = obstacles.points.reshape(-1, 3) @ axes.T  # (m v, n 3)
-    along = along.reshape(obstacles.count, -1, len(axes))
-    other_low, other_high = along.min(axis=1), along.max(axis=1)  # (m, n 3)
-    centre = np.einsum("nai,ni->na", rotations.transpose(0, 2, 1), positions).ravel()
-    corners = form.outer_box
-    own_low, own_high = centre + np.tile(corners[0], count), centre + np.tile(corners[1], count)
+    axes = rotations.transpose(0, 2, 1)
+    along = (obstacles.points.reshape(-1, 3) @ axes.reshape(-1, 3).T).reshape(len(obstacles.points), -1)  # (v, m 3 n)
+    other_low, other_high = along.min(axis=0).reshape(-1, 3 * count), along.max(axis=0).reshape(-1, 3 * count)
+    origin = (axes @ positions[:, :, None])[:, :, 0]
+    own_low, own_high = (origin + form.outer_box[0]).ravel(), (origin + form.outer_box[1]).ravel()
     gaps = np.maximum(own_low - other_high, other_low - own_high)
     best = np.maximum(best, gaps.reshape(obstacles.count, count, 3).max(axis=2).T)
     # the horizontal line between the centres
     line = ((low + high) / 2)[:, None, :2] - obstacles.centres[:, :2]  # (n, m, 2)
-    line = line / np.maximum(np.linalg.norm(line, axis=2, keepdims=True), 1e-9)
-    own = (points[:, :, :2] @ line.transpose(0, 2, 1)).min(axis=1)
-    other = (obstacles.points[:, :, :2] @ line.transpose(1, 2, 0)).max(axis=1).T
+    x, y = line[:, :, 0], line[:, :, 1]
+    length = np.maximum(np.sqrt(x * x + y * y), 1e-9)
+    x, y = x / length, y / length
+    own = (points[:, :, :1] * x + points[:, :, 1:2] * y).min(axis=0)
+    other = (obstacles.points[:, None, :, 0] * x + obstacles.points[:, None, :, 1] * y).max(axis=0)
     return np.maximum(best, own - other)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -36,10 +37,10 @@ class TrainArgs:
     commit: str = ""
 
 
-def train_transfer(
-    data: Dataset, args: TrainArgs = TrainArgs(), progress: Callable[[str], None] = lambda line: None
+def train_relational(
+    data: Dataset, args: TrainArgs = TrainArgs(), progress: Callable[[str], None] = lambda line: None, *, flow: bool
 ) -> Weights:
-    """A relational grounding of the first scenes of a data set.
+    """A relational grounding of the first scenes of a data set: demonstrations to transfer, or a flow, and the ranker.
 
     Raises:
         InputError: None of them holds.
@@ -47,36 +48,46 @@ def train_transfer(
     count = min(args.samples or len(data), len(data))
     progress(f"measuring {count} scenes")
     measured = [measure(data[index]) for index in range(count)]
+    usable = np.array([bool(len(one.view.faces)) for one in measured])
     holds = data.holds[:count]
-    positive = [one for one, good in zip(measured, holds, strict=True) if good and one.view.form.faces]
+    positive = [one for one, good in zip(measured, holds & usable, strict=True) if good]
     if not positive:
         raise InputError(f"none of the {count} scenes is a positive one", remedy="More --samples")
     chart = Chart.fit(positive)
-    transfer = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
-    rank, accuracy = {}, None
+    if flow:
+        from grounding.relational import flow_training
+
+        proposals = flow_training.train_flow(
+            chart,
+            positive,
+            flow_training.Args(seed=args.seed),
+            lambda step, steps, loss: progress(f"flow {step}/{steps}, loss {loss:.4f}"),
+        )
+    else:
+        proposals = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
+    rank, score = {}, None
     ranks = count >= RANKS_FROM and not holds.all()
     if ranks:
         from grounding.relational.training import Args, train_ranker
 
-        usable = [index for index, one in enumerate(measured) if one.view.form.faces]
-        rank, accuracy = train_ranker(
-            [measured[index] for index in usable],
-            holds[np.array(usable)],
+        rank, score = train_ranker(
+            [one for one, good in zip(measured, usable, strict=True) if good],
+            holds[usable],
             Args(seed=args.seed),
             lambda step, steps, score: progress(f"ranker {step}/{steps}, validation accuracy {score:.4f}"),
         )
     card = {
         "relation": data.relation,
-        "model": "transfer",
+        "model": "flow" if flow else "transfer",
         "samples": count,
         "seed": args.seed,
         "commit": args.commit,
         "data": {name: data.card[name] for name in ("split", "seed", "count") if name in data.card},
-        "validation accuracy": accuracy,
+        "validation accuracy": score,
         "ranks": ranks,
         "classifies": ranks,
     }
-    return relational_weights(chart, transfer, rank, card)
+    return relational_weights(chart, proposals, rank, card)
 
 
 def measure(example: Example) -> Measures:
@@ -85,10 +96,8 @@ def measure(example: Example) -> Measures:
     return view.measure((view.T_region_world @ example.situation.body.matrix)[None])
 
 
-TRAINERS: dict[str, Callable[..., Weights]] = {"transfer": train_transfer}
+TRAINERS: dict[str, Callable[..., Weights]] = {
+    "transfer": partial(train_relational, flow=False),
+    "flow": partial(train_relational, flow=True),
+}
 """Model name to what trains it."""
-
-
-def accuracy(predicted: Sequence[float], holds: np.ndarray) -> float:
-    """The share of probabilities on the right side of a half."""
-    return float(((np.asarray(predicted) > 0.5) == holds).mean())

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from grounding.relational.measures import Measures, View, face_descriptors, turns, upright
+from grounding.relational.measures import Measures, View, turns, upright
 from tamp.world.pose import Array
 from tamp.world.scene import CONTACT_GAP
 
@@ -108,25 +108,31 @@ class Chart:
         height = 0.0 if abs(height) < LEVEL else height
         tilt = np.zeros(2) if np.linalg.norm(tilt) < FLAT else tilt
         coordinates = np.array([*share, height, *tilt, np.cos(yaw), np.sin(yaw)])
-        form = measured.view.form
-        size = np.sort(np.log(np.ptp(form.corners, axis=0)))
-        return Demonstration(coordinates, face_descriptors(form)[measured.face[0]], size)
+        view = measured.view
+        return Demonstration(coordinates, view.faces.descriptors[measured.face[0]], view.size)
 
-    def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Array:
-        """Poses T_region_body, shape (n, 4, 4), of faces (n,) and coordinates (n, 7)."""
-        tilt = np.clip(coordinates[:, 3:5], -WIDEST, WIDEST)
-        yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5])
-        poses = np.tile(np.eye(4), (len(face), 1, 1))
-        poses[:, :3, :3] = turns(yaw) @ upright(tilt) @ view.rotations[face]
+    def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Measures:
+        """Poses of faces (n,) and coordinates (n, 7), measured."""
+        cosine, sine = coordinates[:, 5], coordinates[:, 6]
+        length = np.maximum(np.hypot(cosine, sine), 1e-9)
+        rotations = turns(cosine / length, sine / length)
+        tilt = np.minimum(np.maximum(coordinates[:, 3:5], -WIDEST), WIDEST)
+        if tilt.any():
+            rotations = rotations @ upright(tilt)
+        poses = np.zeros((len(face), 4, 4))
+        poses[:, :3, :3] = rotations @ view.rotations[face]
+        poses[:, 3, 3] = 1.0
         still = view.measure(poses)
+        still.__dict__["face"] = face
         if self.contained:
             middle = (still.low + still.high)[:, :2] / 2
             room = view.region.size[:2] / 2 - (still.high - still.low)[:, :2] / 2
         else:
             middle, room = still.centre[:, :2], np.broadcast_to(view.region.size[:2] / 2, (len(face), 2))
-        poses[:, :2, 3] = np.clip(coordinates[:, :2], -1.0, 1.0) * np.maximum(room, 0.0) - middle
-        poses[:, 2, 3] = _anchors(view)[self.anchor] + self.offset + coordinates[:, 2] - _levels(still)[:, self.level]
-        return poses
+        positions = np.empty((len(face), 3))
+        positions[:, :2] = np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle
+        positions[:, 2] = _anchors(view)[self.anchor] + self.offset + coordinates[:, 2] - _levels(still)[:, self.level]
+        return still.moved(positions)
 
     def shortfall(self, measured: Measures) -> Array:
         """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""

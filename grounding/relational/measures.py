@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,29 +32,50 @@ class View:
     def __init__(self, situation: Situation) -> None:
         self.form, self.region = situation.body.form, situation.region
         self.T_world_region = situation.T_world_region
-        self.T_region_world = np.linalg.inv(self.T_world_region)
+        self.T_region_world = inverse(self.T_world_region)
+        self.faces = resting(self.form.unit)
         half, height = self.region.size[:2] / 2, min(float(self.region.size[2]), 1.0)
-        room = np.array([[-half[0], -half[1], 0.0], [half[0], half[1], height]])
-        placed = [Placed(other.form, self.T_region_world @ other.matrix) for other in situation.others]
-        near = [other for other in placed if _distance(other.matrix[:3, 3], room) < REACH + other.form.radius]
-        support = self.T_region_world @ situation.support.matrix
-        walls = [Placed(piece, support) for piece in situation.support.form.pieces]
-        walls = [wall for wall in walls if wall.box[1, 2] > WALL]
-        self.obstacles = Obstacles([*near, *walls])
+        self._room = np.array([[-half[0], -half[1], 0.0], [half[0], half[1], height]])
+        self.obstacles = Obstacles([*self._near(situation.others), *self._walls(situation.support)])
 
     @cached_property
+    def size(self) -> Array:
+        """Logarithms of the body's extents, sorted, shape (3,)."""
+        low, high = self.form.corners
+        return np.sort(np.log(high - low))
+
+    @property
     def rotations(self) -> Array:
         """What turns the body's faces down, shape (f, 3, 3)."""
-        return np.stack([face.rotation for face in self.form.faces])
+        return self.faces.rotations
 
-    @cached_property
+    @property
     def steadiness(self) -> Array:
         """The tilt that each face withstands, radians, shape (f,)."""
-        return np.array([face.angle for face in self.form.faces])
+        return self.faces.steadiness
 
     def measure(self, poses: Array) -> Measures:
         """Poses T_region_body, shape (n, 4, 4), measured."""
         return Measures(self, poses)
+
+    def _near(self, others: Sequence[Placed]) -> list[Placed]:
+        if not others:
+            return []
+        matrices = self.T_region_world @ np.array([other.matrix for other in others])
+        points = matrices[:, :3, 3]
+        away = np.maximum(np.maximum(self._room[0] - points, points - self._room[1]), 0.0)
+        reach = REACH + np.array([other.form.radius for other in others])
+        near = (away * away).sum(axis=1) < reach * reach
+        return [
+            Placed(other.form, matrix) for other, matrix, is_near in zip(others, matrices, near, strict=True) if is_near
+        ]
+
+    def _walls(self, support: Placed) -> list[Placed]:
+        matrix = self.T_region_world @ support.matrix
+        boxes = support.form.piece_boxes
+        tops = boxes.mean(axis=1) @ matrix[2, :3] + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2 + matrix[2, 3]
+        rise = tops > WALL
+        return [Placed(support.form.pieces[index], matrix) for index in np.flatnonzero(rise)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,26 +85,36 @@ class Measures:
     view: View
     poses: Array
 
+    def moved(self, positions: Array) -> Measures:
+        """The same rotations, the body's origin at `positions`, shape (n, 3); what is known is not worked out again."""
+        poses = self.poses.copy()
+        poses[:, :3, 3] = positions
+        moved = Measures(self.view, poses)
+        moved.__dict__["turned"] = self.turned
+        moved.__dict__["face"] = self.face
+        return moved
+
     @cached_property
-    def points(self) -> Array:
-        """The hull's corners, shape (n, v, 3)."""
-        form = self.view.form
-        return form.vertices @ self.poses[:, :3, :3].transpose(0, 2, 1) + self.poses[:, None, :3, 3]
+    def turned(self) -> tuple[Array, Array, Array]:
+        """Least and largest coordinates and centre of mass of the body turned about its origin, each (n, 3)."""
+        rotations, form = self.poses[:, :3, :3], self.view.form
+        points = (form.vertices @ rotations.reshape(-1, 3).T).reshape(-1, len(rotations), 3)  # (v, n, 3)
+        return points.min(axis=0), points.max(axis=0), rotations @ form.centre_of_mass
 
     @cached_property
     def low(self) -> Array:
         """The least coordinates, shape (n, 3)."""
-        return self.points.min(axis=1)
+        return self.turned[0] + self.poses[:, :3, 3]
 
     @cached_property
     def high(self) -> Array:
         """The largest coordinates, shape (n, 3)."""
-        return self.points.max(axis=1)
+        return self.turned[1] + self.poses[:, :3, 3]
 
     @cached_property
     def centre(self) -> Array:
         """The centre of mass, shape (n, 3)."""
-        return self.poses[:, :3, :3] @ self.view.form.centre_of_mass + self.poses[:, :3, 3]
+        return self.turned[2] + self.poses[:, :3, 3]
 
     @cached_property
     def face(self) -> NDArray[np.intp]:
@@ -129,32 +161,66 @@ class Measures:
         return self.apart.min(axis=1, initial=REACH)
 
 
-def _distance(point: Array, box: Array) -> float:
-    """Of a point from a box, metres."""
-    return float(np.linalg.norm(np.maximum(np.maximum(box[0] - point, point - box[1]), 0.0)))
-
-
 def upright(tilt: Array) -> Array:
     """The smallest rotations that turn a tilted up to up: shape (n, 2) of sines to (n, 3, 3)."""
     a, b = tilt[:, 0], tilt[:, 1]
     c = np.sqrt(np.maximum(1.0 - a * a - b * b, 0.0))
     k = 1.0 / (1.0 + c)
-    rows = [1 - a * a * k, -a * b * k, -a, -a * b * k, 1 - b * b * k, -b, a, b, c]
-    return np.stack(rows, axis=1).reshape(-1, 3, 3)
+    result = np.empty((len(tilt), 3, 3))
+    result[:, 0, 0], result[:, 0, 1], result[:, 0, 2] = 1 - a * a * k, -a * b * k, -a
+    result[:, 1, 0], result[:, 1, 1], result[:, 1, 2] = result[:, 0, 1], 1 - b * b * k, -b
+    result[:, 2, 0], result[:, 2, 1], result[:, 2, 2] = a, b, c
+    return result
 
 
-def turns(yaw: Array) -> Array:
+def turns(cosine: Array, sine: Array) -> Array:
     """Rotations about z, shape (n,) to (n, 3, 3)."""
-    c, s, o = np.cos(yaw), np.sin(yaw), np.zeros(len(yaw))
-    return np.stack([c, -s, o, s, c, o, o, o, o + 1], axis=1).reshape(-1, 3, 3)
+    result = np.zeros((len(cosine), 3, 3))
+    result[:, 0, 0] = result[:, 1, 1] = cosine
+    result[:, 0, 1], result[:, 1, 0] = -sine, sine
+    result[:, 2, 2] = 1.0
+    return result
 
 
-def face_descriptors(form: Form) -> Array:
-    """What distinguishes the faces a body can rest on: steadiness, height and width against the others': (f, 4)."""
-    faces = form.faces
-    extent = np.array([face.extent for face in faces])
-    width = np.array([np.ptp(face.outline, axis=0).min() for face in faces])
-    angle = np.array([face.angle for face in faces])
-    return np.stack(
-        [angle, angle - angle.max(), np.log(extent / extent.min()), np.log(extent / np.maximum(width, 1e-3))], axis=1
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """The faces that a form can rest on, whatever its size.
+
+    Attributes:
+        rotations: What turns each down, shape (f, 3, 3).
+        steadiness: The tilt that each withstands, radians, shape (f,).
+        descriptors: What distinguishes them: steadiness, height and width against the others', shape (f, 4).
+    """
+
+    rotations: Array
+    steadiness: Array
+    descriptors: Array
+
+    def __len__(self) -> int:
+        return len(self.steadiness)
+
+
+@lru_cache(maxsize=1024)
+def resting(form: Form) -> Resting:
+    """Of a form of scale 1."""
+    if not form.faces:
+        return Resting(np.zeros((0, 3, 3)), np.zeros(0), np.zeros((0, 4)))
+    extent = np.array([face.extent for face in form.faces])
+    width = np.array([np.ptp(face.outline, axis=0).min() for face in form.faces])
+    angle = np.array([face.angle for face in form.faces])
+    return Resting(
+        np.stack([face.rotation for face in form.faces]),
+        angle,
+        np.stack(
+            [angle, angle - angle.max(), np.log(extent / extent.min()), np.log(extent / np.maximum(width, 1e-3))],
+            axis=1,
+        ),
     )
+
+
+def inverse(matrix: Array) -> Array:
+    """Of a rigid transform, shape (4, 4)."""
+    result = np.eye(4)
+    result[:3, :3] = matrix[:3, :3].T
+    result[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
+    return result

@@ -9,7 +9,7 @@ from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
 from grounding.relational.chart import Chart, Demonstration
-from grounding.relational.measures import View, face_descriptors
+from grounding.relational.measures import Measures, View
 from tamp.world.pose import Array
 
 JITTER = 0.35
@@ -38,26 +38,32 @@ class Transfer:
     faces: Array
     sizes: Array
 
+    def __post_init__(self) -> None:
+        count = len(self.coordinates)
+        shapes = (self.coordinates.shape, self.faces.shape, self.sizes.shape)
+        if not count or shapes != ((count, 7), (count, 4), (count, 3)):
+            raise ValueError(f"demonstrations of shapes {shapes}")
+
     @classmethod
     def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
         """From encoded demonstrations."""
         columns = zip(*((one.coordinates, one.face, one.size) for one in demonstrations), strict=True)
         return cls(chart, *(np.stack(column) for column in columns))
 
-    def draw(self, view: View, count: int, rng: Random) -> Array:
-        """`count` poses T_region_body, shape (n, 4, 4)."""
+    def draw(self, view: View, count: int, rng: Random) -> Measures:
+        """`count` poses, measured."""
         faces, coordinates = self.choose(view, count, rng)
         return self.chart.decode(view, faces, coordinates)
 
     def choose(self, view: View, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
         """Faces (n,) and coordinates (n, 7) taken from demonstrations."""
-        size = np.sort(np.log(np.ptp(view.form.corners, axis=0)))
-        chosen = _draw(-SIMILAR * ((self.sizes - size) ** 2).sum(axis=1), count, rng)
-        descriptors = face_descriptors(view.form)
-        apart = ((self.faces[chosen][:, None] - descriptors) ** 2).sum(axis=2)  # (n, f)
-        scores = np.where(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), -ALIKE * apart, -1e3)
-        faces = np.argmax(scores + rng.gumbel(size=scores.shape), axis=1)
-        coordinates = self.coordinates[chosen].copy()
+        apart = self.sizes - view.size
+        chosen = _draw(-SIMILAR * np.einsum("nk,nk->n", apart, apart), count, rng)
+        steady = np.flatnonzero(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()))
+        apart = self.faces[chosen][:, None] - view.faces.descriptors[steady]  # (n, f, 4)
+        likely = -ALIKE * np.einsum("nfk,nfk->nf", apart, apart)
+        faces = steady[np.argmax(likely + rng.gumbel(size=likely.shape), axis=1)]
+        coordinates = self.coordinates[chosen]
         share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(size=(count, 2))
         coordinates[:, :2] = 1.0 - np.abs(np.mod(share - 1.0, 4.0) - 2.0)  # reflected into [-1, 1]
         yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5]) + rng.normal(scale=0.5, size=count)
@@ -66,5 +72,5 @@ class Transfer:
 
 
 def _draw(logits: Array, count: int, rng: Random) -> NDArray[np.intp]:
-    weights = np.exp(logits - logits.max())
-    return rng.choice(len(logits), size=count, p=weights / weights.sum())
+    weights = np.cumsum(np.exp(logits - logits.max()))
+    return np.minimum(np.searchsorted(weights, rng.random(count) * weights[-1], side="right"), len(logits) - 1)

@@ -23,7 +23,8 @@ class Ranker:
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]]) -> None:
-        self._main, self._pair = layers_of(arrays, "main"), layers_of(arrays, "pair")
+        self._pair = layers_of(arrays, "pair", PAIR)
+        self._main = layers_of(arrays, "main", POSE + self._pair[-1][0].shape[1], 1)
 
     def logits(self, measured: Measures) -> NDArray[Any]:
         """Shape (n,): the larger, the likelier that the relation holds."""
@@ -61,7 +62,7 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
         return pose.astype(np.float32), np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
     apart = np.minimum(measured.apart, REACH)
     over = np.maximum(
-        measured.low[:, None, 2] - around.top, around.bottom - measured.high[:, None, 2]
+        measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:]
     )  # fmt: skip
     size = np.broadcast_to((around.high - around.low).max(axis=1), apart.shape)
     pair = np.stack([np.tanh(8 * apart), np.tanh(100 * apart), np.tanh(8 * over), np.tanh(100 * over), size], axis=2)
