@@ -47,10 +47,10 @@ class Flow:
         face = np.argmax(logits + rng.gumbel(size=(count, len(logits))), axis=1)
         known, around = conditions[face], surroundings(view)
         half = (view.region.size[:2] / 2).astype(np.float32) * self._scale[:2]
-        x = rng.standard_normal((count, COORDINATES), dtype=np.float32)
+        x: NDArray[np.float32] = rng.standard_normal((count, COORDINATES), dtype=np.float32)
         for step in range(STEPS):
             time = np.full((count, 1), step / STEPS, np.float32)
-            x = x + self.velocity(x, time, known, around, half) / STEPS
+            x += self.velocity(x, time, known, around, half) / STEPS
         return self.chart.decode(view, face, settled_coordinates(x.astype(float) * self._scale))
 
     def velocity(
