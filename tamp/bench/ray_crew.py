@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import time
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from tamp.bench.case import Case
-from tamp.bench.crew import GRACE, Work
+from tamp.bench.crew import GRACE, Ended, Work
 from tamp.errors import InputError
 
 LOCAL = "local"
 """The address that starts a Ray of this machine's own."""
+
+STARTING = 300.0
+"""Seconds that a cluster may take to find a place for a run."""
 
 
 class RayCrew:
@@ -27,39 +33,51 @@ class RayCrew:
     """
 
     def __init__(self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None) -> None:
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody else is told
+        os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         try:
             import ray
         except ImportError:
             raise InputError("--ray needs Ray, which is not installed", remedy="pip install 'tamp[ray]'") from None
-        self._ray = ray
+        self._ray: Any = ray
+        quiet = {"log_to_driver": False, "logging_level": "error"}
         try:
             if address == LOCAL:
-                ray.init(num_cpus=size, include_dashboard=False, log_to_driver=False)
+                ray.init(address=LOCAL, num_cpus=size, include_dashboard=False, **quiet)
             else:
-                ray.init(address=address, log_to_driver=False)
+                ray.init(address=address, **quiet)
         except Exception as error:  # Ray says it in many ways
-            what = f"no Ray cluster at '{address}': {error}".splitlines()[0]
-            raise InputError(what, remedy="Start one with 'ray start --head', or say --ray local") from None
-        self.size = size or int(ray.cluster_resources().get("CPU", 1))
+            said = str(error).strip().splitlines() or [type(error).__name__]
+            remedy = "Start one with 'ray start --head', or say --ray local"
+            raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=remedy) from None
+        self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
         # A lost run is given out again by whoever leads, who knows what was written down: Ray does not retry.
-        self._do = ray.remote(num_cpus=1, max_retries=0)(_Prepared(work, prepare).call)
-        self._under_way: dict[Any, Case] = {}
+        self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
+        self._job = (work, prepare)
+        self._under_way: dict[Any, tuple[Case, float]] = {}
 
     def start(self, case: Case) -> None:
         """Hand a run to the cluster."""
-        self._under_way[self._do.remote(case)] = case
+        self._under_way[self._do.remote(*self._job, case)] = case, time.monotonic()
 
-    def finished(self) -> list[tuple[Case, dict[str, Any] | None]]:
-        """Runs that have ended since; waits a fifth of a second at most."""
-        ready, _ = self._ray.wait(list(self._under_way), num_returns=1, timeout=0.2)
-        ended: list[tuple[Case, dict[str, Any] | None]] = []
+    def finished(self) -> list[Ended]:
+        """Runs that have ended since; waits for a fifth of a second at most."""
+        ready, pending = self._ray.wait(list(self._under_way), num_returns=1, timeout=0.2)
+        ended: list[Ended] = []
         for reference in ready:
-            case = self._under_way.pop(reference)
+            case, _ = self._under_way.pop(reference)
             try:
                 ended.append((case, self._ray.get(reference, timeout=GRACE)))
-            except self._ray.exceptions.RayTaskError:
-                raise
-            except self._ray.exceptions.RayError:  # its worker, its machine or the way to it is gone
+            except self._ray.exceptions.RayTaskError as error:  # not lost: it cannot be done there at all
+                said = str(error.cause)
+                raise InputError(f"a worker of the cluster failed: {said}", remedy="Is tamp installed there?") from None
+            except self._ray.exceptions.RayError:  # its process, its machine or the way to it is gone
+                ended.append((case, None))
+        for reference in pending:
+            case, since = self._under_way[reference]
+            if time.monotonic() - since > case.time + GRACE + STARTING:
+                self._ray.cancel(reference, force=True)
+                del self._under_way[reference]
                 ended.append((case, None))
         return ended
 
@@ -68,12 +86,12 @@ class RayCrew:
         self._ray.shutdown()
 
 
-class _Prepared:
-    """The work, after each process has prepared itself once."""
+def _prepared_work(work: Work, prepare: Callable[[], None], case: Case) -> dict[str, Any]:
+    _prepare_once(prepare)
+    return work(case)
 
-    def __init__(self, work: Work, prepare: Callable[[], None]) -> None:
-        self._work, self._prepare = work, prepare
 
-    def call(self, case: Case) -> dict[str, Any]:
-        """Do a run."""
-        raise NotImplementedError
+@cache
+def _prepare_once(prepare: Callable[[], None]) -> None:
+    """Per process."""
+    prepare()

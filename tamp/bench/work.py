@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -17,6 +18,9 @@ from tamp.solution import Solution
 from tamp.streams.choice import Registry
 from tamp.streams.mixture import Account
 
+ERROR = "ERROR"
+"""The outcome of a run in which the planner or the judge raised."""
+
 VIOLATIONS = 5
 """How many of a refused plan's are kept."""
 
@@ -26,26 +30,42 @@ def warm_up() -> None:
     solve(load_problem("one_object"), max_time=60.0)
 
 
-def do(case: Case, registry: Callable[[], Registry], judged: bool = True) -> dict[str, Any]:
+def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
     """Run a case; what comes back is one line of the results. Times in seconds.
+
+    An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on, and shows it.
 
     Args:
         case: What to run.
         registry: Gives the samplers beyond the hand-made ones.
-        judged: Whether the plan is verified.
     """
     began = time.perf_counter()
+    try:
+        line = _run(case, registry)
+    except Exception as error:
+        line = {
+            "outcome": ERROR,
+            "solved": False,
+            "verified": None,
+            "planning_s": time.perf_counter() - began,
+            "explanation": traceback.format_exception(error),
+        }
+    told = {"config": case.config, "seed": case.seed, **line}
+    return {**told, **origin(), "load": round(os.getloadavg()[0], 2)}
+
+
+def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
+    began = time.perf_counter()
     problem = load_problem(case.problem, samplers=dict(case.samplers), registry=registry())
-    loaded = time.perf_counter()
+    loaded, used = time.perf_counter(), time.process_time()
     solution = solve(problem, max_time=case.time, seed=case.seed, algorithm=case.algorithm)
-    planned = time.perf_counter()
+    planned, spent = time.perf_counter(), time.process_time() - used
     line: dict[str, Any] = {
-        "config": case.config,
-        "seed": case.seed,
         "outcome": solution.outcome.name,
         "solved": solution.solved,
         "load_s": loaded - began,
         "planning_s": planned - loaded,
+        "cpu_s": spent,
         "explanation": list(solution.explanation),
         "warnings": list(solution.warnings),
         "parts_s": parts(solution),
@@ -64,9 +84,8 @@ def do(case: Case, registry: Callable[[], Registry], judged: bool = True) -> dic
     }
     if solution.solved:
         line |= {"actions": len(solution.plan), "cost": solution.cost, "motion_s": solution.duration}
-        if judged:
-            line |= _verdict(solution)
-    return {**line, **origin(), "load": round(os.getloadavg()[0], 2)}
+        line |= _verdict(solution)
+    return line
 
 
 def parts(solution: Solution) -> dict[str, float]:
