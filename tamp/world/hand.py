@@ -63,19 +63,19 @@ class HandCollisions:
         radii = np.concatenate([group.radii for group in movers])
         own = np.concatenate([group.centres for group in movers])
         parts = [part for group in movers for part in group.parts]
-        for tool in tools:
-            centres = own @ tool[:3, :3].T + tool[:3, 3]
-            gaps = np.maximum(np.maximum(lows[:, None] - centres, centres - highs[:, None]), 0.0)
-            near = np.argwhere((gaps * gaps).sum(axis=2) <= radii * radii).tolist()
-            placed: dict[int, Array] = {}  # where each frame is; the same array, so that a part is placed once
-            for index, k in near:
-                name, pose, part = owners[index]
-                body, number, frame = parts[k]
-                matrix = placed.get(id(frame))
-                if matrix is None:
-                    matrix = placed[id(frame)] = tool @ frame
-                if touch(body.place(number, matrix), self._bodies[name].place(part, pose.matrix), 0.0):
-                    return name
+        at = np.array(tools)
+        centres = own @ at[:, :3, :3].transpose(0, 2, 1) + at[:, None, :3, 3]
+        gaps = np.maximum(np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0)
+        near = np.nonzero(np.einsum("tpmi,tpmi->tpm", gaps, gaps) <= radii * radii)
+        placed: dict[tuple[int, int], Array] = {}  # where each frame is; the same array, so that a part is placed once
+        for t, index, k in zip(*(axis.tolist() for axis in near), strict=True):
+            name, pose, part = owners[index]
+            body, number, frame = parts[k]
+            matrix = placed.get((t, id(frame)))
+            if matrix is None:
+                matrix = placed[t, id(frame)] = tools[t] @ frame
+            if touch(body.place(number, matrix), self._bodies[name].place(part, pose.matrix), 0.0):
+                return name
         return None
 
     def _parts(self, standing: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
