@@ -106,20 +106,20 @@ class NumpyEncoder:
     """
 
     def __init__(self, arrays: Arrays) -> None:
-        self._layers = _chain(arrays, "")
-        if not self._layers or "scale" not in arrays or "points" not in arrays or self._layers[-1][0].shape[1] != CODE:
+        self.layers = _chain(arrays, "")
+        if not self.layers or "scale" not in arrays or "points" not in arrays or self.layers[-1][0].shape[1] != CODE:
             raise InputError("the weights have no encoder of clouds", remedy="Train one: tamp-learn encoder --help")
-        self._scale, self._points = float(arrays["scale"]), int(arrays["points"])
+        self.scale, self.points = float(arrays["scale"]), int(arrays["points"])
 
     def __call__(self, points: Array) -> Floats:
         """The code, shape (CODE,), of a posed, centred cloud, shape (n, 3), metres."""
-        x = scaled(points, self._scale)[: self._points].astype(np.float32)
-        for number, (weight, bias) in enumerate(self._layers):
+        x = scaled(points, self.scale)[: self.points].astype(np.float32)
+        for number, (weight, bias) in enumerate(self.layers):
             x = x @ weight
-            if number < len(self._layers) - 1:
+            if number < len(self.layers) - 1:
                 x += bias
                 np.maximum(x, 0, out=x)
-        return x.max(axis=0) + self._layers[-1][1]
+        return x.max(axis=0) + self.layers[-1][1]
 
 
 def scaled(points: Array, factor: float) -> Array:

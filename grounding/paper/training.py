@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from grounding.dataset import Dataset
-from grounding.paper.features import BoxFeatures, CloudFeatures
+from grounding.paper.codes import coded_table
+from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import NumpyEncoder
 from grounding.paper.table import Table, table_of
 from grounding.paper.trainer import SCHEMES, Args, Trainer
@@ -26,6 +27,7 @@ def train(
     seeds: Sequence[int],
     iterations: int = 30_000,
     encoder: Weights | None = None,
+    table: Table | None = None,
     state: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Weights]:
@@ -39,6 +41,7 @@ def train(
         seeds: As many; initial weights, order of the examples and noise.
         iterations: Of the classifier, and then of the generator.
         encoder: What codes the clouds, for the models on clouds.
+        table: The data's features, if they are known already.
         state: A file to go on from, and to save the state of the run in every 2,000 iterations.
         progress: Told how far it is.
 
@@ -46,7 +49,7 @@ def train(
         InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another run's state.
     """
     _check(data, model, scheme, sizes, seeds, encoder)
-    table = features_of(data, model, encoder, progress)
+    table = table or features_of(data, model, encoder, progress)
     trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations))
     trainer.run(state, progress)
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if _clouds(model) and encoder else {}
@@ -71,7 +74,7 @@ def train(
 def features_of(data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None]) -> Table:
     """The features that a model is trained on."""
     if _clouds(model) and encoder is not None:
-        return table_of(data, CloudFeatures(NumpyEncoder(encoder.arrays)), progress)
+        return coded_table(data, NumpyEncoder(encoder.arrays), progress)
     return table_of(data, BoxFeatures(), progress)
 
 

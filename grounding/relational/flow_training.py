@@ -23,7 +23,7 @@ from grounding.relational.flow import (
     surroundings,
 )
 from grounding.relational.measures import Measures
-from grounding.relational.torch_layers import arrays_of, dense_layers, run_layers
+from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 NARROW = 0.02
 """The least size of a coordinate: some are constant."""

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from grounding.relational.measures import Measures
 from grounding.relational.ranker import PAIR, POSE, features
-from grounding.relational.torch_layers import arrays_of, dense_layers, run_layers
+from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 
 @dataclass(frozen=True)

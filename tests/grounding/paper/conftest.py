@@ -13,7 +13,7 @@ def boxes_on_a_table(count: int, seed: int = 0) -> Dataset:
     """Half stand on the table, half float or are sunken by 8 cm or more; up to 3 others lie around."""
     rng = np.random.default_rng(seed)
     holds = np.arange(count) % 2 == 0
-    body = np.full((count, 5), -1)
+    body = np.full((count, 5), -1, np.int16)
     body[:, 0] = 0
     body[:, 1] = rng.integers(1, 3, count)
     others = rng.integers(0, 4, count)

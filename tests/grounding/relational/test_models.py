@@ -20,8 +20,8 @@ from grounding.relational.flow_training import FlowNet, Scenes
 from grounding.relational.measures import View
 from grounding.relational.model import RelationalModel
 from grounding.relational.ranker import Ranker, features
-from grounding.relational.torch_layers import arrays_of
 from grounding.relational.training import RankerNet
+from grounding.torch_layers import arrays_of
 from grounding.train import TRAINERS, TrainArgs, measure
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
