@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import time
 from collections.abc import Callable
 from functools import cache
@@ -14,6 +15,11 @@ from tamp.errors import InputError
 
 LOCAL = "local"
 """The address that starts a Ray of this machine's own."""
+
+REMEDY = "Start one with 'ray start --head', or say --ray local"
+
+ANSWERING = 10.0
+"""Seconds that a cluster may take to take up a connection."""
 
 STARTING = 300.0
 """Seconds that a cluster may take to find a place for a run."""
@@ -33,6 +39,7 @@ class RayCrew:
     """
 
     def __init__(self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None) -> None:
+        _check_somebody_listens(address)
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody else is told
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         try:
@@ -48,8 +55,7 @@ class RayCrew:
                 ray.init(address=address, **quiet)
         except Exception as error:  # Ray says it in many ways
             said = str(error).strip().splitlines() or [type(error).__name__]
-            remedy = "Start one with 'ray start --head', or say --ray local"
-            raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=remedy) from None
+            raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=REMEDY) from None
         self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
         # A lost run is given out again by whoever leads, who knows what was written down: Ray does not retry.
         self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
@@ -84,6 +90,17 @@ class RayCrew:
     def close(self) -> None:
         """Leave the cluster; one of our own ends."""
         self._ray.shutdown()
+
+
+def _check_somebody_listens(address: str) -> None:
+    """Ray itself tries for minutes before it says that nobody is there."""
+    host, _, port = address.removeprefix("ray://").rpartition(":")
+    if not host or not port.isdigit():
+        return
+    try:
+        socket.create_connection((host, int(port)), timeout=ANSWERING).close()
+    except (OSError, OverflowError) as error:
+        raise InputError(f"no Ray cluster at '{address}': {error}", remedy=REMEDY) from None
 
 
 def _prepared_work(work: Work, prepare: Callable[[], None], case: Case) -> dict[str, Any]:

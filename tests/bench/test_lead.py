@@ -71,6 +71,14 @@ def test_without_ray_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch
         RayCrew("auto", note, nothing)
 
 
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:1", "ray://127.0.0.1:1", "127.0.0.1:99999", "no.such.host.invalid:6379"]
+)
+def test_nobody_at_an_address_is_an_error_at_once(address: str) -> None:
+    with pytest.raises(InputError, match=f"no Ray cluster at '{address}'"):
+        RayCrew(address, note, nothing)
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_no_cluster_at_an_address_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
