@@ -127,7 +127,10 @@ def test_torch_stays_where_training_is() -> None:
     assert files == {
         "grounding/torch_layers.py",
         *(f"grounding/relational/{name}.py" for name in ("training", "flow_training")),
-        *(f"grounding/paper/{name}.py" for name in ("codes", "critic", "encoders", "networks", "trainer")),
+        *(
+            f"grounding/paper/{name}.py"
+            for name in ("codes", "critic", "encoders", "networks", "trainer", "tree_training")
+        ),
     }
 
 
@@ -140,8 +143,8 @@ def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     assert modules & HEAVY == set()
 
 
-@pytest.mark.parametrize("module", ["grounding.paper.runtime"])
+@pytest.mark.parametrize("module", ["registry", "surface", "paper.runtime", "paper.trees", "paper.uniform"])
 def test_groundings_work_without_the_extra_they_are_trained_with(module: str) -> None:
-    code = f"import sys, {module}; print(*(name for name in ('torch', 'sklearn') if name in sys.modules))"
+    code = f"import sys, grounding.{module}; print(*(name for name in ('torch', 'sklearn') if name in sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert run.stdout.strip() == ""

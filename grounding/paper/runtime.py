@@ -18,6 +18,8 @@ from tamp.world.pose import Array
 Floats = NDArray[np.float32]
 Arrays = Mapping[str, NDArray[Any]]
 
+_REMEDY = "Train it again: tamp-learn train --help"
+
 NOISE = 4
 """Gaussian numbers that the generator is given."""
 
@@ -64,7 +66,7 @@ class Network:
     def __init__(self, arrays: Arrays, name: str) -> None:
         self.main, self.scene = _chain(arrays, f"{name}.main"), _chain(arrays, f"{name}.scene")
         if not self.main:
-            raise InputError(f"the weights have no {name}", remedy="Train it again: tamp-learn train --help")
+            raise InputError(f"the weights have no {name}", remedy=_REMEDY)
 
     def context(self, arguments: Floats, others: Floats) -> Floats:
         """The embedding of the surroundings, shape (n, 16), or (n, 0) of a network that does not look at them.
@@ -131,9 +133,13 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
     """The features that a classifier is for.
 
     Raises:
-        InputError: Neither kind; or they are codes, and there is no encoder.
+        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
     """
     inputs = classifier.main[0][0].shape[0] - (classifier.scene[-1][1].shape[0] if classifier.scene else 0)
+    outputs = classifier.main[-1][1].shape[0]
+    if outputs != 1:
+        raise InputError(f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY)
+    _check_scene(classifier, inputs // 2)
     if inputs == 2 * BB:
         return BoxFeatures()
     if inputs == 2 * PC:
@@ -174,13 +180,21 @@ def unit(turns: Array) -> Array:
     return np.where(norm > 1e-8, turns / np.maximum(norm, 1e-8), [0.0, 0.0, 0.0, 1.0])
 
 
+def _check_scene(network: Network, size: int) -> None:
+    inputs = network.scene[0][0].shape[0] if network.scene else 3 * size
+    if len(network.scene) not in (0, 3) or inputs != 3 * size:
+        what = f"the surroundings go through {len(network.scene)} layers, {inputs} numbers a body"
+        raise InputError(f"{what}; it should be 3 and {3 * size}", remedy=_REMEDY)
+
+
 def _check_generator(network: Network, size: int) -> None:
+    _check_scene(network, size)
     inputs, outputs = network.main[0][0].shape[0], network.main[-1][1].shape[0]
     wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
     if (inputs, outputs) != (wanted, 7):
         raise InputError(
             f"the generator is given {inputs} numbers and returns {outputs}; it should be {wanted} and 7",
-            remedy="Train it again: tamp-learn train --help",
+            remedy=_REMEDY,
         )
 
 
@@ -194,7 +208,7 @@ def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
         if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
             raise InputError(
                 f"layer '{dot}{len(layers)}' does not fit: matrix {weight.shape}, bias {bias.shape}",
-                remedy="Train it again: tamp-learn train --help",
+                remedy=_REMEDY,
             )
         layers.append((weight, bias))
     return layers
