@@ -16,7 +16,21 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 SYMBOLIC = ("tamp/pddl", "tamp/search", "tamp/algorithms")
 LONGEST = 300
-HEAVY = {"torch", "pybullet", "trimesh", "toppra", "scipy", "ompl", "fcl", "pinocchio", "eaik", "coacd", "matplotlib"}
+HEAVY = {
+    "torch",
+    "pybullet",
+    "trimesh",
+    "toppra",
+    "scipy",
+    "ompl",
+    "fcl",
+    "pinocchio",
+    "eaik",
+    "coacd",
+    "matplotlib",
+    "ray",
+}
+EXTRAS = {"matplotlib": {"tamp/bench/picture.py"}, "ray": {"tamp/bench/ray_crew.py"}}
 DISTRIBUTIONS = {
     "PIL": "pillow",
     "fcl": "python-fcl",
@@ -88,14 +102,25 @@ def test_no_global_state_no_asserts_no_probing() -> None:
 def test_dependencies_are_what_the_code_imports() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     declared = {line.partition(">=")[0].lower() for line in project["dependencies"]}
-    learning = {re.split("[>=]=", line)[0] for line in project["optional-dependencies"]["learn"]}
+    extras = {
+        extra: {re.split("[>=]=", line)[0] for line in project["optional-dependencies"][extra]}
+        for extra in ("learn", "bench", "ray")
+    }
     own = {"tamp", "grounding", *sys.stdlib_module_names}
     needed = {
         folder: {DISTRIBUTIONS.get(name, name) for file in sources(folder) for name in imported(file)} - own
         for folder in ("tamp", "grounding")
     }
-    assert not needed["tamp"] & learning
-    assert (needed["tamp"] | needed["grounding"]) - learning == declared
+    benchmarks = extras["bench"] | extras["ray"]
+    assert not needed["tamp"] & (extras["learn"] - benchmarks)
+    assert (needed["tamp"] | needed["grounding"]) - extras["learn"] - benchmarks == declared
+
+
+def test_the_extras_of_benchmarks_stay_there() -> None:
+    using = {
+        name: {str(file.relative_to(ROOT)) for file in sources("tamp") if name in imported(file)} for name in EXTRAS
+    }
+    assert using == EXTRAS
 
 
 def test_torch_stays_where_training_is() -> None:
@@ -110,7 +135,10 @@ def test_torch_stays_where_training_is() -> None:
     }
 
 
-@pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli", "tamp.export.cli", "tamp.view.cli"])
+@pytest.mark.parametrize(
+    "module",
+    ["tamp", "tamp.cli", "tamp.verification.cli", "tamp.export.cli", "tamp.view.cli", "tamp.bench.cli"],
+)
 def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     code = f"import sys, json, {module}; print(json.dumps(sorted(sys.modules)))"
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)

@@ -175,10 +175,15 @@ def stable_faces(body: Body) -> list[Face]:
         rotation = _rotation_to_down(normal)
         turned = vertices @ rotation.T
         low = float(turned[:, 2].min())
-        base = outline(turned[turned[:, 2] < low + FLAT, :2])
+        touching = turned[turned[:, 2] < low + FLAT, :2]
+        centre = rotation @ centre_of_mass_
+        # Within the base no edge is farther from the centre of mass than the base's box: most facets end here.
+        room = float(np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min())
+        if room < math.tan(STABLE) * max(float(centre[2]) - low, 1e-6) - FLAT:
+            continue
+        base = outline(touching)
         if len(base) < 3:
             continue
-        centre = rotation @ centre_of_mass_
         angle = _tipping_angle(base, centre[:2], float(centre[2]) - low)
         if angle < STABLE:
             continue

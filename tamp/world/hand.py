@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,8 +13,12 @@ from tamp.world.fcl_bodies import FclBody, touch
 from tamp.world.pose import Array, Pose
 from tamp.world.robot import Robot
 from tamp.world.scene import Cylinder, Hull, Part, Scene
+from tamp.world.urdf import Joint
 
 Placed = tuple[str, Pose]
+
+SLACK = 1e-4
+"""What is added to the balls around parts, metres, so that rounding never keeps FCL from being asked."""
 
 
 class HandCollisions:
@@ -35,11 +40,9 @@ class HandCollisions:
         self._bodies = {name: FclBody(body.parts) for name, body in scene.bodies.items()}
         self._held = {name: FclBody(scene.bodies[name].parts) for name in scene.movable}
         self._T_tool_hand = robot.T_hand_tool.inverse().matrix
-        self._reach = max(
-            _radius(bounds(self._parts_of_hand, robot.T_hand_tool.inverse())),
-            *(_radius(_finger_in_tool(robot, i)) for i in range(2)),
-        )
         self._boxes: dict[Placed, tuple[Array, Array]] = {}
+        self._open: dict[float, _Movers] = {}
+        self._attached: dict[Placed, _Movers] = {}
 
     def hits(
         self, tools: Sequence[Array], opening: float, attachment: Attachment | None, others: Iterable[Placed]
@@ -56,22 +59,23 @@ class HandCollisions:
         if not standing:
             return None
         owners, lows, highs = self._parts(standing)
-        reach = self._reach
-        if attachment is not None:
-            held = self._scene.bodies[attachment.body].parts
-            reach = max(reach, _radius(bounds(held, attachment.T_tool_body)))
-        for tool in tools:
-            centre = tool[:3, 3]
-            gaps = np.maximum(np.maximum(lows - centre, centre - highs), 0.0)
-            near = np.flatnonzero((gaps * gaps).sum(axis=1) <= reach * reach)
-            if not len(near):
-                continue
-            moving = [mover.place(k, matrix) for mover, matrix, k in self._moving(tool, opening, attachment)]
-            for index in near:
-                name, pose, part = owners[index]
-                other = self._bodies[name].place(part, pose.matrix)
-                if any(touch(mover, other, 0.0) for mover in moving):
-                    return name
+        movers = [self._movers(opening), *([] if attachment is None else [self._holding(attachment)])]
+        radii = np.concatenate([group.radii for group in movers])
+        own = np.concatenate([group.centres for group in movers])
+        parts = [part for group in movers for part in group.parts]
+        at = np.array(tools)
+        centres = own @ at[:, :3, :3].transpose(0, 2, 1) + at[:, None, :3, 3]
+        gaps = np.maximum(np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0)
+        near = np.nonzero(np.einsum("tpmi,tpmi->tpm", gaps, gaps) <= radii * radii)
+        placed: dict[tuple[int, int], Array] = {}  # where each frame is; the same array, so that a part is placed once
+        for t, index, k in zip(*(axis.tolist() for axis in near), strict=True):
+            name, pose, part = owners[index]
+            body, number, frame = parts[k]
+            matrix = placed.get((t, id(frame)))
+            if matrix is None:
+                matrix = placed[t, id(frame)] = tools[t] @ frame
+            if touch(body.place(number, matrix), self._bodies[name].place(part, pose.matrix), 0.0):
+                return name
         return None
 
     def _parts(self, standing: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
@@ -88,31 +92,59 @@ class HandCollisions:
             highs.append(high)
         return owners, np.concatenate(lows), np.concatenate(highs)
 
-    def _moving(self, tool: Array, opening: float, attachment: Attachment | None) -> list[tuple[FclBody, Array, int]]:
-        hand = tool @ self._T_tool_hand
-        moving = [(self._hand, hand, k) for k in range(len(self._hand.objects))]
-        for body, joint in zip(self._fingers, self._robot.fingers, strict=True):
-            matrix = hand @ _finger(joint.origin.matrix, joint.origin.rotation @ np.array(joint.axis), opening)
-            moving += [(body, matrix, k) for k in range(len(body.objects))]
-        if attachment is not None:
-            held = self._held[attachment.body]
-            matrix = tool @ attachment.T_tool_body.matrix
-            moving += [(held, matrix, k) for k in range(len(held.objects))]
-        return moving
+    def _movers(self, opening: float) -> _Movers:
+        """The hand, the wrist and the fingers."""
+        if opening not in self._open:
+            fingers = [
+                (body, link.parts, self._T_tool_hand @ _finger(joint, opening))
+                for body, link, joint in zip(self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True)
+            ]
+            self._open[opening] = _Movers.of([(self._hand, self._parts_of_hand, self._T_tool_hand), *fingers])
+        return self._open[opening]
+
+    def _holding(self, attachment: Attachment) -> _Movers:
+        """The body in the hand."""
+        name, T_tool_body = attachment.body, attachment.T_tool_body
+        if (name, T_tool_body) not in self._attached:
+            parts = self._scene.bodies[name].parts
+            self._attached[name, T_tool_body] = _Movers.of([(self._held[name], parts, T_tool_body.matrix)])
+        return self._attached[name, T_tool_body]
 
 
-def _finger(origin: Array, axis: Array, opening: float) -> Array:
+@dataclass(frozen=True, eq=False)
+class _Movers:
+    """Parts that move with the tool, with balls around them.
+
+    Attributes:
+        parts: Of which body, which part, and the body's T_tool_body (4, 4).
+        centres: Of the balls in the tool's frame, (n, 3).
+        radii: Of the balls, metres, (n,).
+    """
+
+    parts: list[tuple[FclBody, int, Array]]
+    centres: Array
+    radii: Array
+
+    @classmethod
+    def of(cls, bodies: Sequence[tuple[FclBody, tuple[Part, ...], Array]]) -> _Movers:
+        """Of all parts of bodies at their T_tool_body."""
+        parts: list[tuple[FclBody, int, Array]] = []
+        centres: list[Array] = []
+        radii: list[float] = []
+        for body, shapes, T_tool_body in bodies:
+            for number, part in enumerate(shapes):
+                low, high = bounds((part,), Pose())
+                parts.append((body, number, T_tool_body))
+                centres.append(T_tool_body[:3, :3] @ ((low + high) / 2) + T_tool_body[:3, 3])
+                radii.append(float(np.linalg.norm(high - low)) / 2 + SLACK)
+        return cls(parts, np.array(centres), np.array(radii))
+
+
+def _finger(joint: Joint, opening: float) -> Array:
     """T_hand_finger (4, 4) of a finger that stands at half the opening."""
-    matrix = origin.copy()
-    matrix[:3, 3] += axis * (opening / 2)
+    matrix = joint.origin.matrix.copy()
+    matrix[:3, 3] += joint.origin.rotation @ np.array(joint.axis) * (opening / 2)
     return matrix
-
-
-def _finger_in_tool(robot: Robot, index: int) -> tuple[Array, Array]:
-    """The box of a finger, wide open, in the tool's frame."""
-    joint = robot.fingers[index]
-    finger = _finger(joint.origin.matrix, joint.origin.rotation @ np.array(joint.axis), robot.opening)
-    return bounds(robot.links[-2 + index].parts, robot.T_hand_tool.inverse() @ Pose.from_matrix(finger))
 
 
 def _core(robot: Robot) -> list[Part]:
@@ -159,8 +191,3 @@ def _along(axis: Array) -> Array:
     matrix[:3, 0] = other / np.linalg.norm(other)
     matrix[:3, 1], matrix[:3, 2] = np.cross(axis, matrix[:3, 0]), axis
     return matrix
-
-
-def _radius(box: tuple[Array, Array]) -> float:
-    """Of a sphere around the origin that contains a box, metres."""
-    return float(np.linalg.norm(np.maximum(np.abs(box[0]), np.abs(box[1]))))

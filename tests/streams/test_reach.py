@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from tamp.streams.approach import LIFT, RETREAT, test_approach
 from tamp.streams.inverse_kinematics import inverse_kinematics
 from tamp.streams.reach import test_reachable
 from tamp.streams.sampling import sample_grasp, sample_inside
+from tamp.world.collision import Attachment
+from tamp.world.fcl_bodies import FclBody, touch
 from tamp.world.hand import HandCollisions
 from tamp.world.pose import Pose
 from tests.streams.scenes import call, problem_with, values
@@ -53,6 +56,39 @@ def test_the_hand_and_wrist_hit_only_what_the_robot_hits(tmp_path: Path, rng: np
             hits += 1
             assert context.fixed_only(None).hits(conf) is not None
     assert hits > 20
+
+
+def test_the_hand_hits_all_that_its_parts_hit(tmp_path: Path, rng: np.random.Generator) -> None:
+    """The balls around the parts leave nothing out: asking FCL about every pair says the same."""
+    context = problem_with("mug", tmp_path).context
+    scene, robot = context.scene, context.robot
+    links = [FclBody(link.parts) for link in robot.links[-3:]]
+    held = FclBody(scene.bodies["mug"].parts)
+    fixed = {name: FclBody(scene.bodies[name].parts) for name in scene.fixed}
+    standing = [(name, scene.bodies[name].pose) for name in scene.fixed]
+    lower, upper = np.array(robot.lower), np.array(robot.upper)
+    hits = clear = 0
+    for _ in range(600):
+        base = np.array([1.0 + rng.uniform(-0.3, 0.3), rng.uniform(-0.4, 0.4), rng.uniform(-1, 1)])
+        conf = context.conf(base, rng.uniform(lower, upper))
+        opening = float(rng.uniform(0.0, robot.opening))
+        attachment = Attachment("mug", Pose((0.0, 0.0, float(rng.uniform(0.0, 0.1)))), opening)
+        tool = context.kinematics.tool(conf)
+        poses = list(context.kinematics.link_poses(conf, opening).values())[-3:]
+        moving = [*zip(links, poses, strict=True), (held, tool @ attachment.T_tool_body.matrix)]
+        touched = {
+            name
+            for name, other in fixed.items()
+            for mover, matrix in moving
+            for k, part in itertools.product(range(len(mover.objects)), range(len(other.objects)))
+            if touch(mover.place(k, matrix), other.place(part, scene.bodies[name].pose.matrix), 0.0)
+        }
+        said = context.hand.hits([tool], opening, attachment, standing)
+        if touched:
+            hits += 1
+            assert said is not None
+        clear += said is None
+    assert hits > 20 and clear > 20
 
 
 @pytest.mark.parametrize("name", ["can", "box"])

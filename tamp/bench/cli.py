@@ -1,0 +1,156 @@
+"""tamp-bench: problems x samplers x seeds, a line of results a run, tables and pictures."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tamp.bench.arguments import Draw, Fig8, Run, Tabulate, parsed
+from tamp.errors import InputError
+
+if TYPE_CHECKING:
+    from tamp.bench.crew import Crew
+    from tamp.streams.choice import Registry
+
+BASELINE = "uniform"
+"""The sampler that others are compared with unless another one is named."""
+
+DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run tamp-bench and leave the process with 0, 2 for bad input, 130 interrupted."""
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: list[str]) -> int:
+    """Run tamp-bench and return its exit code."""
+    try:
+        chosen = parsed(arguments)
+        if isinstance(chosen, Tabulate):
+            _print_tables(_read(chosen.log), chosen.against)
+        elif isinstance(chosen, Draw):
+            _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""))
+        elif isinstance(chosen, Fig8):
+            _draw(_fig8(chosen), chosen.out.with_suffix(""))
+        else:
+            _run(chosen)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("\ninterrupted; the same command goes on where this one was", file=sys.stderr)
+        return INTERRUPTED
+    return DONE
+
+
+def _run(chosen: Run) -> list[dict[str, Any]]:
+    from tamp.bench.case import relations
+
+    known = _known()
+    samplers = {sampler: relations(sampler, known) for sampler in chosen.samplers}
+    return _lead(chosen, samplers, range(chosen.first, chosen.first + chosen.seeds), chosen.algorithm)
+
+
+def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
+    from tamp.bench.fig8 import FIG8
+    from tamp.bench.fig8 import chosen as among
+
+    samplers, skipped = among(FIG8, _known())
+    for name, why in skipped.items():
+        print(f"skipped {name}: {why}", file=sys.stderr)
+    return _lead(chosen, samplers, range(chosen.seeds), "adaptive")
+
+
+def _lead(
+    chosen: Run | Fig8, samplers: Mapping[str, Mapping[str, str]], seeds: range, algorithm: str
+) -> list[dict[str, Any]]:
+    """Check everything, run what is missing, print the tables; all results of the file."""
+    from tamp.api import ALGORITHMS
+    from tamp.bench.case import cases, named
+    from tamp.bench.lead import lead
+    from tamp.bench.log import Log
+    from tamp.bench.progress import Watch
+    from tamp.problem import load_problem
+
+    if algorithm not in ALGORITHMS:
+        raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
+    problems = [named(problem) for problem in chosen.problems]
+    for problem in dict.fromkeys(problems):  # an error in a file is one now, and not one in each run
+        for relation_samplers in samplers.values():
+            load_problem(problem, samplers=relation_samplers, registry=_registry())
+    wanted = cases(problems, samplers, seeds, chosen.time, algorithm)
+    with Log(chosen.out) as log:
+        log.check(chosen.time, algorithm)
+        missing = log.missing(wanted)
+        if missing:
+            crew = _crew(chosen, len(missing))
+            try:
+                lead(missing, crew, log, Watch(len(wanted), quiet=chosen.quiet).ended)
+            finally:
+                crew.close()
+        lines = log.lines
+    _print_tables(lines)
+    return lines
+
+
+def _crew(chosen: Run | Fig8, runs: int) -> Crew:
+    from tamp.bench.work import do, warm_up
+
+    work = partial(do, registry=_registry)
+    if chosen.ray is not None:
+        from tamp.bench.ray_crew import RayCrew
+
+        return RayCrew(chosen.ray, work, warm_up, chosen.jobs)
+    from tamp.bench.processes import Processes
+
+    return Processes(min(chosen.jobs or os.cpu_count() or 1, runs), work, warm_up)
+
+
+def _registry() -> Registry:
+    """The learned samplers."""
+    from tamp.cli import registry
+
+    return registry()
+
+
+def _known() -> Registry:
+    """All samplers by relation and name."""
+    from tamp.streams.registry import SAMPLERS
+
+    learned = _registry()
+    return {
+        relation: {**SAMPLERS.get(relation, {}), **learned.get(relation, {})}
+        for relation in dict.fromkeys([*SAMPLERS, *learned])
+    }
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    from tamp.bench.log import read_log
+
+    return read_log(path)
+
+
+def _print_tables(lines: Sequence[Mapping[str, Any]], against: str | None = None) -> None:
+    from tamp.bench.table import report
+
+    samplers = dict.fromkeys(line["config"]["sampler"] for line in lines)
+    if against is not None and against not in samplers:
+        raise InputError(f"no runs with '{against}' among the results", found=against, choices=samplers)
+    usual = BASELINE if BASELINE in samplers and len(samplers) > 1 else None
+    print(report(lines, against or usual))
+
+
+def _draw(lines: Sequence[Mapping[str, Any]], folder: Path) -> None:
+    from tamp.bench.picture import draw
+
+    for path in draw(lines, folder):
+        print(f"{path} written")
+
+
+if __name__ == "__main__":
+    main()
