@@ -27,3 +27,13 @@ def root() -> Path:
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(0)
+
+
+@pytest.fixture(scope="session")
+def stored_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A plan file of one_object with the record of what was tried; not to be written to."""
+    from tamp import load_problem, solve
+    from tamp.plan_file import write_plan
+
+    solution = solve(load_problem("one_object"), max_time=60.0, seed=0)
+    return write_plan(solution, tmp_path_factory.mktemp("stored") / "plan.json")

@@ -1,0 +1,1 @@
+"""Trajectories for other programs."""

@@ -1,0 +1,157 @@
+"""A plan's trajectories as text. docs/watch-export-execute.md describes the formats."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from tamp.export.trajectory import BASE_JOINTS, Stretch, TimedAction
+from tamp.verification.plan_file import PlanFile
+from tamp.world.pose import Array
+from tamp.world.robot import Robot
+
+DIGITS = 9
+"""Decimals of the numbers: those of the plan file."""
+
+NANOSECONDS = 10**9
+
+
+def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+    """The actions with their stretches, times from the plan's start."""
+    document = {
+        "format": "tamp-trajectory",
+        "version": 1,
+        "robot": plan.robot,
+        "joints": {"base": BASE_JOINTS, "arm": _names(robot)[0], "gripper": _names(robot)[1]},
+        "duration": plan.duration,
+        "actions": [
+            {
+                "name": action.name,
+                "arguments": action.arguments,
+                "start": action.start,
+                "duration": action.duration,
+                "segments": [_stretch(stretch) for stretch in action.stretches],
+            }
+            for action in actions
+        ],
+    }
+    return json.dumps(document) + "\n"
+
+
+def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+    """One row a sample with all joints, those that stand still too; the columns of velocities begin with v_."""
+    arm, fingers = _names(robot)
+    joints = (*BASE_JOINTS, *arm, *fingers)
+    column = {name: at for at, name in enumerate(joints)}
+    standing = _start(plan, robot)
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(("time", "number", "action", "part", "holding", *joints, *(f"v_{name}" for name in joints)))
+    for number, action in enumerate(actions, start=1):
+        for stretch in action.stretches:
+            moving = [column[name] for name in stretch.joints]
+            for time, positions, velocities in zip(
+                stretch.times, stretch.positions, stretch.velocities, strict=True
+            ):  # fmt: skip
+                rates = np.zeros(len(joints))
+                standing[moving], rates[moving] = positions, velocities
+                numbers = (*_rounded(standing), *_rounded(rates))
+                holding = stretch.holding or ""
+                writer.writerow((round(float(time), DIGITS), number, action.name, stretch.part, holding, *numbers))
+    return file.getvalue()
+
+
+def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+    """trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which they are to be sent.
+
+    `time_from_start` counts from the message's own start. Beside each message stands what it belongs to.
+    """
+    messages = [
+        {
+            "action": number,
+            "name": action.name,
+            "arguments": action.arguments,
+            "controller": stretch.part,
+            "start": round(float(stretch.times[0]), DIGITS),
+            "holding": stretch.holding,
+            "attach": stretch.attach,
+            "detach": stretch.detach,
+            "message": _message(stretch),
+        }
+        for number, action in enumerate(actions, start=1)
+        for stretch in action.stretches
+    ]
+    return json.dumps({"format": "tamp-ros", "version": 1, "robot": plan.robot, "trajectories": messages}) + "\n"
+
+
+FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
+    "json": json_text,
+    "csv": csv_text,
+    "ros": ros_text,
+}
+"""What a plan's trajectories can be written as."""
+
+
+def _names(robot: Robot) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    return tuple(joint.name for joint in robot.joints), tuple(finger.name for finger in robot.fingers)
+
+
+def _start(plan: PlanFile, robot: Robot) -> Array:
+    """All joints before the first action: each part stands where its first segment begins, if it ever moves."""
+    places = [plan.values.get(fact[1]) for fact in plan.initial if fact[0] == "at-base" and len(fact) == 2]
+    known = [value.data for value in places if value is not None and value.type == "base-conf"]
+    base = known[0] if known else np.zeros(3)
+    arm, opening = np.array(robot.home), robot.opening
+    segments = [segment for action in plan.actions for segment in action.segments]
+    for segment in reversed(segments):
+        opening = float(segment.opening[0])
+        if segment.part == "base":
+            base = segment.positions[0]
+        elif segment.part == "arm":
+            arm = segment.positions[0]
+    return np.concatenate([base, arm, np.full(len(robot.fingers), opening / 2)])
+
+
+def _stretch(stretch: Stretch) -> dict[str, Any]:
+    document: dict[str, Any] = {
+        "part": stretch.part,
+        "joints": stretch.joints,
+        "times": _rounded(stretch.times),
+        "positions": [_rounded(row) for row in stretch.positions],
+        "velocities": [_rounded(row) for row in stretch.velocities],
+        "holding": stretch.holding,
+    }
+    if stretch.attach is not None:
+        document["attach"] = stretch.attach
+    if stretch.detach is not None:
+        document["detach"] = stretch.detach
+    return document
+
+
+def _message(stretch: Stretch) -> dict[str, Any]:
+    points = []
+    for time, positions, velocities in zip(
+        stretch.times - stretch.times[0], stretch.positions, stretch.velocities, strict=True
+    ):  # fmt: skip
+        seconds, nanoseconds = divmod(round(float(time) * NANOSECONDS), NANOSECONDS)
+        points.append(
+            {
+                "positions": _rounded(positions),
+                "velocities": _rounded(velocities),
+                "accelerations": [],
+                "effort": [],
+                "time_from_start": {"sec": seconds, "nanosec": nanoseconds},
+            }
+        )
+    frame = "world" if stretch.part == "base" else ""
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+    return {"header": header, "joint_names": stretch.joints, "points": points}
+
+
+def _rounded(row: Array) -> list[float]:
+    return [round(float(number), DIGITS) + 0.0 for number in row]

@@ -1,0 +1,102 @@
+"""A plan's trajectories with joint names, times and velocities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.verification.plan_file import PlanFile
+from tamp.verification.plan_file import Segment as StoredSegment
+from tamp.world.pose import Array
+from tamp.world.robot import Robot
+
+BASE_JOINTS = ("base_x", "base_y", "base_yaw")
+"""What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the yaw are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """One part of the robot moving, from rest to rest, while the others stand still.
+
+    Attributes:
+        part: "base", "arm" or "gripper".
+        joints: Names of the joints that move.
+        times: Seconds from the plan's start, shape (n,), increasing.
+        positions: Metres and radians, shape (n, joints), linear in between.
+        velocities: Their rates, shape (n, joints), zero at both ends.
+        holding: The body in the hand meanwhile.
+        attach, detach: The body that the fingers close on, or let go of.
+    """
+
+    part: str
+    joints: tuple[str, ...]
+    times: Array
+    positions: Array
+    velocities: Array
+    holding: str | None
+    attach: str | None
+    detach: str | None
+
+
+@dataclass(frozen=True, eq=False)
+class TimedAction:
+    """An action and its stretches, in order; `start` and `duration` in seconds."""
+
+    name: str
+    arguments: tuple[str, ...]
+    start: float
+    duration: float
+    stretches: tuple[Stretch, ...]
+
+
+def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
+    """The plan's motions in the plan's time."""
+    joints = {
+        "base": BASE_JOINTS,
+        "arm": tuple(joint.name for joint in robot.joints),
+        "gripper": tuple(finger.name for finger in robot.fingers),
+    }
+    actions: list[TimedAction] = []
+    for action in plan.actions:
+        clock = action.start
+        stretches: list[Stretch] = []
+        for segment in action.segments:
+            stretches.append(_stretch(segment, joints[segment.part], clock))
+            clock += float(segment.times[-1])
+        actions.append(TimedAction(action.name, action.arguments, action.start, action.duration, tuple(stretches)))
+    return tuple(actions)
+
+
+def _stretch(segment: StoredSegment, joints: tuple[str, ...], clock: float) -> Stretch:
+    positions = segment.positions
+    if segment.part == "gripper":  # each finger stands at half the opening
+        positions = np.repeat(segment.opening[:, None] / 2, len(joints), axis=1)
+    return Stretch(
+        part=segment.part,
+        joints=joints,
+        times=clock + segment.times,
+        positions=positions,
+        velocities=rates(segment.times, positions),
+        holding=segment.holding,
+        attach=None if segment.attach is None else segment.attach.body,
+        detach=segment.detach,
+    )
+
+
+def rates(times: Array, positions: Array) -> Array:
+    """Velocities (n, d) at samples of a motion from rest to rest: the mean of the slopes before and after each one.
+
+    Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that the slopes keep
+    are kept.
+
+    Args:
+        times: Shape (n,), seconds, increasing.
+        positions: Shape (n, d).
+    """
+    velocities = np.zeros_like(positions)
+    if len(times) > 2:
+        spans = np.diff(times)[:, None]
+        slopes = np.diff(positions, axis=0) / spans
+        velocities[1:-1] = (slopes[:-1] * spans[1:] + slopes[1:] * spans[:-1]) / (spans[:-1] + spans[1:])
+    return velocities
