@@ -12,6 +12,7 @@ from typing import Annotated
 import tyro
 
 from tamp.errors import InputError
+from tamp.execution.grasps import GRASPS
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,10 @@ class Arguments:
     """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
+    execute: bool = False
+    """Carry the plan out in physics, as by tamp-execute; then 1 as well when the goal does not hold at the end."""
+    grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
+    """How the hand holds in physics: friction, or constraint (a fixed joint)."""
     json: bool = False
     """Print one JSON document instead of text."""
     quiet: bool = False
@@ -88,6 +93,10 @@ def parsed(arguments: list[str]) -> Arguments:
         )
     if not chosen.files[-1].endswith(".pddl") and (chosen.search or chosen.heuristic):
         raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
+    if chosen.files[-1].endswith(".pddl") and chosen.execute:
+        raise InputError("--execute is for problems with a scene; a plan of PDDL alone has no motion")
+    if chosen.grasp not in GRASPS:
+        raise InputError(f"unknown grasp '{chosen.grasp}'", found=chosen.grasp, choices=GRASPS)
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
     if abs(chosen.seed) >= 2**64:
