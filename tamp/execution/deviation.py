@@ -15,7 +15,7 @@ from tamp.world.pose import Array
 FAR = 0.01
 """Metres by which a body may stand elsewhere than expected, or be elsewhere in the hand."""
 
-TURNED = math.radians(8.0)
+TURNED = math.radians(12.0)
 """Radians by which it may be turned."""
 
 TOPPLED = math.radians(30.0)

@@ -28,8 +28,8 @@ OBSTACLE_SIZE = (0.08, 0.08, 0.12)
 SHIFT = (0.05, 0.15)
 """Metres by which a body is moved on what it stands on."""
 
-SLIP, TILT = (0.005, 0.012), (math.radians(12.0), math.radians(25.0))
-"""Metres out of the hand, and radians about the closing axis, by which a body slips."""
+SLIP, TILT = (0.012, 0.025), (math.radians(2.0), math.radians(10.0))
+"""Metres down, and radians about the closing axis, by which a body slips in the hand."""
 
 TRIES = 100
 """Places tried for a body before another one is taken."""
@@ -131,21 +131,25 @@ def _drop(now: Happening) -> str:
 
 
 def _slip(now: Happening) -> str:
-    """The body in the hand slides outward and turns about the closing axis."""
+    """The body in the hand slides down between the pads and turns a little about the closing axis."""
     world, rng = now.world, now.rng
     held = world.bound or _carried(now)
     if held is None:
         return "nothing was in the hand"
-    tool = world.tool()
+    tool, T, bound = world.tool(), world.pose(held), world.bound is not None
     turn = float(rng.uniform(*TILT)) * (1.0 if rng.random() < 0.5 else -1.0)
-    out = float(rng.uniform(*SLIP))
-    slipped = Pose((0.0, 0.0, out), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
-    bound = world.bound is not None
+    turned = Pose((0.0, 0.0, 0.0), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
+    down = float(rng.uniform(*SLIP))
     world.unbind()
-    world.put(held, tool @ slipped @ np.linalg.inv(tool) @ world.pose(held))
+    for share in (1.0, 0.75, 0.5, 0.25, 0.0):
+        slipped = tool @ turned @ np.linalg.inv(tool) @ T
+        slipped[2, 3] -= share * down
+        world.put(held, slipped)
+        if world.near_fingers(held):  # else it would be a drop
+            break
     if bound:
         world.bind(held)
-    return f"{held} slips by {1000 * out:.0f} mm and {math.degrees(abs(turn)):.0f}° in the hand"
+    return f"{held} slips by {1000 * share * down:.0f} mm and {math.degrees(abs(turn)):.0f}° in the hand"
 
 
 def _remove(now: Happening) -> str:

@@ -12,7 +12,7 @@ from tamp.execution.deviation import Deviation, Seen, deviations
 from tamp.execution.disturbance import Happening, schedule
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
-from tamp.execution.playing import Player
+from tamp.execution.playing import CLOSING, Player
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
 from tamp.execution.truth import Observer, Truth
@@ -142,7 +142,10 @@ class _Run:
         for number, segment in enumerate(action.segments):
             body = self._scene_name(segment.attach.body) if segment.attach else None
             happens = due is not None and due.segment == number
-            self._player.play(segment, body, watch, self._disturb if happens else None, due.share if due else 0.0)
+            event, at = (self._disturb, due.share) if happens and due else (None, 0.0)
+            guard = self._scene_name(segment.holding) if segment.holding and self._chosen.replanner else None
+            if not self._player.play(segment, body, watch, event, at, guard):
+                break
         self._player.finish()
         self._world.wait(SETTLE)
         self._come_to_rest()
@@ -229,20 +232,23 @@ class _Run:
         self._expected = Expected(plan, self._domain, self._world.scene)
 
     def _mend(self, replanner: Replanner, done: Done) -> str:
-        truth, world = self._look(), self._world
-        held = self._held()
-        grasp = None
-        if held is not None:
+        world, held, grasp = self._world, self._held(), None
+        if held is None:  # a hand that closed on nothing
+            self._player.let_go()
+            world.wait(CLOSING)
+        else:
             grasp = replanner.grasp(held, np.linalg.inv(world.tool()) @ world.pose(held), world.width())
         if self._replans >= MOST:
             self._explanation = (f"planned anew {MOST} times, and still it comes differently",)
             return self._explanation[0]
-        mended = replanner.mend(truth, grasp, self._plan, self._queue, done.deviations, self._expected)
+        mended = replanner.mend(self._look(), grasp, self._plan, self._queue, done.deviations, self._expected)
         if mended.keeps:
             self._kept += 1
             self._known = frozenset(world.scene.bodies)
             self._expected.accept({name: world.pose(name) for name in world.scene.movable})
             return "the rest of the plan still holds"
+        if mended.plan is None and all(one.kind == "slipped" for one in done.deviations):
+            return f"no plan from here, so it goes on: {'; '.join(mended.explanation)}"
         if mended.plan is None:
             self._explanation = mended.explanation
             return f"no plan from here: {'; '.join(mended.explanation)}"

@@ -8,7 +8,7 @@ from tamp.errors import InputError
 from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.report import GoalFact
 from tamp.execution.truth import Truth
-from tamp.pddl.structs import Atom, Fact, Formula
+from tamp.pddl.structs import Atom, Formula
 from tamp.streams.choice import Registry
 from tamp.streams.relations import Classifier
 from tamp.verification.formulas import flat, show
@@ -31,7 +31,7 @@ def judged(
     for part in flat(goal):
         holds = semantics.holds(part, state)
         name, probability = _classified(part, truth, classifiers)
-        why = None if holds else _reason(part, truth.reasons)
+        why = None if holds else _reason(part, truth, held)
         found.append(GoalFact(show(part), holds, why, name, probability))
     return tuple(found)
 
@@ -69,5 +69,12 @@ def _classified(
     return name, float(classifier.classify(scene, [names[term] for term in part.terms]))
 
 
-def _reason(part: Formula, reasons: Mapping[Fact, str]) -> str | None:
-    return reasons.get((part.predicate, *part.terms)) if isinstance(part, Atom) else None
+def _reason(part: Formula, truth: Truth, held: str | None) -> str | None:
+    if not isinstance(part, Atom) or not part.terms:
+        return None
+    body = part.terms[0]
+    if held is not None and body == held.lower():
+        return "it is in the hand"
+    if body not in {name.lower() for name in truth.scene.bodies}:
+        return "it is gone"
+    return truth.reasons.get((part.predicate, *part.terms))

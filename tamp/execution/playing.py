@@ -39,19 +39,28 @@ class Player:
         self._world, self._grasp = world, grasp
         self._passing: str | None = None
 
-    def play(self, segment: Segment, body: str | None, watch: Watch, event: Event | None = None, at: float = 0) -> None:
-        """Carry out a segment.
+    def play(
+        self,
+        segment: Segment,
+        body: str | None,
+        watch: Watch,
+        event: Event | None = None,
+        at: float = 0.0,
+        guard: str | None = None,
+    ) -> bool:
+        """Carry out a segment; whether it came to its end.
 
         Args:
             segment: What to do.
             body: The scene's name of the body that the fingers close on.
             watch: Looks on.
             event: Called once at that share `at` of the segment's time.
+            guard: The base stops when this body is not between the fingers any more.
         """
         if segment.part == "gripper":
             self._finger(segment, body, watch)
-        else:
-            self._follow(segment, watch, event, at)
+            return True
+        return self._follow(segment, watch, event, at, guard if segment.part == "base" else None)
 
     def finish(self) -> None:
         """At an action's end: a body that was let go is felt again."""
@@ -69,7 +78,7 @@ class Player:
             world.pass_through(body, False)
         world.squeezing, world.opening = False, world.widest
 
-    def _follow(self, segment: Segment, watch: Watch, event: Event | None, at: float) -> None:
+    def _follow(self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None) -> bool:
         world = self._world
         first = 0 if segment.part == "base" else 3
         columns = range(first, first + segment.positions.shape[1])
@@ -87,7 +96,11 @@ class Player:
             before[:] = world.conf
             if step % EVERY == 0:
                 watch.look()
+                if guard is not None and not self._between(guard):
+                    world.conf[:3] = world.actual()[:3]
+                    break
         self._wait(REST, watch)
+        return step == count - 1
 
     def _finger(self, segment: Segment, body: str | None, watch: Watch) -> None:
         world = self._world
