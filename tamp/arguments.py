@@ -12,6 +12,7 @@ from typing import Annotated
 import tyro
 
 from tamp.errors import InputError
+from tamp.execution.grasps import GRASPS
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,10 @@ class Arguments:
     """Write a moving picture (.gif or .webp)."""
     record: bool = False
     """Keep the samples tried in the plan file, for tamp-view; --view and --html do so too. The plan is the same."""
+    execute: bool = False
+    """Carry the plan out in physics, as by tamp-execute; then 1 as well when the goal does not hold at the end."""
+    grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
+    """How the hand holds in physics: friction, or constraint (a fixed joint)."""
     json: bool = False
     """Print one JSON document instead of text."""
     quiet: bool = False
@@ -101,6 +106,10 @@ def parsed(arguments: list[str]) -> Arguments:
     shown = [name for name in ("view", "html", "png", "video", "record") if getattr(chosen, name)]
     if chosen.files[-1].endswith(".pddl") and shown:
         raise InputError(f"--{shown[0]} is for problems with a scene; one in PDDL has none")
+    if chosen.files[-1].endswith(".pddl") and chosen.execute:
+        raise InputError("--execute is for problems with a scene; a plan of PDDL alone has no motion")
+    if chosen.grasp not in GRASPS:
+        raise InputError(f"unknown grasp '{chosen.grasp}'", found=chosen.grasp, choices=GRASPS)
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
     if abs(chosen.seed) >= 2**64:

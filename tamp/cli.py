@@ -17,6 +17,7 @@ from tamp.errors import InputError
 from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
+    from tamp.execution.report import Execution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
@@ -31,6 +32,13 @@ def main(arguments: list[str] | None = None) -> None:
     # The time that the user gives counts from here, less what the interpreter took to come here.
     started = time.monotonic() - time.process_time()
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, started))
+
+
+def execute(arguments: list[str] | None = None) -> None:
+    """Run tamp-execute."""
+    from tamp.execution.cli import main
+
+    sys.exit(main(sys.argv[1:] if arguments is None else arguments, registry))
 
 
 def run(arguments: list[str], started: float | None = None) -> int:
@@ -87,6 +95,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None
+    executed = _execute(written, arguments) if written is not None and arguments.execute else None
     if arguments.json:
         import json
 
@@ -94,17 +103,28 @@ def _solve(arguments: Arguments, started: float) -> int:
         document["plan"] = None if written is None else str(written)
         if verdict is not None:
             document["verification"] = verdict.json()
+        if executed is not None:
+            document["execution"] = executed.json()
         say(json.dumps(document, indent=2))
     else:
         shown.line(summary(solution))
         _conclude(shown, arguments, written, verdict)
+        if executed is not None:
+            shown.line(f"\n{executed.text()}")
     if wishes.any:
         from tamp.view.open import film_of_solution
 
         fulfil(wishes, *film_of_solution(solution), None, shown.line)
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
-    return SOLVED if holds else NO_PLAN
+    return SOLVED if holds and (executed is None or executed.reached) else NO_PLAN
+
+
+def _execute(plan: Path, arguments: Arguments) -> Execution:
+    """The plan that was just written, carried out in physics."""
+    from tamp.execution.command import Options, carry_out
+
+    return carry_out(plan, Options(grasp=arguments.grasp, seed=arguments.seed), registry())
 
 
 def _solve_symbolic(arguments: Arguments, started: float) -> int:

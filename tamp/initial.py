@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tamp.pddl.structs import Domain, Fact
-from tamp.streams.values import BaseConf
+from tamp.streams.values import BaseConf, Grasp
 from tamp.world.scene import Scene
 
 START_BASE = "base_start"
@@ -21,11 +21,16 @@ class Initial:
     values: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
-def initial_state(scene: Scene, domain: Domain) -> Initial:
+def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) -> Initial:
     """The scene in the words of the domain.
 
     Facts of predicates that the domain does not declare are left out. Where it declares a predicate `movable`, `fixed`,
     `surface` or `container` instead of a type of that name, the fact takes the type's place.
+
+    Args:
+        scene: The scene.
+        domain: The domain.
+        holding: What is in the hand; that body is nowhere else.
     """
     state = Initial()
     for name, body in scene.bodies.items():
@@ -35,8 +40,16 @@ def initial_state(scene: Scene, domain: Domain) -> Initial:
     for name in scene.cavities:
         _object(state, domain, name, "container")
     start = _value(state, domain, START_BASE, "base-conf", BaseConf(*scene.robot.base))
-    facts: list[Fact] = [("hand-empty",), ("at-base", start), ("standing", start)]
+    facts: list[Fact] = [("at-base", start), ("standing", start)]
+    if holding is None:
+        facts.append(("hand-empty",))
+    else:
+        held = holding.body.lower()
+        grasp = _value(state, domain, f"{held}_held", "grasp", holding)
+        facts += [("grasp", held, grasp), ("holding", held, grasp)]
     for name in scene.movable:
+        if holding is not None and name == holding.body:
+            continue
         body = scene.bodies[name]
         word = name.lower()
         pose = _value(state, domain, f"{word}_start", "pose", body.pose)

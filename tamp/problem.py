@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation
 from tamp.streams.registry import SAMPLERS, STREAMS
 from tamp.streams.relations import Classifier, Generator
+from tamp.streams.values import Grasp
 from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.overlaps import check_overlaps
 from tamp.world.robot import ROBOTS
@@ -70,6 +71,8 @@ def load_problem(
     registry: Registry | None = None,
     functions: Mapping[str, Callable[..., Any]] | None = None,
     steering: str = "se2",
+    scene: Scene | None = None,
+    holding: Grasp | None = None,
 ) -> Problem:
     """Load a problem.
 
@@ -86,6 +89,7 @@ def load_problem(
         functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
             f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
+        scene: Where things are by now, instead of where the file has them; and what is in the hand by now, `holding`.
 
     Raises:
         InputError: Anything wrong with the files or the names, with its place.
@@ -93,33 +97,28 @@ def load_problem(
     if steering not in STEERINGS:
         raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
     loaded = load_scene(problem)
+    if scene is not None:
+        loaded = replace(loaded, scene=scene)
     domain_path = _domain_path(loaded, domain)
     parsed = parse_domain(_read(domain_path), domain_path)
     streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
     declared = parse_streams(_read(streams_path), parsed, streams_path)
-    start = initial_state(loaded.scene, parsed)
+    start = initial_state(loaded.scene, parsed, holding)
     goal = parse_goal(
-        loaded.goal.text,
-        parsed,
-        start.objects,
-        loaded.path,
-        line_offset=loaded.goal.line - 1,
-        column_offset=loaded.goal.column - 1,
-    )
+        loaded.goal.text, parsed, start.objects, loaded.path,
+        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+    )  # fmt: skip
     for passage in loaded.init:
         start.facts |= parse_facts(
-            passage.text,
-            parsed,
-            start.objects,
-            loaded.path,
-            line_offset=passage.line - 1,
-            column_offset=passage.column - 1,
-        )
+            passage.text, parsed, start.objects, loaded.path,
+            line_offset=passage.line - 1, column_offset=passage.column - 1,
+        )  # fmt: skip
     _check_metric(loaded)
     served = _Served.of(loaded, samplers or {}, groundings or {}, registry or {})
     mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
-    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering)
-    check_overlaps(loaded)
+    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering, holding)
+    if scene is None:  # what is seen may touch
+        check_overlaps(loaded)
     _check_start(loaded, context)
     bound = _bind(declared, parsed, context, {**served.functions(), **(functions or {})})
     _refuse_decided(declared)
@@ -292,8 +291,9 @@ def _without_function(stream: Stream, file: str | None, known: Mapping[str, Any]
 def _check_start(loaded: LoadedProblem, context: Context) -> None:
     scene = loaded.scene
     conf = context.conf(scene.robot.base, context.home)
-    poses = {name: scene.bodies[name].pose for name in scene.movable}
-    if (hit := context.collisions.arrangement(poses).hits(conf)) is not None:
+    held = context.holding and context.attachment(context.holding)
+    poses = {name: scene.bodies[name].pose for name in scene.movable if held is None or name != held.body}
+    if (hit := context.collisions.arrangement(poses, held).hits(conf)) is not None:
         link, other = hit
         outside = {link, other} & set(scene.bodies)
         remedy = "Move its base, or what stands there" if outside else "Give it another 'arm:'"

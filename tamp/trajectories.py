@@ -79,7 +79,9 @@ class _Replay:
         scene = context.scene
         self._context = context
         self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
-        self._held: Grasp | None = None
+        self._held: Grasp | None = context.holding
+        if self._held is not None:
+            self._poses.pop(self._held.body)
         self._base: Array = np.array(scene.robot.base)
         self._arm: Array = context.home
 

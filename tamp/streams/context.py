@@ -31,12 +31,14 @@ class Context:
         robot: Its robot.
         mixtures: Relation to the generators that serve it.
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
+        holding: What is in the hand at the start; the scene has that body where it was before.
     """
 
     scene: Scene
     robot: Robot
     mixtures: Mapping[str, Mixture]
     steering: str = "se2"
+    holding: Grasp | None = None
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
 

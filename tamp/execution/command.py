@@ -1,0 +1,66 @@
+"""What `tamp-execute` and `tamp-solve --execute` have in common: from a plan file to a report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tamp.errors import InputError
+from tamp.execution.disturbance import DISTURBANCES
+from tamp.execution.execute import Circumstances, execute
+from tamp.execution.goal import classifiers_of
+from tamp.execution.grasps import GRASPS
+from tamp.execution.replan import Replanner
+from tamp.execution.report import Execution
+from tamp.stored import open_plan
+from tamp.streams.choice import Registry
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a plan file is to be carried out: see `tamp-execute --help`."""
+
+    grasp: str = "friction"
+    replan: bool = False
+    disturb: str | None = None
+    seed: int = 0
+    time: float = 30.0
+    problem: Path | None = None
+
+
+def check(options: Options) -> None:
+    """Refuse names that nobody knows before time is spent on a plan.
+
+    Raises:
+        InputError: An unknown grasp or disturbance; a time that is not positive.
+    """
+    if options.grasp not in GRASPS:
+        raise InputError(f"unknown grasp '{options.grasp}'", found=options.grasp, choices=GRASPS)
+    if options.disturb is not None and options.disturb not in DISTURBANCES:
+        what = f"unknown disturbance '{options.disturb}'"
+        raise InputError(what, found=options.disturb, choices=DISTURBANCES)
+    if not options.time > 0.0:
+        raise InputError(f"--time: the time must be positive, not {options.time:g}")
+
+
+def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
+    """Carry out a plan file in physics.
+
+    Args:
+        file: The plan.
+        options: How.
+        registry: The learned groundings, for their opinion of the goal and for planning anew.
+
+    Raises:
+        InputError: The plan file is malformed, of another version, or what it was made from has changed.
+    """
+    check(options)
+    stored = open_plan(file, options.problem)
+    circumstances = Circumstances(
+        grasp=options.grasp,
+        replanner=Replanner(stored, registry, options.time, options.seed) if options.replan else None,
+        disturbance=options.disturb,
+        seed=abs(options.seed),
+        classifiers=classifiers_of(registry),
+    )
+    return execute(stored, circumstances)

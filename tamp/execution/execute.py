@@ -1,0 +1,258 @@
+"""A stored plan carried out in physics, watched, and mended where things come differently."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tamp.execution.deviation import Deviation, Seen, deviations
+from tamp.execution.disturbance import Happening, schedule
+from tamp.execution.expected import Expected
+from tamp.execution.goal import judged
+from tamp.execution.playing import CLOSING, Player
+from tamp.execution.replan import Replanner
+from tamp.execution.report import Displaced, Done, Execution
+from tamp.execution.truth import Observer, Truth
+from tamp.execution.watching import Watch
+from tamp.pddl.parser import parse_domain, parse_goal
+from tamp.simulation.actuated import Actuated
+from tamp.stored import Stored
+from tamp.streams.relations import Classifier
+from tamp.verification.files import source_file
+from tamp.verification.plan_file import PlanFile, TimedAction
+from tamp.verification.start import apart
+from tamp.world.pose import Array
+
+SETTLE = 0.5
+"""Seconds after an action, before it is looked at what came of it."""
+
+STILL = (0.005, 0.05)
+"""Metres and radians a second: what moves faster is waited for,"""
+
+PATIENCE = 4.0
+"""at most this long, seconds."""
+
+MOST = 8
+"""Plans made anew in one run."""
+
+MOVED = (0.005, 0.09)
+"""Metres and radians: a body that nobody handles and that moved less is not worth a line."""
+
+
+@dataclass(frozen=True)
+class Circumstances:
+    """How a plan is carried out.
+
+    Attributes:
+        grasp: "friction", or "constraint": the fingers bind what they close on.
+        replanner: Who plans anew on a deviation; nobody lets the plan go on as it is.
+        disturbance: What somebody does to the scene, one of DISTURBANCES.
+        seed: Of the disturbance and of planning anew.
+        classifiers: Relation to a classifier and its name, for their opinion of the goal.
+    """
+
+    grasp: str = "friction"
+    replanner: Replanner | None = None
+    disturbance: str | None = None
+    seed: int = 0
+    classifiers: Mapping[str, tuple[str, Classifier]] = field(default_factory=dict[str, "tuple[str, Classifier]"])
+
+
+def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execution:
+    """Carry out a plan.
+
+    Args:
+        stored: From `tamp.stored.open_plan`.
+        circumstances: How; with friction and without replanning when not given.
+
+    Raises:
+        InputError: An unknown grasp; a domain that is missing or malformed.
+    """
+    began = time.monotonic()
+    chosen = circumstances or Circumstances()
+    scene = stored.loaded.scene
+    with Actuated(scene, stored.robot) as world, Observer(scene) as observer:
+        run = _Run(stored, chosen, world, observer)
+        run.all()
+        return replace(run.result(), seconds=time.monotonic() - began)
+
+
+class _Run:
+    def __init__(self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer) -> None:
+        self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
+        file = source_file(stored.plan, "domain", None)
+        self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
+        self._player = Player(world, chosen.grasp)
+        self._begin(stored.plan)
+        loaded = stored.loaded
+        self._goal = parse_goal(
+            loaded.goal.text, self._domain, self._expected.semantics.objects, loaded.path,
+            line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+        )  # fmt: skip
+        self._rng = np.random.default_rng(chosen.seed)
+        self._scheduled = schedule(chosen.disturbance, stored.plan, self._rng) if chosen.disturbance else None
+        self._done: list[Done] = []
+        self._replans = self._kept = 0
+        self._explanation: tuple[str, ...] = ()
+        self._event: str | None = None
+        self._known = frozenset(world.scene.bodies)
+
+    def all(self) -> None:
+        """Every action of the plan, and of those that take its place."""
+        self._world.wait(SETTLE)
+        while self._queue and not self._explanation:
+            action = self._queue.pop(0)
+            done = self._carry_out(action)
+            if done.deviations and self._chosen.replanner is not None:
+                done = replace(done, after=self._mend(self._chosen.replanner, done))
+            self._done.append(done)
+
+    def result(self) -> Execution:
+        """What came of it."""
+        self._world.wait(SETTLE)
+        truth = self._look()
+        goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers)
+        reached = all(part.holds for part in goal)
+        return Execution(
+            name=self._stored.loaded.scene.name,
+            grasp=self._chosen.grasp,
+            seed=self._chosen.seed,
+            actions=tuple(self._done),
+            goal=goal,
+            reached=reached,
+            replans=self._replans,
+            kept=self._kept,
+            disturbance=self._event,
+            explanation=() if reached else self._explanation,
+            simulated=self._world.time,
+        )
+
+    # One action
+
+    def _carry_out(self, action: TimedAction) -> Done:
+        world, began = self._world, self._world.time
+        active = self._active(action)
+        before = {name: world.pose(name) for name in world.scene.movable}
+        world.attend(active)
+        watch = Watch(world, active)
+        due = self._scheduled if self._scheduled and self._scheduled.action == len(self._done) else None
+        for number, segment in enumerate(action.segments):
+            body = self._scene_name(segment.attach.body) if segment.attach else None
+            happens = due is not None and due.segment == number
+            event, at = (self._disturb, due.share) if happens and due else (None, 0.0)
+            guard = self._scene_name(segment.holding) if segment.holding and self._chosen.replanner else None
+            if not self._player.play(segment, body, watch, event, at, guard):
+                break
+        self._player.finish()
+        self._world.wait(SETTLE)
+        self._come_to_rest()
+        self._expected.apply(action)
+        truth = self._look()
+        return Done(
+            name=action.name,
+            objects=tuple(name for name in action.arguments if name not in self._plan.values),
+            start=began,
+            seconds=world.time - began,
+            base=watch.base,
+            arm=watch.arm,
+            touches=watch.unwanted(),
+            displaced=tuple(self._displaced(before, active)),
+            deviations=tuple(self._deviations(truth, active)),
+            event=self._event if due else None,
+        )
+
+    def _disturb(self) -> None:
+        assert self._scheduled is not None
+        self._event = self._scheduled.happen(Happening(self._world, self._player, self._expected, self._rng))
+
+    def _active(self, action: TimedAction) -> str | None:
+        named = [segment.attach.body if segment.attach else segment.detach for segment in action.segments]
+        named += [segment.holding for segment in action.segments]
+        return next((self._scene_name(name) for name in named if name is not None), None)
+
+    def _scene_name(self, word: str) -> str | None:
+        return next((name for name in self._world.scene.bodies if name.lower() == word), None)
+
+    def _displaced(self, before: Mapping[str, Array], active: str | None) -> list[Displaced]:
+        found: list[Displaced] = []
+        for name, T in before.items():
+            if name != active and name in self._world.solids:
+                moved, turned = apart(T, self._world.pose(name))
+                if moved > MOVED[0] or turned > MOVED[1]:
+                    found.append(Displaced(name, moved, turned))
+        return found
+
+    # What is seen
+
+    def _held(self) -> str | None:
+        """The body in the hand: bound to it, or between the fingers and off the ground that it stood on."""
+        world = self._world
+        if world.bound is not None or not world.squeezing:
+            return world.bound
+        touching: dict[str, set[str]] = {}
+        for first, second in world.touches():
+            if first in world.finger_links:
+                touching.setdefault(second, set()).add(first)
+        return next((name for name in world.scene.movable if len(touching.get(name, ())) == 2), None)
+
+    def _look(self) -> Truth:
+        world = self._world
+        self._observer.become(world.scene)
+        poses = {name: world.pose(name) for name in world.scene.movable}
+        return self._observer.see(poses, world.actual()[:3], self._held())
+
+    def _deviations(self, truth: Truth, active: str | None) -> list[Deviation]:
+        world, expected = self._world, self._expected
+        poses = {name: world.pose(name) for name in world.scene.movable}
+        seen = Seen(poses, self._held(), world.tool(), truth.facts)
+        new = frozenset(world.scene.bodies) - self._known
+        known = {name: T for name, T in expected.poses.items() if name in self._known}
+        facts = frozenset(fact for fact in expected.facts if fact[1] in {name.lower() for name in known})
+        return list(deviations(known, expected.held, facts, seen, active, new))
+
+    def _come_to_rest(self) -> None:
+        """Wait for bodies that fall or roll, not for ever."""
+        waited = 0.0
+        while waited < PATIENCE and any(
+            speed > limit
+            for name in self._world.scene.movable
+            if name != self._held()
+            for speed, limit in zip(self._world.speed(name), STILL, strict=True)
+        ):
+            self._world.wait(0.25)
+            waited += 0.25
+
+    # After a deviation
+
+    def _begin(self, plan: PlanFile) -> None:
+        self._plan, self._queue = plan, list(plan.actions)
+        self._expected = Expected(plan, self._domain, self._world.scene)
+
+    def _mend(self, replanner: Replanner, done: Done) -> str:
+        world, held, grasp = self._world, self._held(), None
+        if held is None:  # a hand that closed on nothing
+            self._player.let_go()
+            world.wait(CLOSING)
+        else:
+            grasp = replanner.grasp(held, np.linalg.inv(world.tool()) @ world.pose(held), world.width())
+        if self._replans >= MOST:
+            self._explanation = (f"planned anew {MOST} times, and still it comes differently",)
+            return self._explanation[0]
+        mended = replanner.mend(self._look(), grasp, self._plan, self._queue, done.deviations, self._expected)
+        if mended.keeps:
+            self._kept += 1
+            self._known = frozenset(world.scene.bodies)
+            self._expected.accept({name: world.pose(name) for name in world.scene.movable})
+            return "the rest of the plan still holds"
+        if mended.plan is None and all(one.kind == "slipped" for one in done.deviations):
+            return f"no plan from here, so it goes on: {'; '.join(mended.explanation)}"
+        if mended.plan is None:
+            self._explanation = mended.explanation
+            return f"no plan from here: {'; '.join(mended.explanation)}"
+        self._replans += 1
+        self._known = frozenset(world.scene.bodies)
+        self._begin(mended.plan)
+        return f"planned anew: {len(mended.plan.actions)} actions"

@@ -1,0 +1,88 @@
+"""What should be so after each action, by the plan and PDDL's meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tamp.pddl.structs import Atom, Domain, Fact
+from tamp.verification.plan_file import Hold, PlanFile, TimedAction
+from tamp.verification.semantics import Semantics, State
+from tamp.world.pose import Array
+from tamp.world.scene import Scene
+
+RELATIONS = ("on", "inside")
+"""Predicates that are compared with the geometry."""
+
+
+@dataclass
+class Expected:
+    """Follows a plan's facts.
+
+    Args:
+        plan: The plan.
+        domain: Its domain.
+        scene: Whose names bodies, surfaces and cavities have; PDDL's are lower case.
+    """
+
+    plan: PlanFile
+    domain: Domain
+    scene: Scene
+
+    def __post_init__(self) -> None:
+        values = {name: (value.type,) if value.type in self.domain.types else ("object",)
+                  for name, value in self.plan.values.items()}  # fmt: skip
+        self.semantics = Semantics(self.domain, {**self.domain.constants, **values, **self.plan.objects})
+        self.state = State.of((*self.plan.initial, *self.plan.certified))
+        self._accepted: dict[str, tuple[str, Array]] = {}
+        self._bodies = {name.lower(): name for name in self.scene.bodies}
+
+    def apply(self, action: TimedAction) -> None:
+        """The action's effects; an action that the domain does not know has none."""
+        lifted = self.semantics.actions.get(action.name)
+        if lifted is not None and len(lifted.parameters) == len(action.arguments):
+            self.state = self.semantics.apply(lifted, action.arguments, self.state)
+
+    def accept(self, seen: Mapping[str, Array]) -> None:
+        """Expect bodies where they are seen, T_world_body (4, 4), until the plan moves them."""
+        for body, pose in self.state.all("at-pose"):
+            name = self._bodies.get(body)
+            if name is not None and name in seen:
+                self._accepted[name] = pose, seen[name]
+
+    @property
+    def poses(self) -> dict[str, Array]:
+        """T_world_body (4, 4) of the bodies that stand somewhere."""
+        found: dict[str, Array] = {}
+        for terms in self.state.all("at-pose"):
+            value = self.plan.values.get(terms[-1])
+            if len(terms) == 2 and terms[0] in self._bodies and value is not None and value.type == "pose":
+                name = self._bodies[terms[0]]
+                pose, T = self._accepted.get(name, (None, value.data))
+                found[name] = T if pose in (None, terms[1]) else value.data
+        return found
+
+    @property
+    def held(self) -> tuple[str, Array] | None:
+        """The body in the hand and its T_tool_body."""
+        for terms in self.state.all("holding"):
+            value = self.plan.values.get(terms[-1])
+            if len(terms) == 2 and terms[0] in self._bodies and value is not None and isinstance(value.data, Hold):
+                return self._bodies[terms[0]], value.data.T_tool_body
+        return None
+
+    @property
+    def facts(self) -> frozenset[Fact]:
+        """Which body should be on and inside what, among surfaces and cavities; PDDL's names."""
+        found: set[Fact] = set()
+        for predicate, places in zip(RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True):
+            if predicate not in self.domain.predicates or len(self.domain.predicates[predicate].parameters) != 2:
+                continue
+            for body in self.scene.movable:
+                for place in places:
+                    atom = Atom(predicate, (body.lower(), place.lower()))
+                    if all(term in self.semantics.objects for term in atom.terms) and self.semantics.holds(
+                        atom, self.state
+                    ):
+                        found.add((predicate, *atom.terms))
+        return frozenset(found)

@@ -1,0 +1,160 @@
+"""Planning from what is seen: whether the rest of a plan still holds, and a new one when it does not."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.api import solve
+from tamp.errors import InputError
+from tamp.execution.deviation import Deviation
+from tamp.execution.expected import Expected
+from tamp.execution.truth import Truth
+from tamp.plan_file import plan_text
+from tamp.problem import Problem, load_problem
+from tamp.stored import Stored
+from tamp.streams.choice import Registry
+from tamp.streams.values import Grasp
+from tamp.verification.files import source_file
+from tamp.verification.plan_file import PlanFile, TimedAction, read_plan
+from tamp.verification.start import apart
+from tamp.world.pose import Array, Pose
+
+SAME = (0.003, 0.04)
+"""Metres and radians by which a body that is still to be grasped may stand elsewhere for the old grasp to serve."""
+
+
+@dataclass(frozen=True)
+class Mended:
+    """Whether the rest of the plan is kept, else a new plan, else why there is none."""
+
+    keeps: bool = False
+    plan: PlanFile | None = None
+    explanation: tuple[str, ...] = ()
+
+
+class Replanner:
+    """Plans anew with the options of the plan that it mends.
+
+    Args:
+        stored: The plan.
+        registry: Further samplers, as `load_problem` takes them.
+        max_time: Seconds for each plan.
+        seed: Of the first new plan; the next ones count on.
+    """
+
+    def __init__(self, stored: Stored, registry: Registry | None = None, max_time: float = 30.0, seed: int = 0) -> None:
+        self._stored, self._registry = stored, registry or {}
+        self._max_time, self._seed = max_time, seed
+        self._options = stored.document.get("options", {})
+
+    def grasp(self, body: str, T_tool_body: Array, opening: float) -> Grasp:
+        """What is in the hand, as the planner has it."""
+        return Grasp(body, Pose.from_matrix(T_tool_body), opening)
+
+    def mend(
+        self,
+        truth: Truth,
+        grasp: Grasp | None,
+        plan: PlanFile,
+        rest: Sequence[TimedAction],
+        found: Sequence[Deviation],
+        expected: Expected,
+    ) -> Mended:
+        """Keep the rest of the plan or plan anew.
+
+        Args:
+            truth: What is seen.
+            grasp: What is in the hand.
+            plan: The plan so far.
+            rest: Its actions that are still to come.
+            found: What is not as expected.
+            expected: What is expected now.
+        """
+        loaded = self._stored.loaded
+        asked = set(re.findall(r"[^\s()]+", loaded.goal.text.lower()))
+        gone = sorted(name for name in loaded.scene.bodies.keys() - truth.scene.bodies.keys() if name.lower() in asked)
+        if gone:
+            return Mended(explanation=tuple(f"{name} is gone, and the goal needs it" for name in gone))
+        try:
+            problem = self._problem(truth, grasp)
+        except InputError as error:  # the robot touches something where it stands
+            return Mended(explanation=(error.message,))
+        if self._holds(problem, truth, plan, rest, found, expected):
+            return Mended(keeps=True)
+        seed, self._seed = self._seed, self._seed + 1
+        solution = solve(
+            problem, max_time=self._max_time, seed=seed, algorithm=self._options.get("algorithm", "adaptive")
+        )
+        if not solution.solved:
+            return Mended(explanation=(solution.outcome.value, *solution.explanation))
+        return Mended(plan=read_plan(json.loads(plan_text(solution))))
+
+    def _problem(self, truth: Truth, grasp: Grasp | None) -> Problem:
+        plan = self._stored.plan
+        streams = plan.source("streams")
+        return load_problem(
+            self._stored.loaded.path,
+            source_file(plan, "domain", None),
+            streams=None if streams is None else streams.path,
+            samplers=self._options.get("samplers", {}),
+            registry=self._registry,
+            scene=truth.scene,
+            holding=grasp,
+        )
+
+    def _holds(
+        self,
+        problem: Problem,
+        truth: Truth,
+        plan: PlanFile,
+        rest: Sequence[TimedAction],
+        found: Sequence[Deviation],
+        expected: Expected,
+    ) -> bool:
+        """Whether what is still to be done can be done among the bodies as they stand, and leads to the goal."""
+        if any(one.kind not in ("misplaced", "displaced", "toppled", "new", "gone") for one in found):
+            return False
+        there = {name.lower() for name in truth.scene.bodies}
+        if any(fact[1] in there for fact in expected.facts - truth.facts):
+            return False
+        context = problem.context
+        poses = {name: body.pose for name, body in truth.scene.bodies.items() if body.movable}
+        held = context.holding
+        if held is not None:
+            poses.pop(held.body, None)
+        base, arm = np.array(truth.scene.robot.base), context.home
+        names = {name.lower(): name for name in truth.scene.bodies}
+        should = expected.poses
+        for segment in (segment for action in rest for segment in action.segments):
+            if segment.attach is not None:
+                name = names.get(segment.attach.body)
+                if name is None or name not in poses:
+                    return False
+                if name in should and not _same(poses[name].matrix, should[name]):
+                    return False
+                held = Grasp(name, Pose.from_matrix(segment.attach.T_tool_body), segment.attach.opening)
+                poses.pop(name)
+            elif segment.detach is not None and held is not None:
+                tool = Pose.from_matrix(context.kinematics.tool(context.conf(base, arm)))
+                poses[held.body] = tool @ held.T_tool_body
+                should.pop(held.body, None)
+                held = None
+            elif segment.part != "gripper":
+                attachment = None if held is None else context.attachment(held)
+                arrangement = context.collisions.arrangement(poses, attachment)
+                rows = [context.conf(row, arm) if segment.part == "base" else context.conf(base, row)
+                        for row in segment.positions]  # fmt: skip
+                if arrangement.path_hits(np.array(rows), step=0.01) is not None:
+                    return False
+                base, arm = rows[-1][:3], rows[-1][3:]
+        return True
+
+
+def _same(first: Array, second: Array) -> bool:
+    moved, turned = apart(first, second)
+    return moved <= SAME[0] and turned <= SAME[1]

@@ -1,0 +1,239 @@
+"""A scene under gravity with a robot on motors: what a plan is carried out in."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
+from tamp.simulation.physics import World
+from tamp.simulation.silence import silence
+from tamp.world.pose import Array, Pose
+from tamp.world.robot import Robot
+from tamp.world.scene import Scene
+
+RATE = 240
+"""Steps a second."""
+
+FORCE = 50.0
+"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N for a moment."""
+
+TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
+"""The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
+
+ROLLING = 0.001
+"""Metres: rolling and spinning friction of bodies, without which a can that lies would never come to rest."""
+
+SLEEPY = 0.003
+"""Metres and radians a second: a body that was slower for two seconds is left out of the computation until something
+touches it. With seven bodies at rest a step costs a quarter of what it costs otherwise."""
+
+NEAR = 0.004
+"""Metres from both fingers within which a body counts as between them."""
+
+FINGER_SPEED = 0.1
+"""Metres a second of each finger."""
+
+
+class Actuated(World):
+    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies have mass and fall.
+
+    Attributes:
+        conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
+        opening: What the fingers aim at, metres between them.
+        squeezing: The fingers close with their whole force instead.
+        bound: The body that a fixed constraint binds to the hand, or None.
+        widest: The fingers' largest opening, metres.
+    """
+
+    def __init__(self, scene: Scene, robot: Robot, force: float = FORCE) -> None:
+        super().__init__(scene, None, dynamic=True)
+        self._force, self._steps = force, 0
+        self._T_hand_tool = robot.T_hand_tool.matrix
+        bullet, client = self._bullet, self.client
+        bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
+        for name in scene.movable:
+            self._let_roll(name)
+        with tempfile.TemporaryDirectory() as folder:
+            urdf = Path(folder) / "mobile.urdf"
+            urdf.write_text(mobile_urdf(robot), encoding="utf-8")
+            flags = bullet.URDF_IGNORE_VISUAL_SHAPES
+            with silence():  # it remarks on links without mass
+                self._mover = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=client)
+        joint: dict[str, int] = {}
+        link: dict[str, int] = {}
+        for number in range(bullet.getNumJoints(self._mover, physicsClientId=client)):
+            info = bullet.getJointInfo(self._mover, number, physicsClientId=client)
+            joint[info[1].decode()], link[info[12].decode()] = number, number
+            bullet.changeDynamics(self._mover, number, linearDamping=0, angularDamping=0, physicsClientId=client)
+            self._owners[self._mover, number] = info[12].decode()
+        self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
+        self._fingers = [joint[finger.name] for finger in robot.fingers]
+        self._hand = link[robot.links[-3].name]
+        self.robot_links = frozenset(link)
+        self.hand_link = robot.links[-3].name
+        self.finger_links = tuple(one.name for one in robot.links[-2:])
+        # One motor drives both fingers; without the gear they would wander off to one side, the body between them.
+        gear = bullet.createConstraint(
+            self._mover, self._fingers[0], self._mover, self._fingers[1], bullet.JOINT_GEAR, [1, 0, 0], [0, 0, 0],
+            [0, 0, 0], physicsClientId=client,
+        )  # fmt: skip
+        bullet.changeConstraint(gear, gearRatio=-1, erp=0.5, maxForce=10 * force, physicsClientId=client)
+        self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
+        self.opening = self.widest = robot.opening
+        self.squeezing = False
+        self.bound: str | None = None
+        self._constraint = -1
+        for number, value in zip(self._driven, self.conf, strict=True):
+            bullet.resetJointState(self._mover, number, float(value), physicsClientId=client)
+        for number in self._fingers:
+            bullet.resetJointState(self._mover, number, self.opening / 2, physicsClientId=client)
+
+    # Time
+
+    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
+        """One step of 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the trajectory's speeds there."""
+        bullet, client = self._bullet, self.client
+        bullet.setJointMotorControlArray(
+            self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
+            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10, velocityGains=[1.0] * 10,
+            physicsClientId=client,
+        )  # fmt: skip
+        for finger in self._fingers:
+            bullet.setJointMotorControl2(
+                self._mover, finger, bullet.POSITION_CONTROL, force=self._force, maxVelocity=FINGER_SPEED,
+                targetPosition=0.0 if self.squeezing else self.opening / 2, physicsClientId=client,
+            )  # fmt: skip
+        bullet.stepSimulation(physicsClientId=client)
+        self._steps += 1
+
+    def wait(self, seconds: float) -> None:
+        """Stand still and let time pass."""
+        for _ in range(round(seconds * RATE)):
+            self.tick()
+
+    # What is
+
+    @property
+    def time(self) -> float:
+        """Seconds since the beginning."""
+        return self._steps / RATE
+
+    def actual(self) -> Array:
+        """The configuration (10,) as it is."""
+        states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
+        return np.array([state[0] for state in states])
+
+    def width(self) -> float:
+        """How far the fingers are apart, metres."""
+        states = self._bullet.getJointStates(self._mover, self._fingers, physicsClientId=self.client)
+        return float(sum(state[0] for state in states))
+
+    def tool(self) -> Array:
+        """T_world_tool (4, 4) as it is."""
+        state = self._bullet.getLinkState(
+            self._mover, self._hand, computeForwardKinematics=1, physicsClientId=self.client
+        )  # fmt: skip
+        return Pose(tuple(state[4]), tuple(state[5])).matrix @ self._T_hand_tool
+
+    def speed(self, body: str) -> tuple[float, float]:
+        """Of a movable body: metres and radians a second."""
+        moving = self._bullet.getBaseVelocity(self.solids[body][0].handle, physicsClientId=self.client)
+        return float(np.linalg.norm(moving[0])), float(np.linalg.norm(moving[1]))
+
+    def touches(self) -> dict[tuple[str, str], float]:
+        """Newtons between the robot's links and bodies, and between pairs of bodies one of which can move.
+
+        The link comes first in a pair; two bodies are sorted. "floor" is a body.
+        """
+        found: dict[tuple[str, str], float] = {}
+        for point in self._bullet.getContactPoints(physicsClientId=self.client):
+            first = self._owners.get((point[1], point[3]))
+            second = self._owners.get((point[2], point[4]))
+            if first is None or second is None or first == second:
+                continue
+            if second in self.robot_links or (first not in self.robot_links and second < first):
+                first, second = second, first
+            found[first, second] = found.get((first, second), 0.0) + float(point[9])
+        return found
+
+    def near_fingers(self, body: str, reach: float = NEAR) -> bool:
+        """Whether both fingers are this near to a body, metres."""
+        handle = self.solids[body][0].handle
+        return all(
+            self._bullet.getClosestPoints(self._mover, handle, reach, finger, -1, physicsClientId=self.client)
+            for finger in self._fingers
+        )
+
+    # What happens to bodies
+
+    def bind(self, body: str) -> None:
+        """Fix a body to the hand where it is; the robot passes through it from now on."""
+        self.unbind()
+        bullet, client, handle = self._bullet, self.client, self.solids[body][0].handle
+        state = bullet.getLinkState(self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client)
+        T_world_hand = Pose(tuple(state[0]), tuple(state[1]))  # of the centres of mass, as the engine wants them
+        T_world_body = Pose(*map(tuple, bullet.getBasePositionAndOrientation(handle, physicsClientId=client)))
+        T_hand_body = T_world_hand.inverse() @ T_world_body
+        self._constraint = bullet.createConstraint(
+            self._mover, self._hand, handle, -1, bullet.JOINT_FIXED, [0, 0, 0], T_hand_body.position, [0, 0, 0],
+            T_hand_body.quaternion, physicsClientId=client,
+        )  # fmt: skip
+        self.bound = body
+        self.pass_through(body, True)
+
+    def unbind(self) -> None:
+        """Undo `bind`; the robot still passes through the body until `pass_through` says otherwise."""
+        if self.bound is not None:
+            self._bullet.removeConstraint(self._constraint, physicsClientId=self.client)
+            self.bound = None
+
+    def pass_through(self, body: str, passes: bool) -> None:
+        """Whether the robot and a body do not feel each other."""
+        for link in range(-1, self._bullet.getNumJoints(self._mover, physicsClientId=self.client)):
+            self._bullet.setCollisionFilterPair(
+                self._mover, self.solids[body][0].handle, link, -1, 0 if passes else 1, physicsClientId=self.client
+            )  # fmt: skip
+
+    def put(self, body: str, T_world_body: Array) -> None:
+        """Move a body somewhere at once, at rest."""
+        self.place(body, T_world_body)
+        self.attend(body)
+        for solid in self.solids[body]:
+            self._bullet.resetBaseVelocity(solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
+
+    def become(self, scene: Scene) -> None:
+        """Take bodies away that a scene does not have, and add those that only it has, where it says."""
+        for name in self.scene.bodies.keys() - scene.bodies.keys():
+            if self.bound == name:
+                self.unbind()
+            for solid in self.solids.pop(name):
+                self._bullet.removeBody(solid.handle, physicsClientId=self.client)
+        for name, body in scene.bodies.items():
+            if name not in self.scene.bodies:
+                self._add_body(body)
+                if body.movable:
+                    self._let_roll(name)
+        self.scene = scene
+        self.attend(self.bound)
+
+    def attend(self, body: str | None) -> None:
+        """Wake all bodies; this one, which is handled, stays awake when it is at rest in the hand."""
+        bullet = self._bullet
+        for name in self.scene.movable:
+            state = (
+                bullet.ACTIVATION_STATE_DISABLE_SLEEPING if name == body else bullet.ACTIVATION_STATE_ENABLE_SLEEPING
+            )
+            bullet.changeDynamics(
+                self.solids[name][0].handle, -1, activationState=state | bullet.ACTIVATION_STATE_WAKE_UP,
+                physicsClientId=self.client,
+            )  # fmt: skip
+
+    def _let_roll(self, body: str) -> None:
+        self._bullet.changeDynamics(
+            self.solids[body][0].handle, -1, rollingFriction=ROLLING, spinningFriction=ROLLING, sleepThreshold=SLEEPY,
+            physicsClientId=self.client,
+        )  # fmt: skip

@@ -1,0 +1,37 @@
+"""A plan of four actions for one can, and the same with a box beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tamp.api import solve
+from tamp.plan_file import write_plan
+from tamp.problem import load_problem
+from tamp.stored import Stored, open_plan
+
+PROBLEM = """\
+name: short_way
+domain: cupboard
+robot: {model: panda_mobile, base: [0.0, 0.4, 0.0]}
+room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}
+bodies:
+  left:   {furniture: table, size: [0.6, 0.7, 0.5], at: [0.95, 0.8, 0.0]}
+  right:  {furniture: table, size: [0.6, 0.7, 0.5], at: [0.95, 0.0, 0.0]}
+  Can:    {cylinder: {radius: 0.03, height: 0.1}, on: right, at: [-0.1, 0.1], mass: 0.3}
+  block:  {box: [0.05, 0.05, 0.12], on: right, at: [0.15, -0.2], mass: 0.3}
+goal: (on Can left)
+"""
+
+
+@pytest.fixture(scope="session")
+def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("execution")
+    (folder / "short_way.yaml").write_text(PROBLEM)
+    return write_plan(solve(load_problem(folder / "short_way.yaml"), seed=1), folder / "plan.json")
+
+
+@pytest.fixture
+def stored(plan_file: Path) -> Stored:
+    return open_plan(plan_file)

@@ -1,0 +1,76 @@
+"""The robot on motors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+import pytest
+
+from tamp.simulation.actuated import RATE, Actuated
+from tamp.world.kinematics import Kinematics
+from tamp.world.pose import Pose
+from tamp.world.robot import ROBOTS
+from tamp.world.scene import Body, Box, Part, RobotStart, Room, Scene
+
+ROBOT = ROBOTS["panda_mobile"]()
+HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
+AWAY = Body("away", (Part(Box((0.1, 0.1, 0.1))),), Pose((2.0, 2.0, 0.05)), True)
+SCENE = Scene("one", {"held": HELD, "away": AWAY}, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), Room((-3, 3), (-3, 3)))
+
+
+@pytest.fixture
+def world() -> Iterator[Actuated]:
+    with Actuated(SCENE, ROBOT) as made:
+        made.put("held", made.tool())
+        yield made
+
+
+def test_the_robot_stands_where_the_planner_has_it(world: Actuated) -> None:
+    assert world.tool() == pytest.approx(Kinematics(ROBOT).tool(world.conf), abs=1e-5)
+    assert world.width() == pytest.approx(0.08)
+
+
+def test_friction_holds_and_letting_go_drops(world: Actuated) -> None:
+    world.squeezing = True
+    for _ in range(RATE // 2):
+        world.put("held", world.tool())  # until the fingers have closed
+        world.tick()
+    world.conf[:3] = [0.05, 0.0, 0.1]
+    world.wait(1.0)
+    assert world.near_fingers("held")
+    assert np.linalg.norm(world.pose("held")[:3, 3] - world.tool()[:3, 3]) < 0.005
+    assert {second for first, second in world.touches() if first in world.finger_links} == {"held"}
+    assert np.abs(world.actual() - world.conf).max() < 2e-3
+    world.squeezing = False
+    world.wait(1.0)
+    assert world.pose("held")[2, 3] < 0.6 and not world.near_fingers("held")
+
+
+def test_a_bound_body_follows_the_hand_until_unbound(world: Actuated) -> None:
+    world.bind("held")
+    T = np.linalg.inv(world.tool()) @ world.pose("held")
+    world.conf[:3] = [0.1, 0.1, 0.5]
+    world.wait(1.0)
+    assert np.linalg.inv(world.tool()) @ world.pose("held") == pytest.approx(T, abs=2e-3)
+    world.unbind()
+    world.pass_through("held", False)
+    world.wait(1.0)
+    assert world.pose("held")[2, 3] < 0.6
+
+
+def test_bodies_come_and_go(world: Actuated) -> None:
+    wall = replace(AWAY, name="wall", movable=False, pose=Pose((2.0, 2.0, 0.15)))
+    world.become(replace(SCENE, bodies=MappingProxyType({"away": AWAY, "wall": wall})))
+    world.wait(0.1)
+    assert ("away", "wall") in world.touches()
+    assert "held" not in world.solids
+
+
+def test_what_lies_still_wakes_when_it_is_pushed(world: Actuated) -> None:
+    world.wait(4.0)
+    world.put("held", Pose((2.0, 2.0, 0.4)).matrix)
+    world.wait(1.0)
+    assert ("away", "held") in world.touches()
