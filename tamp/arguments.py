@@ -13,6 +13,9 @@ import tyro
 
 from tamp.errors import InputError
 
+MOST_JOBS = 256
+"""More processes than any machine has use for."""
+
 
 @dataclass(frozen=True)
 class Arguments:
@@ -53,6 +56,9 @@ class Arguments:
     """Of a PDDL problem: greedy (lazy, preferred operators), eager, wastar, or astar (optimal)."""
     heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: by search)")] = None
     """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
+    jobs: Annotated[int, tyro.conf.arg(aliases=["-j"], metavar="NUMBER")] = 1
+    """Plan in so many processes at a time, with other seeds or other searches; the first plan counts. Which
+    one that is depends on the clock; --seed (--search) as the plan file has it makes the plan again."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
     json: bool = False
@@ -90,6 +96,8 @@ def parsed(arguments: list[str]) -> Arguments:
         raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
+    if not 1 <= chosen.jobs <= MOST_JOBS:
+        raise InputError(f"--jobs: between 1 and {MOST_JOBS} processes, not {chosen.jobs}")
     if abs(chosen.seed) >= 2**64:
         raise InputError("--seed: the number must be below 2**64")
     return chosen

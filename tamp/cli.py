@@ -52,7 +52,8 @@ def _solve(arguments: Arguments, started: float) -> int:
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
     from tamp.algorithms.solution import Outcome
-    from tamp.api import ALGORITHMS, solve
+    from tamp.api import ALGORITHMS
+    from tamp.parallel import solve_parallel
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
     from tamp.report import headline, summary
@@ -71,12 +72,14 @@ def _solve(arguments: Arguments, started: float) -> int:
     )
     shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
-    solution = solve(
+    solution = solve_parallel(
         problem,
+        jobs=arguments.jobs,
         max_time=_left(arguments.time, started),
         seed=arguments.seed,
         algorithm=arguments.algorithm,
         progress=shown.update,
+        accept=(lambda plan: _judge(plan_text(plan)).holds) if arguments.verify else None,
     )
     shown.clear()
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
@@ -107,6 +110,7 @@ def _solve_symbolic(arguments: Arguments, started: float) -> int:
         arguments.files,
         search=arguments.search,
         heuristic=arguments.heuristic,
+        jobs=arguments.jobs,
         left=lambda: _left(arguments.time, started),
         out=arguments.out,
         judge=_judge if arguments.verify else None,

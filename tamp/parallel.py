@@ -1,0 +1,109 @@
+"""Planning by several processes: `solve` with different seeds, the first plan counts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from tamp.algorithms.solution import Effort, Outcome, Progress
+from tamp.api import solve
+from tamp.clock import Deadline
+from tamp.portfolio import Tell, member_seed, race
+from tamp.problem import Problem
+from tamp.solution import Solution
+
+EVERY = 0.1
+"""Seconds between two reports of a run's progress."""
+
+FINAL = (Outcome.SOLVED, Outcome.INFEASIBLE)
+"""Outcomes that settle the matter, whichever run says so."""
+
+
+def solve_parallel(
+    problem: Problem,
+    *,
+    jobs: int,
+    max_time: float = 30.0,
+    seed: int = 0,
+    algorithm: str = "adaptive",
+    progress: Progress | None = None,
+    accept: Callable[[Solution], bool] | None = None,
+) -> Solution:
+    """Plan in `jobs` processes at a time; the first plan counts.
+
+    The first run is what `solve` does with the same arguments, the others have seeds of their own (`member_seed`); the
+    third is by the algorithm "incremental". Which plan comes first depends on the clock, yet each is the plan of one
+    run: `solve` with the seed and the algorithm that the solution names makes it again. The others give way to the
+    first run where cores are scarce.
+
+    Args:
+        problem: From `load_problem`.
+        jobs: Number of processes.
+        max_time: Seconds.
+        seed: Of the first run.
+        algorithm: Of all runs but the third.
+        progress: Called now and then with what the first run has done.
+        accept: Looks at a plan, in the process that made it; one that it refuses does not end the race.
+
+    Raises:
+        InputError: As for `solve`.
+    """
+    if jobs == 1:
+        return solve(problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress)
+    deadline = Deadline(max_time)
+
+    def member(number: int) -> Callable[[Tell], dict[str, Any]]:
+        def run(tell: Tell) -> dict[str, Any]:
+            solution = solve(
+                problem,
+                max_time=deadline.left(),
+                seed=member_seed(seed, number),
+                algorithm="incremental" if number == 2 else algorithm,
+                progress=_seldom(tell) if number == 0 else None,
+            )
+            good = accept is None or not solution.solved or accept(solution)
+            return {"good": good, "parts": _parts(solution)}
+
+        return run
+
+    def ends(number: int, answer: dict[str, Any]) -> bool:
+        outcome = answer["parts"]["outcome"]
+        if number == 0 and outcome not in (Outcome.SOLVED, Outcome.TIMEOUT):
+            return True
+        return outcome in FINAL and answer["good"]
+
+    def news(number: int, effort: Effort) -> None:
+        if progress is not None:
+            progress(effort)
+
+    try:
+        found = race([member(number) for number in range(jobs)], ends, deadline, news)
+    except KeyboardInterrupt:
+        return _without(problem, Outcome.INTERRUPTED, seed, algorithm, deadline)
+    if found is None:
+        return _without(problem, Outcome.TIMEOUT, seed, algorithm, deadline)
+    return Solution(problem=problem, **found.answer["parts"])
+
+
+def _seldom(tell: Tell) -> Progress:
+    last = 0.0
+
+    def progress(effort: Effort) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= EVERY:
+            last = now
+            tell(effort)
+
+    return progress
+
+
+def _parts(solution: Solution) -> dict[str, Any]:
+    """A solution without its problem, whose streams no pipe can carry and the other side knows."""
+    return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+
+
+def _without(problem: Problem, outcome: Outcome, seed: int, algorithm: str, deadline: Deadline) -> Solution:
+    return Solution(problem, outcome, seed, algorithm, seconds={"total": deadline.elapsed()})
