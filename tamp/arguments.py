@@ -59,6 +59,9 @@ class Arguments:
     jobs: Annotated[int, tyro.conf.arg(aliases=["-j"], metavar="NUMBER")] = 1
     """Plan in so many processes at a time, with other seeds or other searches; the first plan counts. Which
     one that is depends on the clock; --seed (--search) as the plan file has it makes the plan again."""
+    optimize: bool = False
+    """Improve the first plan until the time is up or you press Ctrl-C: fewer actions, then shorter motions; the best
+    plan is written. For a problem in PDDL: cheaper plans, until one is proven to be the cheapest."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
     json: bool = False
@@ -96,6 +99,10 @@ def parsed(arguments: list[str]) -> Arguments:
         raise InputError("--search and --heuristic are for problems in PDDL; a scene's is chosen by --algorithm")
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
+    if chosen.optimize and (chosen.search or chosen.heuristic or chosen.algorithm != "adaptive"):
+        raise InputError("--optimize has searches of its own: leave out --search, --heuristic and --algorithm")
+    if chosen.optimize and chosen.jobs > 1 and chosen.files[-1].endswith(".pddl"):
+        raise InputError("--optimize improves a problem in PDDL in one process: leave out --jobs")
     if not 1 <= chosen.jobs <= MOST_JOBS:
         raise InputError(f"--jobs: between 1 and {MOST_JOBS} processes, not {chosen.jobs}")
     if abs(chosen.seed) >= 2**64:

@@ -17,6 +17,7 @@ from tamp.errors import InputError
 from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
+    from tamp.solution import Solution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
@@ -56,7 +57,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.parallel import solve_parallel
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
-    from tamp.report import headline, summary
+    from tamp.report import headline, improvement, summary
 
     if arguments.algorithm not in ALGORITHMS:
         what = f"unknown algorithm '{arguments.algorithm}'"
@@ -72,6 +73,11 @@ def _solve(arguments: Arguments, started: float) -> int:
     )
     shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
+
+    def improved(plan: Solution) -> None:
+        shown.clear()
+        shown.line(improvement(plan))
+
     solution = solve_parallel(
         problem,
         jobs=arguments.jobs,
@@ -80,6 +86,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         algorithm=arguments.algorithm,
         progress=shown.update,
         accept=(lambda plan: _judge(plan_text(plan)).holds) if arguments.verify else None,
+        improved=improved if arguments.optimize else None,
     )
     shown.clear()
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
@@ -111,6 +118,7 @@ def _solve_symbolic(arguments: Arguments, started: float) -> int:
         search=arguments.search,
         heuristic=arguments.heuristic,
         jobs=arguments.jobs,
+        optimize=arguments.optimize,
         left=lambda: _left(arguments.time, started),
         out=arguments.out,
         judge=_judge if arguments.verify else None,

@@ -1,13 +1,15 @@
-"""Planning by several processes: `solve` with different seeds, the first plan counts."""
+"""Planning by several processes: `solve` or `optimize` with different seeds."""
 
 from __future__ import annotations
 
+import importlib
 import time
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
 from tamp.algorithms.solution import Effort, Outcome, Progress
+from tamp.anytime import improves, optimize
 from tamp.api import solve
 from tamp.clock import Deadline
 from tamp.portfolio import Tell, member_seed, race
@@ -30,8 +32,9 @@ def solve_parallel(
     algorithm: str = "adaptive",
     progress: Progress | None = None,
     accept: Callable[[Solution], bool] | None = None,
+    improved: Callable[[Solution], None] | None = None,
 ) -> Solution:
-    """Plan in `jobs` processes at a time; the first plan counts.
+    """Plan in `jobs` processes at a time; the first plan counts, or with `improved` the best one when the time is up.
 
     The first run is what `solve` does with the same arguments, the others have seeds of their own (`member_seed`); the
     third is by the algorithm "incremental". Which plan comes first depends on the clock, yet each is the plan of one
@@ -40,29 +43,36 @@ def solve_parallel(
 
     Args:
         problem: From `load_problem`.
-        jobs: Number of processes.
+        jobs: Number of processes; one is this one.
         max_time: Seconds.
         seed: Of the first run.
         algorithm: Of all runs but the third.
         progress: Called now and then with what the first run has done.
         accept: Looks at a plan, in the process that made it; one that it refuses does not end the race.
+        improved: Go on after the first plan, and call this with each that is better.
 
     Raises:
         InputError: As for `solve`.
     """
+    if jobs == 1 and improved is not None:
+        return optimize(problem, max_time=max_time, seed=seed, progress=progress, improved=improved)
     if jobs == 1:
         return solve(problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress)
+    importlib.import_module("tamp.motion.parametrization")  # no fork while a thread is importing it
     deadline = Deadline(max_time)
+    best: list[Solution] = []
 
     def member(number: int) -> Callable[[Tell], dict[str, Any]]:
         def run(tell: Tell) -> dict[str, Any]:
-            solution = solve(
-                problem,
-                max_time=deadline.left(),
-                seed=member_seed(seed, number),
-                algorithm="incremental" if number == 2 else algorithm,
-                progress=_seldom(tell) if number == 0 else None,
-            )
+            left, own = deadline.left(), member_seed(seed, number)
+            told = _seldom(tell) if number == 0 else None
+            if improved is not None:
+                shared = optimize(
+                    problem, max_time=left, seed=own, progress=told, improved=lambda plan: tell(_parts(plan))
+                )  # fmt: skip
+                return {"good": True, "parts": _parts(shared)}
+            name = "incremental" if number == 2 else algorithm
+            solution = solve(problem, max_time=left, seed=own, algorithm=name, progress=told)
             good = accept is None or not solution.solved or accept(solution)
             return {"good": good, "parts": _parts(solution)}
 
@@ -72,18 +82,27 @@ def solve_parallel(
         outcome = answer["parts"]["outcome"]
         if number == 0 and outcome not in (Outcome.SOLVED, Outcome.TIMEOUT):
             return True
-        return outcome in FINAL and answer["good"]
+        return outcome in FINAL and answer["good"] and improved is None
 
-    def news(number: int, effort: Effort) -> None:
-        if progress is not None:
-            progress(effort)
+    def news(number: int, told: Effort | dict[str, Any]) -> None:
+        if isinstance(told, Effort):
+            if progress is not None:
+                progress(told)
+            return
+        solution = Solution(problem=problem, **told)
+        if improved is not None and (not best or improves(solution, best[0])):
+            best[:] = [solution]
+            improved(solution)
 
+    outcome = Outcome.TIMEOUT
     try:
         found = race([member(number) for number in range(jobs)], ends, deadline, news)
     except KeyboardInterrupt:
-        return _without(problem, Outcome.INTERRUPTED, seed, algorithm, deadline)
+        found, outcome = None, Outcome.INTERRUPTED
+    if best:
+        return best[0]
     if found is None:
-        return _without(problem, Outcome.TIMEOUT, seed, algorithm, deadline)
+        return Solution(problem, outcome, seed, algorithm, seconds={"total": deadline.elapsed()})
     return Solution(problem=problem, **found.answer["parts"])
 
 
@@ -103,7 +122,3 @@ def _seldom(tell: Tell) -> Progress:
 def _parts(solution: Solution) -> dict[str, Any]:
     """A solution without its problem, whose streams no pipe can carry and the other side knows."""
     return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
-
-
-def _without(problem: Problem, outcome: Outcome, seed: int, algorithm: str, deadline: Deadline) -> Solution:
-    return Solution(problem, outcome, seed, algorithm, seconds={"total": deadline.elapsed()})
