@@ -83,10 +83,13 @@ def search(
             A mapping of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
         deadline: When to give up. It never changes the plan that is found, only whether one is.
-        below: What the plan must cost less than: in the lazy searches its operators alone, in "astar" with prices.
+        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
+            greedy searches, which keep to the first way to each state.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
+    if below < math.inf and search not in ("wastar", "astar"):
+        raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
     names = split_heuristics(heuristic)
     if not grounded.goal.positive <= grounded.reachable | grounded.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
