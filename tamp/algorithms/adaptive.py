@@ -21,7 +21,7 @@ FIRST_TRIES = 4
 tried with all poses before the next one has its turn."""
 
 ROUND_BUDGET = 200
-"""Draws in a skeleton's first round."""
+"""Draws in a skeleton's first round, or as many as it has nodes: a long one shall be gone through once."""
 
 PATIENCE = 1000
 """Failures of one thing without a success after which the incremental algorithm is asked; doubled each time."""
@@ -97,7 +97,8 @@ class Adaptive(Run):
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
-        values = self.binder.bind(skeleton, tries, ROUND_BUDGET * (1 + skeleton.rounds))
+        budget = max(ROUND_BUDGET, len(skeleton.nodes)) * (1 + skeleton.rounds)
+        values = self.binder.bind(skeleton, tries, budget)
         if values is not None:
             self.bound = skeleton, values
             return self.solved(skeleton, values)
