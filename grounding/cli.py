@@ -5,67 +5,16 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Annotated
 
-import tyro
-
+from grounding.arguments import Encoder, Evaluate, Generate, Train, parsed
+from grounding.dataset import Dataset, read_dataset
+from grounding.weights import Weights, write_weights
+from tamp.data import check_writable
 from tamp.errors import InputError
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
-
-
-@dataclass(frozen=True)
-class Generate:
-    """Make labelled scenes in physics; an interrupted run goes on where it was."""
-
-    relation: Annotated[str, tyro.conf.Positional]
-    """on or inside."""
-    split: str = "train"
-    """train or test; they share no object and no support."""
-    count: int = 20000
-    """Scenes; half of them are positive."""
-    seed: int = 0
-    """Of all randomness: the same seed gives the same bytes."""
-    out: Path | None = None
-    """The file; by default data/RELATION_SPLIT.npz."""
-    meshes: Path | None = None
-    """A folder with one mesh a subfolder (as the YCB set comes), to join the objects."""
-    workers: int | None = None
-    """Processes; by default one a core."""
-
-
-@dataclass(frozen=True)
-class Train:
-    """Train a grounding on a data set."""
-
-    relation: Annotated[str, tyro.conf.Positional]
-    """on or inside."""
-    model: str = "transfer"
-    """Which grounding."""
-    samples: int | None = None
-    """Use only the first so many scenes."""
-    seed: int = 0
-    """Of initial weights and batches."""
-    data: Path | None = None
-    """The data set; by default data/RELATION_train.npz."""
-    out: Path | None = None
-    """The weights; by default weights/RELATION_MODEL.safetensors."""
-
-
-@dataclass(frozen=True)
-class Evaluate:
-    """Judge a grounding on scenes that it never saw."""
-
-    weights: Annotated[Path, tyro.conf.Positional]
-    """A weight file (.safetensors)."""
-    data: Path | None = None
-    """The data set; by default data/RELATION_test.npz of the weights' relation."""
-    scenes: int | None = None
-    """At most so many scenes."""
-    seed: int = 0
-    """Of the scenes' order and of the draws."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -76,11 +25,11 @@ def main(arguments: list[str] | None = None) -> None:
 def run(arguments: list[str]) -> int:
     """Run tamp-learn and return its exit code."""
     try:
-        chosen = tyro.extras.subcommand_cli_from_dict(
-            {"generate": Generate, "train": Train, "evaluate": Evaluate}, prog="tamp-learn", args=arguments
-        )
+        chosen = parsed(arguments)
         if isinstance(chosen, Generate):
             _generate(chosen)
+        elif isinstance(chosen, Encoder):
+            _encoder(chosen)
         elif isinstance(chosen, Train):
             _train(chosen)
         else:
@@ -98,59 +47,104 @@ def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or Path("data") / f"{chosen.relation}_{chosen.split}.npz"
+    check_writable(out)
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, chosen.meshes)
-    data = generate(
-        job, _suffixed(out, ".npz"), chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
-    )
+    data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _train(chosen: Train) -> None:
-    from grounding.dataset import read_dataset
-    from grounding.train import TRAINERS, TrainArgs
-    from grounding.weights import write_weights
-
-    if chosen.model not in TRAINERS:
-        raise InputError(f"unknown model '{chosen.model}'", found=chosen.model, choices=TRAINERS)
-    if chosen.samples is not None and chosen.samples < 1:
-        raise InputError(f"--samples must be positive, not {chosen.samples}")
-    data = read_dataset(chosen.data or Path("data") / f"{chosen.relation}_train.npz")
-    if data.relation != chosen.relation:
-        raise InputError(f"the data are about '{data.relation}', not '{chosen.relation}'", file=chosen.data)
-    args = TrainArgs(samples=chosen.samples, seed=chosen.seed, commit=_commit())
+def _encoder(chosen: Encoder) -> None:
+    out = chosen.out or _encoder_file(chosen.relation)
+    check_writable(out)
+    data = _data(chosen.data, chosen.relation, "train")
     try:
-        weights = TRAINERS[chosen.model](data, args, _show)
+        from grounding.paper.encoders import Args, train_encoder
     except ImportError as error:
-        raise InputError(f"training needs {error.name}", remedy="pip install tamp[learn]") from None
+        raise _missing(error) from None
+    args = Args(seed=chosen.seed)
+    args = replace(args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points)
+    arrays, score = train_encoder(data, chosen.kind, chosen.scaling, args, _show)
     _show("", last=True)
-    out = _suffixed(chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors", ".safetensors")
+    card = {
+        "model": "encoder",
+        "kind": chosen.kind,
+        "scaling": chosen.scaling,
+        "relation": chosen.relation,
+        "seed": chosen.seed,
+        "iterations": args.iterations,
+        "validation Chamfer distance": score,
+        "commit": _commit(),
+    }
+    write_weights(out, Weights(arrays, card))
+    print(f"{out} written, validation Chamfer distance {score:.3e}")
+
+
+def _train(chosen: Train) -> None:
+    from grounding.train import OPTIONS, TrainArgs, check, train
+
+    out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
+    encoder = chosen.encoder
+    if encoder is None and chosen.model in OPTIONS["encoder"] and _encoder_file(chosen.relation).is_file():
+        encoder = _encoder_file(chosen.relation)
+    args = TrainArgs(
+        samples=chosen.samples,
+        seed=chosen.seed,
+        scheme=chosen.scheme,
+        iterations=chosen.iterations,
+        encoder=encoder,
+        state=out.with_suffix(".state"),
+        commit=_commit(),
+    )
+    check(chosen.relation, chosen.model, args)
+    check_writable(out)
+    data = _data(chosen.data, chosen.relation, "train")
+    try:
+        weights = train(data, chosen.model, args, _show)
+    except ImportError as error:
+        raise _missing(error) from None
+    _show("", last=True)
     write_weights(out, weights)
+    out.with_suffix(".state").unlink(missing_ok=True)
     print(f"{out} written. Judge it: tamp-learn evaluate {out}")
 
 
 def _evaluate(chosen: Evaluate) -> None:
-    from grounding.dataset import read_dataset
     from grounding.evaluate import evaluate, wilson
-    from grounding.registry import load_model
+    from grounding.registry import load_model, shipped_model
     from grounding.weights import read_weights
 
-    model = load_model(chosen.weights)
-    relation = str(read_weights(chosen.weights).card.get("relation"))
-    data = read_dataset(chosen.data or Path("data") / f"{relation}_test.npz")
+    relation, equals, name = chosen.weights.partition("=")
+    if equals and not chosen.weights.endswith(".safetensors"):
+        model = shipped_model(relation, chosen.model or name)
+    else:
+        model = load_model(Path(chosen.weights), chosen.model)
+        relation = str(read_weights(Path(chosen.weights)).card.get("relation"))
+    data = _data(chosen.data, relation, "test")
     found = evaluate(model, data, chosen.scenes, chosen.seed, lambda done, total: _show(f"{done} of {total} scenes"))
     _show("", last=True)
     for name, share in (("settled", found.settled), ("MCA", found.mca), ("feasible", found.feasible)):
         low, high = wilson(share, found.scenes)
         print(f"{name:9} {share:.4f}  [{low:.4f}, {high:.4f}]")
-    print(f"accuracy  {found.accuracy:.4f}\none pose  {found.milliseconds:.2f} ms")
+    print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
+    print(f"one pose  {found.milliseconds:.2f} ms")
     print(json.dumps(asdict(found)))
 
 
-def _suffixed(path: Path, suffix: str) -> Path:
-    if path.suffix != suffix:
-        raise InputError(f"the file must end in {suffix}", file=path)
-    return path
+def _data(path: Path | None, relation: str, split: str) -> Dataset:
+    path = path or Path("data") / f"{relation}_{split}.npz"
+    data = read_dataset(path)
+    if data.relation != relation:
+        raise InputError(f"the data are about '{data.relation}', not '{relation}'", file=path)
+    return data
+
+
+def _encoder_file(relation: str) -> Path:
+    return Path("weights") / f"{relation}_encoder.safetensors"
+
+
+def _missing(error: ImportError) -> InputError:
+    return InputError(f"training needs {error.name}", remedy="pip install tamp[learn]")
 
 
 def _commit() -> str:

@@ -34,7 +34,7 @@ class Evaluation:
     mca: float
     settled: float
     feasible: float
-    accuracy: float
+    accuracy: float | None
     failures: dict[str, float]
     milliseconds: float
 
@@ -58,13 +58,14 @@ def evaluate(
     rng = np.random.default_rng(seed)
     order = rng.permutation(len(data))[: scenes or len(data)]
     verdicts: Counter[str] = Counter()
-    mca, right, feasible, times = 0, 0, 0, []
+    mca, right, feasible, times, classifies = 0, 0, 0, [], True
     items = ItemOf()
     with Drops() as drops:
         for done, index in enumerate(order):
             example = data[int(index)]
             situation = example.situation
-            own = model.classify(situation, situation.body.matrix[None])[0]
+            own = float(model.classify(situation, situation.body.matrix[None])[0])
+            classifies = classifies and not math.isnan(own)
             right += bool((own > 0.5) == example.holds)
             started = time.perf_counter()
             poses = model.propose(situation, 1, rng)
@@ -83,7 +84,7 @@ def evaluate(
         mca / count,
         verdicts[Verdict.HOLDS] / count,
         feasible / count,
-        right / count,
+        right / count if classifies else None,
         failures,
         1e3 * float(np.median(times)),
     )

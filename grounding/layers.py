@@ -13,12 +13,24 @@ Layers = Sequence[tuple[Floats, Floats]]
 """Weight (in, out) and bias (out,) of each layer."""
 
 
-def layers_of(arrays: Mapping[str, NDArray[Any]], name: str) -> Layers:
-    """The layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ..."""
-    layers = []
+def layers_of(
+    arrays: Mapping[str, NDArray[Any]], name: str, inputs: int | None = None, outputs: int | None = None
+) -> Layers:
+    """The layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ...
+
+    Raises:
+        ValueError: They do not fit each other, or have other numbers of inputs or outputs.
+    """
+    layers: list[tuple[Floats, Floats]] = []
     while f"{name}.{len(layers)}.weight" in arrays:
         row = len(layers)
-        layers.append((arrays[f"{name}.{row}.weight"], arrays[f"{name}.{row}.bias"]))
+        weight, bias = arrays[f"{name}.{row}.weight"], arrays.get(f"{name}.{row}.bias")
+        wanted = layers[-1][0].shape[1] if layers else inputs
+        if weight.ndim != 2 or bias is None or bias.shape != weight.shape[1:] or wanted not in (None, len(weight)):
+            raise ValueError(f"layer '{name}.{row}' does not fit")
+        layers.append((weight, bias))
+    if not layers or outputs not in (None, layers[-1][0].shape[1]):
+        raise ValueError(f"network '{name}' is missing, or has not {outputs} outputs")
     return layers
 
 

@@ -26,6 +26,8 @@ class Model(Protocol):
     def classify(self, situation: Situation, poses: Array) -> Array:
         """The probability that the relation holds with argument 1 at each of the poses, shape (n,).
 
+        Not a number from a model that is a generator only.
+
         Args:
             situation: The arguments and their surroundings.
             poses: T_world_body, shape (n, 4, 4).

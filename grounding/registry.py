@@ -10,6 +10,8 @@ from grounding.model import Model
 from grounding.runtime import Grounding
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
+from tamp.streams.registry import SAMPLERS
+from tamp.streams.relations import Generator
 
 SHIPPED = Path(__file__).resolve().parent / "assets"
 """Where the shipped weights are."""
@@ -21,40 +23,122 @@ def _relational(weights: Weights) -> Model:
     return RelationalModel(weights)
 
 
-MODELS: Mapping[str, Callable[[Weights], Model]] = {"transfer": _relational}
+def _paper(weights: Weights) -> Model:
+    from grounding.paper.runtime import PaperModel
+
+    return PaperModel(weights)
+
+
+def _tree(weights: Weights) -> Model:
+    from grounding.paper.trees import TreeModel
+
+    return TreeModel(weights)
+
+
+def _uniform(weights: Weights | None = None) -> Model:
+    from grounding.paper.uniform import UniformModel
+
+    return UniformModel(weights)
+
+
+def _surface() -> Model:
+    from grounding.surface import SurfaceModel
+
+    return SurfaceModel()
+
+
+MODELS: Mapping[str, Callable[[Weights], Model]] = {
+    "transfer": _relational,
+    "flow": _relational,
+    "mlp-bb": _paper,
+    "gnn-bb": _paper,
+    "mlp-pc": _paper,
+    "gnn-pc": _paper,
+    "tree-bb": _tree,
+    "tree-pc": _tree,
+    "uniform+mlp": _uniform,
+    "uniform+gnn": _uniform,
+}
 """Model name to what makes it of weights."""
+
+BORROWED: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
+"""Model name to the one whose weights it uses, of which it takes the classifier."""
+
+UNTRAINED: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
+"""Model name to what makes it of nothing."""
 
 RELATIONS = ("on", "inside")
 
 
-def load_model(path: Path) -> Model:
+def load_model(path: Path, model: str | None = None) -> Model:
     """The model of a weight file.
 
+    Args:
+        path: The file; its card is beside it.
+        model: Which model to make of it; by default the one that the card names.
+
     Raises:
-        InputError: The file is missing, damaged, or of a model that this version does not know.
+        InputError: The file is missing, damaged, or of a model that this version does not know; or the model asked for
+            is not made of such weights.
     """
     weights = read_weights(path)
-    name = str(weights.card.get("model"))
-    if name not in MODELS:
-        raise InputError(f"unknown model '{name}'", file=path.with_suffix(".json"), found=name, choices=MODELS)
+    trained = str(weights.card.get("model"))
+    if trained not in MODELS or trained in BORROWED:
+        choices = [name for name in MODELS if name not in BORROWED]
+        raise InputError(f"unknown model '{trained}'", file=path.with_suffix(".json"), found=trained, choices=choices)
+    name = model or trained
+    if name not in MODELS and name not in UNTRAINED:
+        raise InputError(f"unknown model '{name}'", found=name, choices=MODELS)
+    if BORROWED.get(name, name) != trained:
+        raise InputError(f"these are weights of '{trained}'; '{name}' is not made of them", file=path)
     try:
         return MODELS[name](weights)
-    except (KeyError, TypeError, ValueError) as error:
+    except InputError as error:
+        raise error.at(path) from None
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"these are no weights of '{name}': {error}", file=path) from None
 
 
-def load_grounding(path: Path) -> Grounding:
-    """The same for the planner."""
-    return Grounding(load_model(path))
+def shipped_model(relation: str, name: str) -> Model:
+    """The model of a name, of the weights that ship, or of none where it needs none.
+
+    Raises:
+        InputError: An unknown relation or name, or weights that do not ship; then how to train them.
+    """
+    if relation not in RELATIONS:
+        raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS)
+    if name in UNTRAINED:
+        return UNTRAINED[name]()
+    if name not in MODELS:
+        raise InputError(f"unknown model '{name}'", found=name, choices=[*MODELS, *UNTRAINED])
+    path = shipped_weights(relation, name)
+    if not path.is_file():
+        remedy = f"Train it: tamp-learn train {relation} --model {BORROWED.get(name, name)} --out {path}"
+        raise InputError(f"no weights of '{name}' for '{relation}' are shipped", remedy=remedy)
+    return load_model(path, name)
 
 
-def shipped_weights(relation: str, model: str) -> Path:
-    """Where the shipped weights of a model are."""
-    return SHIPPED / f"{relation}_{model}.safetensors"
+def load_grounding(path: Path, model: str | None = None) -> Grounding:
+    """`load_model` for the planner."""
+    return Grounding(load_model(path, model))
 
 
-GROUNDINGS: Mapping[str, Mapping[str, Callable[[], Grounding]]] = {
-    relation: {name: partial(load_grounding, shipped_weights(relation, name)) for name in MODELS}
+def shipped_grounding(relation: str, name: str) -> Grounding:
+    """`shipped_model` for the planner."""
+    return Grounding(shipped_model(relation, name))
+
+
+def shipped_weights(relation: str, name: str) -> Path:
+    """Where the shipped weights of a model are, if they are."""
+    return SHIPPED / f"{relation}_{BORROWED.get(name, name)}.safetensors"
+
+
+GROUNDINGS: Mapping[str, Mapping[str, Callable[[], Grounding | Generator]]] = {
+    relation: {**SAMPLERS[relation], **{name: partial(shipped_grounding, relation, name) for name in MODELS}}
     for relation in RELATIONS
 }
-"""Relation to name to what loads the shipped grounding: what `--sampler on=transfer` means."""
+"""Relation to name to what makes the grounding: what `--sampler on=transfer` means.
+
+`surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for it says so and how to
+train them.
+"""

@@ -1,22 +1,40 @@
-"""From labelled scenes to weights of our groundings; torch is imported when the ranker is trained."""
+"""From labelled scenes to weights of a grounding, by name; torch and scikit-learn are imported when they are used."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from grounding.dataset import Dataset, Example
+from grounding.registry import BORROWED, UNTRAINED
 from grounding.relational.chart import Chart
 from grounding.relational.measures import Measures, View
 from grounding.relational.model import relational_weights
 from grounding.relational.proposals import Transfer
-from grounding.weights import Weights
+from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
 RANKS_FROM = 100
 """Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md, section 3)."""
+
+NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
+
+OPTIONS: Mapping[str, tuple[str, ...]] = {
+    "scheme": NETWORKS,
+    "iterations": NETWORKS,
+    "encoder": ("mlp-pc", "gnn-pc", "tree-pc"),
+}
+"""Fields of TrainArgs that only some models have."""
+
+ITERATIONS = 30_000
+"""Of the paper's networks: of the classifier, and then of the generator."""
+
+Say = Callable[[str], None]
+"""What is told how far it is."""
 
 
 @dataclass(frozen=True)
@@ -24,59 +42,119 @@ class TrainArgs:
     """What is trained.
 
     Attributes:
-        samples: How many scenes of the data set, its first ones; None for all.
+        samples: How many scenes of the data set; None for all.
         seed: Of initial weights and batches.
-        demonstrations: At most so many positive ones are kept to draw from.
+        demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
+        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier or both; None for
+            both.
+        iterations: Of the paper's networks; None for the paper's 30,000.
+        encoder: Weights of an encoder of clouds, which the models on clouds need.
+        state: Where an interrupted training of the paper's networks goes on from, and is saved.
         commit: Of the code, for the card.
     """
 
     samples: int | None = None
     seed: int = 0
     demonstrations: int = 2000
+    scheme: str | None = None
+    iterations: int | None = None
+    encoder: Path | None = None
+    state: Path | None = None
     commit: str = ""
 
 
-def train_transfer(
-    data: Dataset, args: TrainArgs = TrainArgs(), progress: Callable[[str], None] = lambda line: None
+def train(data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None) -> Weights:
+    """Train a grounding.
+
+    Args:
+        data: Labelled scenes.
+        model: One of TRAINERS.
+        args: How.
+        progress: Told how far it is.
+
+    Raises:
+        InputError: An unknown model or one that is not trained, an option that it has not, scenes that do not serve.
+        ImportError: What it is trained with is not installed.
+    """
+    check(data.relation, model, args)
+    if args.samples is not None and args.samples > len(data):
+        raise InputError(f"the data set has {len(data):,} scenes, not {args.samples:,}")
+    return TRAINERS[model](data, args, progress)
+
+
+def check(relation: str, model: str, args: TrainArgs) -> None:
+    """What can be said before the data are read.
+
+    Raises:
+        InputError: An unknown model or one that is not trained, or an option that it has not.
+    """
+    if model in BORROWED:
+        remedy = f"Train that: tamp-learn train {relation} --model {BORROWED[model]}"
+        raise InputError(f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'", remedy=remedy)
+    if model in UNTRAINED:
+        raise InputError(f"'{model}' needs no training")
+    if model not in TRAINERS:
+        raise InputError(f"unknown model '{model}'", found=model, choices=TRAINERS)
+    for option, models in OPTIONS.items():
+        if getattr(args, option) is not None and model not in models:
+            raise InputError(f"model '{model}' has no {option}; these have: {', '.join(models)}")
+    if model in OPTIONS["encoder"] and args.encoder is None:
+        raise InputError(
+            f"model '{model}' needs an encoder of clouds", remedy=f"Train one: tamp-learn encoder {relation}"
+        )
+
+
+def train_relational(
+    data: Dataset, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None, *, flow: bool
 ) -> Weights:
-    """A relational grounding of the first scenes of a data set.
+    """A relational grounding of the first scenes of a data set: demonstrations to transfer, or a flow, and the ranker.
 
     Raises:
         InputError: None of them holds.
     """
-    count = min(args.samples or len(data), len(data))
+    count = args.samples or len(data)
     progress(f"measuring {count} scenes")
     measured = [measure(data[index]) for index in range(count)]
+    usable = np.array([bool(len(one.view.faces)) for one in measured])
     holds = data.holds[:count]
-    positive = [one for one, good in zip(measured, holds, strict=True) if good and one.view.faces]
+    positive = [one for one, good in zip(measured, holds & usable, strict=True) if good]
     if not positive:
         raise InputError(f"none of the {count} scenes is a positive one", remedy="More --samples")
     chart = Chart.fit(positive)
-    transfer = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
-    rank, accuracy = {}, None
+    if flow:
+        from grounding.relational import flow_training
+
+        proposals = flow_training.train_flow(
+            chart,
+            positive,
+            flow_training.Args(seed=args.seed),
+            lambda step, steps, loss: progress(f"flow {step}/{steps}, loss {loss:.4f}"),
+        )
+    else:
+        proposals = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
+    rank, score = {}, None
     ranks = count >= RANKS_FROM and not holds.all()
     if ranks:
         from grounding.relational.training import Args, train_ranker
 
-        usable = [index for index, one in enumerate(measured) if one.view.faces]
-        rank, accuracy = train_ranker(
-            [measured[index] for index in usable],
-            holds[np.array(usable)],
+        rank, score = train_ranker(
+            [one for one, good in zip(measured, usable, strict=True) if good],
+            holds[usable],
             Args(seed=args.seed),
             lambda step, steps, score: progress(f"ranker {step}/{steps}, validation accuracy {score:.4f}"),
         )
     card = {
         "relation": data.relation,
-        "model": "transfer",
+        "model": "flow" if flow else "transfer",
         "samples": count,
         "seed": args.seed,
         "commit": args.commit,
         "data": {name: data.card[name] for name in ("split", "seed", "count") if name in data.card},
-        "validation accuracy": accuracy,
+        "validation accuracy": score,
         "ranks": ranks,
         "classifies": ranks,
     }
-    return relational_weights(chart, transfer, rank, card)
+    return relational_weights(chart, proposals, rank, card)
 
 
 def measure(example: Example) -> Measures:
@@ -85,10 +163,51 @@ def measure(example: Example) -> Measures:
     return view.measure((view.T_region_world @ example.situation.body.matrix)[None])
 
 
-TRAINERS: dict[str, Callable[..., Weights]] = {"transfer": train_transfer}
+def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
+    """One of the paper's networks, on as many scenes in the order of `grounding.paper.table.order`."""
+    from grounding.paper.training import train as train_networks
+
+    (weights,) = train_networks(
+        data,
+        model,
+        args.scheme or "both",
+        sizes=[args.samples or len(data)],
+        seeds=[args.seed],
+        encoder=_encoder(args),
+        state=args.state,
+        progress=progress,
+        iterations=args.iterations or ITERATIONS,
+    )
+    return _signed(weights, args)
+
+
+def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
+    """One of the paper's trees, on the same scenes."""
+    from grounding.paper import tree_training
+
+    weights = tree_training.train_tree(
+        data, model, samples=args.samples or len(data), seed=args.seed, encoder=_encoder(args), progress=progress
+    )
+    return _signed(weights, args)
+
+
+def _encoder(args: TrainArgs) -> Weights | None:
+    if args.encoder is None:
+        return None
+    weights = read_weights(args.encoder)
+    if (weights.card.get("model"), weights.card.get("kind")) != ("encoder", "conv"):
+        raise InputError("no encoder of kind 'conv'", file=args.encoder, remedy="Train one: tamp-learn encoder --help")
+    return weights
+
+
+def _signed(weights: Weights, args: TrainArgs) -> Weights:
+    return Weights(weights.arrays, {**weights.card, "commit": args.commit})
+
+
+TRAINERS: Mapping[str, Callable[..., Weights]] = {
+    "transfer": partial(train_relational, flow=False),
+    "flow": partial(train_relational, flow=True),
+    **{name: partial(train_paper, model=name) for name in NETWORKS},
+    **{name: partial(train_tree, model=name) for name in ("tree-bb", "tree-pc")},
+}
 """Model name to what trains it."""
-
-
-def accuracy(predicted: Sequence[float], holds: np.ndarray) -> float:
-    """The share of probabilities on the right side of a half."""
-    return float(((np.asarray(predicted) > 0.5) == holds).mean())

@@ -42,7 +42,7 @@ def write_weights(path: Path, weights: Weights) -> None:
     from safetensors.numpy import save
 
     card = {"format": FORMAT, **weights.card}
-    arrays = {name: np.ascontiguousarray(array) for name, array in sorted(weights.arrays.items())}
+    arrays = {name: np.asarray(array, order="C") for name, array in sorted(weights.arrays.items())}
     write_whole(path.with_suffix(".json"), (json.dumps(card, indent=2, sort_keys=True) + "\n").encode())
     write_whole(path, save(arrays, metadata={"format": FORMAT}))
 

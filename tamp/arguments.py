@@ -89,7 +89,7 @@ def parsed(arguments: list[str]) -> Arguments:
     except SystemExit as end:
         if not end.code:  # --help
             raise
-        raise InputError(_sentence(complaint.getvalue()), remedy="See tamp-solve --help") from None
+        raise InputError(sentence(complaint.getvalue()), remedy="See tamp-solve --help") from None
     if not 1 <= len(chosen.files) <= 2:
         raise InputError(
             f"expected [DOMAIN] PROBLEM, found {len(chosen.files)} files",
@@ -110,7 +110,7 @@ def parsed(arguments: list[str]) -> Arguments:
     return chosen
 
 
-def _sentence(box: str) -> str:
+def sentence(box: str) -> str:
     """What tyro says in the first paragraph of its frame."""
     lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
     title, *said = [line for line in lines if line] or ["bad arguments"]

@@ -99,7 +99,14 @@ def test_dependencies_are_what_the_code_imports() -> None:
 
 def test_torch_stays_where_training_is() -> None:
     files = {str(file.relative_to(ROOT)) for file in sources("grounding") if {"torch", "sklearn"} & {*imported(file)}}
-    assert files == {"grounding/relational/training.py"}
+    assert files == {
+        "grounding/torch_layers.py",
+        *(f"grounding/relational/{name}.py" for name in ("training", "flow_training")),
+        *(
+            f"grounding/paper/{name}.py"
+            for name in ("codes", "critic", "encoders", "networks", "trainer", "tree_training")
+        ),
+    }
 
 
 @pytest.mark.parametrize("module", ["tamp", "tamp.cli", "tamp.verification.cli"])
@@ -109,3 +116,10 @@ def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     modules = {name.partition(".")[0] for name in json.loads(run.stdout)}
     assert "tamp" in modules
     assert modules & HEAVY == set()
+
+
+@pytest.mark.parametrize("module", ["registry", "surface", "paper.runtime", "paper.trees", "paper.uniform"])
+def test_groundings_work_without_the_extra_they_are_trained_with(module: str) -> None:
+    code = f"import sys, grounding.{module}; print(*(name for name in ('torch', 'sklearn') if name in sys.modules))"
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == ""

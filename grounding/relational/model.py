@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from grounding.layers import sigmoid
 from grounding.relational.chart import Chart
+from grounding.relational.flow import Flow
 from grounding.relational.measures import Measures, View
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
@@ -19,27 +20,36 @@ from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.world.pose import Array
 
-BEST_OF = 32
+BEST_OF = 16
 """Candidates of which the best is returned."""
 
-ROUNDS = 4
-"""How often more candidates are drawn when none keeps what all demonstrations keep."""
+ROUNDS = 5
+"""How often twice as many candidates are drawn when too few keep what all demonstrations keep."""
 
 
 class RelationalModel:
     """A trained grounding in relational coordinates; numpy only.
 
     Args:
-        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations) and `rank.*`; the card's `chart`.
+        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations), or `flow.*`, and `rank.*`; the card's
+            `chart`, `ranks` and `classifies`.
+
+    Raises:
+        KeyError: Something is missing.
+        TypeError: The chart is another one.
+        ValueError: Arrays do not fit each other.
     """
 
     def __init__(self, weights: Weights) -> None:
         arrays = weights.arrays
         self.card = weights.card
         self.chart = Chart.from_card(weights.card["chart"])
-        self.transfer = Transfer(self.chart, arrays["coordinates"], arrays["faces"], arrays["sizes"])
-        ranks = {name.removeprefix("rank."): array for name, array in arrays.items() if name.startswith("rank.")}
+        flow, ranks = _named(arrays, "flow."), _named(arrays, "rank.")
+        self.proposals: Transfer | Flow = (
+            Flow(self.chart, flow) if flow else Transfer(self.chart, *(arrays[name] for name in DEMONSTRATIONS))
+        )
         self.ranker = Ranker(ranks) if ranks else None
+        self._ranks, self._classifies = bool(self.card["ranks"]), bool(self.card["classifies"])
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """At most `count` poses T_world_body, the best first; none for a body that rests on no face."""
@@ -47,8 +57,8 @@ class RelationalModel:
         if not len(view.faces):
             return np.zeros((0, 4, 4))
         poses, scores = np.zeros((0, 4, 4)), np.zeros(0)
-        for _ in range(ROUNDS):
-            drawn = self.transfer.draw(view, max(BEST_OF, 2 * count), rng)
+        for turn in range(ROUNDS):
+            drawn = self.proposals.draw(view, max(BEST_OF, 2 * count) << turn, rng)
             poses = np.concatenate([poses, drawn.poses])
             scores = np.concatenate([scores, self._scores(drawn)])
             if (scores > HOPELESS).sum() >= count:
@@ -62,7 +72,7 @@ class RelationalModel:
         if not len(view.faces) or not len(poses):
             return np.zeros(len(poses))
         measured = view.measure(view.T_region_world @ poses)
-        if self.ranker is not None and self.card["classifies"]:
+        if self.ranker is not None and self._classifies:
             return sigmoid(self.ranker.logits(measured)).astype(float)
         return np.exp(-200.0 * self.chart.shortfall(measured)) * (np.abs(measured.low[:, 2]) < 0.03)
 
@@ -71,7 +81,7 @@ class RelationalModel:
         steady = np.minimum(measured.view.steadiness[measured.face], STEADY) / STEADY
         overhang = np.clip(measured.sides.min(axis=1), -OVERHANG, 0.0) / OVERHANG
         scores = steady + 2.0 * overhang + np.minimum(measured.nearest, CLEAR) / CLEAR
-        if self.ranker is not None and self.card["ranks"]:
+        if self.ranker is not None and self._ranks:
             scores = scores + np.clip(self.ranker.logits(measured), 0.5 * HOPELESS, SURE)
         return np.where(shortfall > 0.0, HOPELESS - 1e3 * shortfall, scores)
 
@@ -83,14 +93,25 @@ HOPELESS = -1e3
 """The score below which a pose misses what all demonstrations keep."""
 
 
+DEMONSTRATIONS = ("coordinates", "faces", "sizes")
+"""The arrays of a `Transfer`."""
+
+
 def relational_weights(
-    chart: Chart, transfer: Transfer, rank: Mapping[str, NDArray[Any]], card: Mapping[str, Any]
+    chart: Chart,
+    proposals: Transfer | Mapping[str, NDArray[Any]],
+    rank: Mapping[str, NDArray[Any]],
+    card: Mapping[str, Any],
 ) -> Weights:
-    """What `RelationalModel` is made of."""
-    arrays: dict[str, NDArray[Any]] = {
-        "coordinates": transfer.coordinates.astype(np.float32),
-        "faces": transfer.faces.astype(np.float32),
-        "sizes": transfer.sizes.astype(np.float32),
-        **{f"rank.{name}": array for name, array in rank.items()},
-    }
-    return Weights(arrays, {**card, "chart": asdict(chart)})
+    """What `RelationalModel` is made of; the proposals are demonstrations or the arrays of a `Flow`."""
+    if isinstance(proposals, Transfer):
+        arrays = {name: np.asarray(getattr(proposals, name), np.float32) for name in DEMONSTRATIONS}
+    else:
+        arrays = {f"flow.{name}": array for name, array in proposals.items()}
+    return Weights(
+        {**arrays, **{f"rank.{name}": array for name, array in rank.items()}}, {**card, "chart": asdict(chart)}
+    )
+
+
+def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}

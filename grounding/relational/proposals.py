@@ -38,6 +38,12 @@ class Transfer:
     faces: Array
     sizes: Array
 
+    def __post_init__(self) -> None:
+        count = len(self.coordinates)
+        shapes = (self.coordinates.shape, self.faces.shape, self.sizes.shape)
+        if not count or shapes != ((count, 7), (count, 4), (count, 3)):
+            raise ValueError(f"demonstrations of shapes {shapes}")
+
     @classmethod
     def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
         """From encoded demonstrations."""

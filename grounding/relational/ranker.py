@@ -23,7 +23,8 @@ class Ranker:
     """
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]]) -> None:
-        self._main, self._pair = layers_of(arrays, "main"), layers_of(arrays, "pair")
+        self._pair = layers_of(arrays, "pair", PAIR)
+        self._main = layers_of(arrays, "main", POSE + self._pair[-1][0].shape[1], 1)
 
     def logits(self, measured: Measures) -> NDArray[Any]:
         """Shape (n,): the larger, the likelier that the relation holds."""

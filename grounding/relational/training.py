@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from torch import Tensor, nn
 
 from grounding.relational.measures import Measures
 from grounding.relational.ranker import PAIR, POSE, features
+from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 
 @dataclass(frozen=True)
@@ -45,22 +45,17 @@ class RankerNet(nn.Module):
 
     def __init__(self, hidden: int, pooled: int) -> None:
         super().__init__()
-        self.pair = _dense([PAIR, 32, pooled])
-        self.main = _dense([POSE + pooled, hidden, hidden, 1])
+        self.pair = dense_layers([PAIR, 32, pooled])
+        self.main = dense_layers([POSE + pooled, hidden, hidden, 1])
 
     def forward(self, pose: Tensor, pair: Tensor, missing: Tensor) -> Tensor:
         """Logits (n,) of poses (n, POSE), pairs (n, m, PAIR), and which of them are not there (n, m)."""
-        pooled = _run(self.pair, pair).masked_fill(missing[..., None], -torch.inf).amax(dim=1)
-        return _run(self.main, torch.cat([pose, pooled], dim=1))[:, 0]
+        pooled = run_layers(self.pair, pair).masked_fill(missing[..., None], -torch.inf).amax(dim=1)
+        return run_layers(self.main, torch.cat([pose, pooled], dim=1))[:, 0]
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
         """The weights as `layers_of` reads them."""
-        found: dict[str, NDArray[np.float32]] = {}
-        for name, layers in (("pair", self.pair), ("main", self.main)):
-            for key, value in layers.named_parameters():
-                array = value.detach().numpy()
-                found[f"{name}.{key}"] = array.T.copy() if array.ndim == 2 else array.copy()
-        return found
+        return arrays_of(pair=self.pair, main=self.main)
 
 
 def train_ranker(
@@ -114,15 +109,3 @@ def _table(rows: Sequence[tuple[NDArray[Any], NDArray[Any]]]) -> tuple[Tensor, T
     for row, (_, pair) in enumerate(rows):
         pairs[row, : pair.shape[1]], missing[row, : pair.shape[1]] = pair[0], False
     return torch.tensor(np.concatenate([pose for pose, _ in rows])), torch.tensor(pairs), torch.tensor(missing)
-
-
-def _dense(widths: Sequence[int]) -> nn.ModuleList:
-    return nn.ModuleList(nn.Linear(a, b) for a, b in pairwise(widths))
-
-
-def _run(layers: nn.ModuleList, x: Tensor) -> Tensor:
-    for row, layer in enumerate(layers):
-        x = layer(x)
-        if row < len(layers) - 1:
-            x = torch.relu(x)
-    return x

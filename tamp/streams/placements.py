@@ -39,7 +39,7 @@ class SurfacePlacements:
         for _ in range(count):
             face = faces[0] if rng.random() < KEEP_FACE else faces[int(rng.integers(len(faces)))]
             yaw = rng.uniform(-math.pi, math.pi)
-            x, y = _position(face, yaw, region.size, rng)
+            x, y = position_inside(face, yaw, region.size, rng)
             poses.append(T_world_region @ resting_pose(face, yaw, x, y))
         return poses
 
@@ -62,8 +62,11 @@ class UniformPlacements:
         ]
 
 
-def _position(face: Face, yaw: float, size: Sequence[float], rng: Random) -> tuple[float, float]:
-    """Where the body's frame may be so that the outline stays inside, or anywhere inside when it cannot."""
+def position_inside(face: Face, yaw: float, size: Sequence[float], rng: Random) -> tuple[float, float]:
+    """A random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at a yaw in radians.
+
+    The outline stays inside; where it cannot, the centre of mass does.
+    """
     c, s = math.cos(yaw), math.sin(yaw)
     outline = face.outline @ np.array([[c, s], [-s, c]])
     low, high = outline.min(axis=0), outline.max(axis=0)

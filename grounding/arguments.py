@@ -1,0 +1,138 @@
+"""The command line of tamp-learn."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from grounding.registry import RELATIONS
+from tamp.arguments import sentence
+from tamp.errors import InputError
+
+
+@dataclass(frozen=True)
+class Generate:
+    """Make labelled scenes in physics; an interrupted run goes on where it was."""
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """on or inside."""
+    split: str = "train"
+    """train or test; they share no object and no support."""
+    count: int = 20000
+    """Scenes; half of them are positive."""
+    seed: int = 0
+    """Of all randomness: the same seed gives the same bytes."""
+    out: Path | None = None
+    """The file; by default data/RELATION_SPLIT.npz."""
+    meshes: Path | None = None
+    """A folder with one mesh a subfolder (as the YCB set comes), to join the objects."""
+    workers: int | None = None
+    """Processes; by default one a core."""
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """Train an encoder of point clouds, which the models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """on or inside."""
+    kind: str = "conv"
+    """conv, which serves the models; pointnet++ and dense are for comparison."""
+    scaling: str = "one"
+    """Of the clouds: one factor for all (one), or each to the cube (each)."""
+    iterations: int | None = None
+    """Batches; by default 4,000."""
+    points: int | None = None
+    """Of a cloud; by default 2,048."""
+    seed: int = 0
+    """Of initial weights and batches."""
+    data: Path | None = None
+    """The data set; by default data/RELATION_train.npz."""
+    out: Path | None = None
+    """The weights; by default weights/RELATION_encoder.safetensors."""
+
+
+@dataclass(frozen=True)
+class Train:
+    """Train a grounding on a data set; the paper's networks go on where an interrupted run was."""
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """on or inside."""
+    model: str = "transfer"
+    """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
+    scheme: str | None = None
+    """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by default both."""
+    samples: int | None = None
+    """Use only so many of the scenes."""
+    iterations: int | None = None
+    """Of the paper's networks; by default 30,000 of the classifier and as many of the generator."""
+    seed: int = 0
+    """Of initial weights and batches."""
+    data: Path | None = None
+    """The data set; by default data/RELATION_train.npz."""
+    encoder: Path | None = None
+    """Of the models on clouds; by default what tamp-learn encoder has written."""
+    out: Path | None = None
+    """The weights; by default weights/RELATION_MODEL.safetensors."""
+
+
+@dataclass(frozen=True)
+class Evaluate:
+    """Judge a grounding on scenes that it never saw."""
+
+    weights: Annotated[str, tyro.conf.Positional]
+    """A weight file (.safetensors), or RELATION=NAME of what ships, such as on=surface."""
+    model: str | None = None
+    """What to make of the weights; by default what they were trained as. uniform+mlp is made of those of mlp-bb."""
+    data: Path | None = None
+    """The data set; by default data/RELATION_test.npz of the weights' relation."""
+    scenes: int | None = None
+    """At most so many scenes."""
+    seed: int = 0
+    """Of the scenes' order and of the draws."""
+
+
+Arguments = Generate | Encoder | Train | Evaluate
+
+COMMANDS = {"generate": Generate, "encoder": Encoder, "train": Train, "evaluate": Evaluate}
+
+
+def parsed(arguments: list[str]) -> Arguments:
+    """What the words of a command line say.
+
+    Raises:
+        InputError: Something that the command does not know.
+    """
+    command = arguments[0] if arguments else ""
+    if command not in (*COMMANDS, "-h", "--help"):
+        raise InputError(f"unknown command '{command}'" if command else "no command", found=command, choices=COMMANDS)
+    complaint = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(complaint):
+            chosen = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="tamp-learn", args=arguments)
+    except SystemExit as end:
+        if not end.code:  # --help
+            raise
+        raise InputError(sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help") from None
+    _check(chosen)
+    return chosen
+
+
+def _check(chosen: Arguments) -> None:
+    if not isinstance(chosen, Evaluate) and chosen.relation not in RELATIONS:
+        raise InputError(f"unknown relation '{chosen.relation}'", found=chosen.relation, choices=RELATIONS)
+    for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
+        number = vars(chosen).get(name)
+        if number is not None and number < 1:
+            raise InputError(f"--{name} must be positive, not {number}")
+    if not 0 <= chosen.seed < 2**63:
+        raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
+    for name, suffix in (("out", ".npz" if isinstance(chosen, Generate) else ".safetensors"), ("data", ".npz")):
+        path = vars(chosen).get(name)
+        if path is not None and path.suffix != suffix:
+            raise InputError(f"--{name}: the file must end in {suffix}", file=path)

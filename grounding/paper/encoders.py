@@ -1,0 +1,227 @@
+"""Auto-encoders of point clouds (section III-B): three encoders, a fully connected decoder, Chamfer's distance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from grounding.dataset import Dataset
+from grounding.form import Form
+from grounding.paper.clouds import POINTS, cloud
+from grounding.paper.features import CODE
+from grounding.torch_layers import dense_layers, run_layers
+from tamp.errors import InputError
+
+SCALINGS = ("one", "each")
+"""(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought to that cube."""
+
+
+@dataclass(frozen=True)
+class Args:
+    """How an encoder is trained.
+
+    Attributes:
+        iterations: Batches.
+        batch: Clouds in one.
+        rate: Adam's learning rate.
+        validate_every: Iterations between looks at the validation clouds.
+        validation: How many those are, of the data set's last tenth of the scenes.
+        points: Of each cloud; fewer are for tests.
+        seed: Of initial weights and batches.
+        device: Where torch computes.
+    """
+
+    iterations: int = 4000
+    batch: int = 16
+    rate: float = 1e-3
+    validate_every: int = 250
+    validation: int = 128
+    points: int = POINTS
+    seed: int = 0
+    device: str = "cpu"
+
+
+class Conv(nn.Module):
+    """1D convolutions with kernel 1, 3-64-128-128-256-128, and the largest of each number over the points."""
+
+    def __init__(self, points: int) -> None:
+        super().__init__()
+        self.layers = dense_layers([3, 64, 128, 128, 256, CODE])
+
+    def forward(self, points: Tensor) -> Tensor:
+        """Codes (n, CODE) of clouds (n, points, 3)."""
+        return run_layers(self.layers, points).amax(dim=1)
+
+
+class PointNet(nn.Module):
+    """PointNet++ (Qi et al. 2017): two set abstractions of 32 nearest points each, and one of all.
+
+    The centres are the first points of a cloud, since its points are drawn evenly.
+    """
+
+    CENTRES = (256, 64)
+    NEAREST = 32
+
+    def __init__(self, points: int) -> None:
+        super().__init__()
+        self.first = dense_layers([3, 64, 64, 128])
+        self.second = dense_layers([131, 128, 128, 256])
+        self.last = dense_layers([259, 256, CODE])
+
+    def forward(self, points: Tensor) -> Tensor:
+        """Codes (n, CODE) of clouds (n, points, 3)."""
+        places, features = points, points[..., :0]
+        for count, layers in zip(self.CENTRES, (self.first, self.second), strict=True):
+            centres = places[:, : min(count, places.shape[1])]
+            near = torch.cdist(centres, places).topk(min(self.NEAREST, places.shape[1]), largest=False).indices
+            batch = torch.arange(len(points), device=points.device)[:, None, None]
+            around = torch.cat([places[batch, near] - centres[:, :, None], features[batch, near]], dim=-1)
+            places, features = centres, run_layers(layers, around).amax(dim=2)
+        return run_layers(self.last, torch.cat([places, features], dim=-1)).amax(dim=1)
+
+
+class Dense(nn.Module):
+    """Fully connected, of the points in their order: 3 times points to 512-256-128."""
+
+    def __init__(self, points: int) -> None:
+        super().__init__()
+        self.layers = dense_layers([3 * points, 512, 256, CODE])
+
+    def forward(self, points: Tensor) -> Tensor:
+        """Codes (n, CODE) of clouds (n, points, 3)."""
+        return run_layers(self.layers, points.flatten(1))
+
+
+ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {"conv": Conv, "pointnet++": PointNet, "dense": Dense}
+"""By name; the models on clouds use `conv`, the paper's choice."""
+
+
+def train_encoder(
+    data: Dataset,
+    kind: str = "conv",
+    scaling: str = "one",
+    args: Args = Args(),
+    progress: Callable[[str], None] = lambda line: None,
+) -> tuple[dict[str, NDArray[np.float32]], float]:
+    """The encoder's arrays, with `scale` and `points` as the runtime reads them, and its validation Chamfer distance.
+
+    Args:
+        data: Scenes, whose bodies as they are turned are the clouds.
+        kind: One of ENCODERS.
+        scaling: One of SCALINGS.
+        args: How.
+        progress: Told how far it is.
+
+    Raises:
+        InputError: An unknown kind or scaling.
+    """
+    if kind not in ENCODERS:
+        raise InputError(f"unknown encoder '{kind}'", found=kind, choices=ENCODERS)
+    if scaling not in SCALINGS:
+        raise InputError(f"unknown scaling '{scaling}'", found=scaling, choices=SCALINGS)
+    clouds = PosedClouds.of(data, args.device, args.points)
+    factor = 0.5 / clouds.radius if scaling == "one" else 0.0
+    with torch.random.fork_rng():
+        torch.manual_seed(args.seed)
+        encoder, decoder = ENCODERS[kind](args.points), dense_layers([CODE, 256, 512, 3 * args.points])
+    encoder, decoder = encoder.to(args.device), decoder.to(args.device)
+    optimizer = torch.optim.Adam([*encoder.parameters(), *decoder.parameters()], lr=args.rate)
+    random = torch.Generator().manual_seed(args.seed)
+    cut = max(1, int(0.9 * len(clouds)))
+    apart = cut + torch.randperm(max(1, len(clouds) - cut), generator=random)[: args.validation]
+    apart = apart.clamp(max=len(clouds) - 1)
+
+    def distance(rows: Tensor) -> Tensor:
+        points = scaled(clouds.take(rows), factor)
+        return chamfer(points, run_layers(decoder, encoder(points)).view(points.shape))
+
+    best, kept = np.inf, {}
+    for step in range(1, args.iterations + 1):
+        loss = distance(torch.randint(cut, (args.batch,), generator=random)).mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        if step % args.validate_every == 0 or step == args.iterations:
+            with torch.no_grad():
+                score = float(np.mean([float(distance(rows).mean()) for rows in apart.split(args.batch)]))
+            if score < best:
+                best, kept = score, _arrays(encoder)
+            progress(f"{kind}, scaling {scaling}: {step} of {args.iterations}, Chamfer distance {score:.3e}")
+    kept["scale"], kept["points"] = np.array(factor, np.float32), np.array(args.points, np.float32)
+    return kept, best
+
+
+@dataclass(frozen=True, eq=False)
+class PosedClouds:
+    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's scale and rotation.
+
+    Attributes:
+        unit: Shape (templates, points, 3).
+        template: Shape (n,).
+        turn: Scale times rotation, shape (n, 3, 3).
+    """
+
+    unit: Tensor
+    template: Tensor
+    turn: Tensor
+
+    @classmethod
+    def of(cls, data: Dataset, device: str, points: int = POINTS) -> PosedClouds:
+        """Of all bodies of all scenes."""
+        unit = np.stack([centred(Form(parts))[0][:points] for parts in data.templates.values()])
+        there = data.arrays["body"] >= 0
+        turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
+        return cls(
+            torch.tensor(unit, dtype=torch.float32, device=device),
+            torch.tensor(data.arrays["body"][there].astype(np.int64), device=device),
+            torch.tensor(turn, dtype=torch.float32, device=device),
+        )
+
+    def __len__(self) -> int:
+        return len(self.template)
+
+    @property
+    def radius(self) -> float:
+        """Of the ball that contains every cloud, metres."""
+        largest = self.unit.norm(dim=2).amax(dim=1)[self.template]
+        return float((largest * self.turn[:, 0].norm(dim=1)).max())
+
+    def take(self, rows: Tensor) -> Tensor:
+        """Posed clouds, shape (rows, points, 3), metres."""
+        rows = rows.to(self.template.device)
+        return self.unit[self.template[rows]] @ self.turn[rows].transpose(1, 2)
+
+
+def centred(form: Form) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """A form's cloud about its centroid, and that centroid."""
+    points = cloud(form)
+    centroid = points.mean(axis=0)
+    return points - centroid, centroid
+
+
+def scaled(points: Tensor, factor: float) -> Tensor:
+    """As `runtime.scaled`, of clouds (n, points, 3)."""
+    if factor:
+        return points * factor
+    extents = points.amax(dim=1) - points.amin(dim=1)
+    return points / extents.amax(dim=1)[:, None, None].clamp(min=1e-9)
+
+
+def chamfer(first: Tensor, second: Tensor) -> Tensor:
+    """Mean squared distance to the nearest point, both ways, of clouds (n, points, 3); shape (n,)."""
+    squares = (first**2).sum(-1)[:, :, None] + (second**2).sum(-1)[:, None] - 2 * first @ second.transpose(1, 2)
+    squares = squares.clamp(min=0.0)
+    return squares.amin(dim=2).mean(dim=1) + squares.amin(dim=1).mean(dim=1)
+
+
+def _arrays(encoder: nn.Module) -> dict[str, NDArray[np.float32]]:
+    found = {}
+    for key, value in encoder.named_parameters():
+        array = value.detach().cpu().numpy()
+        found[key.removeprefix("layers.")] = array.T.copy() if array.ndim == 2 else array.copy()
+    return found

@@ -1,0 +1,193 @@
+"""The paper's features of a body (section III-B): its bounding boxes, or the code of its point cloud.
+
+A situation is seen with argument 0 at the origin (`first_arg`): its position is subtracted from every body's, nothing
+is turned or scaled. Positions are centres of object-aligned boxes, or centroids of clouds; metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grounding.paper.clouds import cloud
+from grounding.situation import Placed, Situation
+from tamp.world.pose import Array
+
+BB = 19
+"""Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own box's corners 6."""
+
+PC = 135
+"""Numbers a body: centroid 3, quaternion xyzw 4, code of its cloud 128."""
+
+CODE = 128
+"""Numbers of a cloud's code."""
+
+Encoder = Callable[[Array], NDArray[Any]]
+"""From the posed, centred cloud, shape (points, 3) in metres, to its code, shape (CODE,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """A situation as the networks see it.
+
+    Attributes:
+        arguments: Features of argument 0 and 1, shape (2, f).
+        others: Features of the surroundings, shape (k, f).
+        origin: The position of argument 0 in the world, which has been subtracted, shape (3,).
+        centre: The position of argument 1 in its own frame, shape (3,).
+        extents: Half the edges of argument 1's own box, shape (3,).
+    """
+
+    arguments: Array
+    others: Array
+    origin: Array
+    centre: Array
+    extents: Array
+
+
+class Features(Protocol):
+    """One of the two kinds."""
+
+    size: int
+
+    def observe(self, situation: Situation) -> Observation:
+        """The features of a situation as it is."""
+        ...
+
+    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+        """The features that argument 1 would have at T_world_body, shape (n, 4, 4); returns (n, f)."""
+        ...
+
+
+class BoxFeatures:
+    """BB. The box along the world's axes is that of the posed object-aligned box, in data as in completed proposals."""
+
+    size = BB
+
+    def observe(self, situation: Situation) -> Observation:
+        """See Features."""
+        support, body = situation.support, situation.body
+        boxes = [situation.region.box, body.form.corners, *(other.form.corners for other in situation.others)]
+        matrices = np.stack([support.matrix, body.matrix, *(other.matrix for other in situation.others)])
+        corners = np.stack(boxes)
+        centres = _moved(matrices, corners.mean(axis=1))
+        features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
+        low, high = body.form.corners
+        return Observation(features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2)
+
+    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+        """See Features."""
+        corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
+        return box_features(_moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners)
+
+
+class CloudFeatures:
+    """PC.
+
+    Args:
+        encoder: What makes codes of clouds.
+    """
+
+    size = PC
+
+    def __init__(self, encoder: Encoder) -> None:
+        self._encode = encoder
+
+    def observe(self, situation: Situation) -> Observation:
+        """See Features."""
+        placed = (situation.support, situation.body, *situation.others)
+        features = np.stack([self._features(item) for item in placed])
+        origin = features[0, :3].copy()
+        features[:, :3] -= origin
+        low, high = situation.body.form.corners
+        centre = cloud(situation.body.form).mean(axis=0)
+        return Observation(features[:2], features[2:], origin, centre, (high - low) / 2)
+
+    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+        """See Features. Each pose's cloud is encoded, unless argument 1 is turned as it was."""
+        features = np.empty((len(poses), PC))
+        features[:, :3] = _moved(poses, seen.centre) - seen.origin
+        features[:, 3:7] = quaternions(poses[:, :3, :3])
+        centred = cloud(situation.body.form) - seen.centre
+        for row, pose in zip(features, poses, strict=True):
+            same = np.array_equal(pose[:3, :3], situation.body.matrix[:3, :3])
+            row[7:] = seen.arguments[1, 7:] if same else self._encode(centred @ pose[:3, :3].T)
+        return features
+
+    def _features(self, item: Placed) -> Array:
+        points = cloud(item.form)
+        centroid, rotation = points.mean(axis=0), item.matrix[:3, :3]
+        code = self._encode((points - centroid) @ rotation.T)
+        return np.concatenate([rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code])
+
+
+def box_features(centres: Array, turns: Array, corners: Array) -> Array:
+    """BB, shape (n, 19), of positions (n, 3), quaternions (n, 4) and own boxes, low and high corner (n, 2, 3)."""
+    half = (corners[:, 1] - corners[:, 0]) / 2
+    reach = (np.abs(rotations(turns)) @ half[:, :, None])[:, :, 0]
+    flat = corners.reshape(-1, 6)
+    return np.concatenate([centres, centres - reach, centres + reach, turns, flat], axis=1, dtype=centres.dtype)
+
+
+def completed(seen: Observation, positions: Array, turns: Array) -> Array:
+    """Argument 1's features when a generator put it at positions (n, 3) and unit quaternions (n, 4); shape (n, f).
+
+    Its own box or its code stay as they were seen: a code is not computed again, although its cloud has turned.
+    """
+    argument = seen.arguments[1]
+    if len(argument) == BB:
+        return box_features(positions, turns, np.broadcast_to(argument[13:].reshape(2, 3), (len(positions), 2, 3)))
+    code = np.broadcast_to(argument[7:], (len(positions), CODE))
+    return np.concatenate([positions, turns, code], axis=1, dtype=positions.dtype)
+
+
+def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
+    """T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have them, turned by (n, 4)."""
+    poses = np.zeros((len(positions), 4, 4))
+    poses[:, 3, 3] = 1.0
+    poses[:, :3, :3] = rotations(turns)
+    poses[:, :3, 3] = seen.origin + positions - poses[:, :3, :3] @ seen.centre
+    return poses
+
+
+QUADRATIC: NDArray[np.float64] = np.zeros((16, 9))
+"""R = 1 + (q q^T) QUADRATIC for a unit quaternion xyzw: entries of q q^T row by row to entries of R row by row."""
+for _row, _column, _first, _second, _factor in (
+    (0, 0, 1, 1, -2), (0, 0, 2, 2, -2), (1, 1, 0, 0, -2), (1, 1, 2, 2, -2), (2, 2, 0, 0, -2), (2, 2, 1, 1, -2),
+    (0, 1, 0, 1, 2), (0, 1, 2, 3, -2), (0, 2, 0, 2, 2), (0, 2, 1, 3, 2), (1, 0, 0, 1, 2), (1, 0, 2, 3, 2),
+    (1, 2, 1, 2, 2), (1, 2, 0, 3, -2), (2, 0, 0, 2, 2), (2, 0, 1, 3, -2), (2, 1, 1, 2, 2), (2, 1, 0, 3, 2),
+):  # fmt: skip
+    QUADRATIC[4 * _first + _second, 3 * _row + _column] = _factor
+
+
+def rotations(turns: Array) -> Array:
+    """Rotation matrices, shape (n, 3, 3), of unit quaternions xyzw, shape (n, 4)."""
+    products = (turns[:, :, None] * turns[:, None, :]).reshape(-1, 16)
+    return (products @ QUADRATIC.astype(turns.dtype)).reshape(-1, 3, 3) + np.eye(3, dtype=turns.dtype)
+
+
+def quaternions(matrices: Array) -> Array:
+    """Unit quaternions xyzw with w >= 0, shape (n, 4), of rotation matrices, shape (n, 3, 3) (Shepperd's method)."""
+    r = matrices
+    trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
+    squares = np.stack([r[:, 0, 0], r[:, 1, 1], r[:, 2, 2], trace], axis=1)
+    products = np.empty((len(r), 4, 4))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        products[:, i, i] = 1 - trace + 2 * r[:, i, i]
+        products[:, i, j] = products[:, j, i] = r[:, j, i] + r[:, i, j]
+        products[:, i, 3] = products[:, 3, i] = r[:, k, j] - r[:, j, k]
+    products[:, 3, 3] = 1 + trace
+    turns = products[np.arange(len(r)), np.argmax(squares, axis=1)]
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    turns[turns[:, 3] < 0] *= -1
+    return turns
+
+
+def _moved(matrices: Array, points: Array) -> Array:
+    """One point of each frame, in the outer frame; shape (n, 3)."""
+    return (matrices[:, :3, :3] @ np.broadcast_to(points, (len(matrices), 3))[:, :, None])[:, :, 0] + matrices[:, :3, 3]

@@ -1,0 +1,214 @@
+"""The paper's models at work, in numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator as Random
+from numpy.typing import NDArray
+
+from grounding.paper.features import BB, CODE, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.situation import Situation
+from grounding.weights import Weights
+from tamp.errors import InputError
+from tamp.world.pose import Array
+
+Floats = NDArray[np.float32]
+Arrays = Mapping[str, NDArray[Any]]
+
+_REMEDY = "Train it again: tamp-learn train --help"
+
+NOISE = 4
+"""Gaussian numbers that the generator is given."""
+
+
+class PaperModel:
+    """A classifier and a generator of the paper: `mlp-bb`, `gnn-bb`, `mlp-pc` or `gnn-pc`, as its arrays say.
+
+    Args:
+        weights: What `training.train` returned.
+
+    Raises:
+        InputError: The arrays are not those of such a model.
+    """
+
+    def __init__(self, weights: Weights) -> None:
+        arrays = weights.arrays
+        self.classifier, self.generator = Network(arrays, "classifier"), Network(arrays, "generator")
+        self._features = features_in(arrays, self.classifier)
+        _check_generator(self.generator, self._features.size)
+
+    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+        """`count` poses, in no order: the generator moves argument 1 from where it is, each time by other noise."""
+        seen = self._features.observe(situation)
+        noise = rng.standard_normal((count, NOISE), dtype=np.float32)
+        positions, turns = generated(self.generator, seen, noise)
+        return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
+
+    def classify(self, situation: Situation, poses: Array) -> Array:
+        """The probability that the relation holds with argument 1 at each of the poses, shape (n,)."""
+        return classified(self.classifier, self._features, self._features.observe(situation), situation, poses)
+
+
+class Network:
+    """Matrices and biases of a classifier or a generator.
+
+    Args:
+        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps `NAME.scene.0.weight`, ...
+        name: Which network.
+
+    Raises:
+        InputError: There is no such network, or its layers do not fit each other.
+    """
+
+    def __init__(self, arrays: Arrays, name: str) -> None:
+        self.main, self.scene = _chain(arrays, f"{name}.main"), _chain(arrays, f"{name}.scene")
+        if not self.main:
+            raise InputError(f"the weights have no {name}", remedy=_REMEDY)
+
+    def context(self, arguments: Floats, others: Floats) -> Floats:
+        """The embedding of the surroundings, shape (n, 16), or (n, 0) of a network that does not look at them.
+
+        Args:
+            arguments: Shape (n, 2 f).
+            others: Shape (k, f).
+        """
+        if not self.scene:
+            return arguments[:, :0]
+        (first, bias), (second, bias_2), (third, bias_3) = self.scene
+        if not len(others):
+            return np.broadcast_to(bias_3, (len(arguments), len(bias_3)))
+        known = arguments.shape[1]
+        hidden = (arguments @ first[:known] + bias)[:, None] + others @ first[known:]
+        hidden = np.maximum(np.maximum(hidden, 0, out=hidden) @ second + bias_2, 0)
+        return hidden.mean(axis=1) @ third + bias_3
+
+    def __call__(self, inputs: Floats) -> Floats:
+        """The layers `main`, shape (n, outputs)."""
+        x = inputs
+        for weight, bias in self.main[:-1]:
+            x = x @ weight
+            x += bias
+            np.maximum(x, 0, out=x)
+        weight, bias = self.main[-1]
+        return x @ weight + bias
+
+
+class NumpyEncoder:
+    """The encoder of 1D convolutions with kernel 1: each point through the layers, the largest of each number.
+
+    Args:
+        arrays: `0.weight` (inputs, outputs), `0.bias`, ..., `scale`, by which metres are multiplied first (0: each
+            cloud is brought to the cube), and `points`, how many of the cloud's points are looked at.
+
+    Raises:
+        InputError: The arrays are not those of an encoder.
+    """
+
+    def __init__(self, arrays: Arrays) -> None:
+        self.layers = _chain(arrays, "")
+        if not self.layers or "scale" not in arrays or "points" not in arrays or self.layers[-1][0].shape[1] != CODE:
+            raise InputError("the weights have no encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        self.scale, self.points = float(arrays["scale"]), int(arrays["points"])
+
+    def __call__(self, points: Array) -> Floats:
+        """The code, shape (CODE,), of a posed, centred cloud, shape (n, 3), metres."""
+        x = scaled(points, self.scale)[: self.points].astype(np.float32)
+        for number, (weight, bias) in enumerate(self.layers):
+            x = x @ weight
+            if number < len(self.layers) - 1:
+                x += bias
+                np.maximum(x, 0, out=x)
+        return x.max(axis=0) + self.layers[-1][1]
+
+
+def scaled(points: Array, factor: float) -> Array:
+    """Scaling (a), by one factor for all clouds, or (b), when it is 0: the largest extent fills the cube of edge 1."""
+    return points * factor if factor else points / max(float(np.ptp(points, axis=0).max()), 1e-9)
+
+
+def features_in(arrays: Arrays, classifier: Network) -> Features:
+    """The features that a classifier is for.
+
+    Raises:
+        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
+    """
+    inputs = classifier.main[0][0].shape[0] - (classifier.scene[-1][1].shape[0] if classifier.scene else 0)
+    outputs = classifier.main[-1][1].shape[0]
+    if outputs != 1:
+        raise InputError(f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY)
+    _check_scene(classifier, inputs // 2)
+    if inputs == 2 * BB:
+        return BoxFeatures()
+    if inputs == 2 * PC:
+        encoder = {name.removeprefix("encoder."): array for name, array in arrays.items() if "encoder." in name}
+        return CloudFeatures(NumpyEncoder(encoder))
+    raise InputError(f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)")
+
+
+def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Floats, Floats]:
+    """Positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for noise (n, 4)."""
+    inputs = np.empty((len(noise), network.main[0][0].shape[0]), np.float32)
+    arguments = seen.arguments.reshape(1, -1).astype(np.float32)
+    known = arguments.shape[1]
+    inputs[:, :known] = arguments
+    inputs[:, known:-NOISE] = network.context(arguments, seen.others.astype(np.float32))
+    inputs[:, -NOISE:] = noise
+    pose = network(inputs)
+    return pose[:, :3], pose[:, 3:]
+
+
+def classified(network: Network, features: Features, seen: Observation, situation: Situation, poses: Array) -> Array:
+    """Probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4, 4)."""
+    return judged(network, seen, features.at(seen, situation, poses))
+
+
+def judged(network: Network, seen: Observation, argument: Array) -> Array:
+    """Probabilities, shape (n,), with argument 1's features as given, shape (n, f)."""
+    size = argument.shape[1]
+    arguments = np.empty((len(argument), 2 * size), np.float32)
+    arguments[:, :size], arguments[:, size:] = seen.arguments[0], argument
+    inputs = np.concatenate([arguments, network.context(arguments, seen.others.astype(np.float32))], axis=1)
+    return 1 / (1 + np.exp(-np.clip(network(inputs)[:, 0].astype(np.float64), -60, 60)))
+
+
+def unit(turns: Array) -> Array:
+    """Quaternions of norm 1, shape (n, 4); no rotation for one that is zero."""
+    norm = np.linalg.norm(turns, axis=1, keepdims=True)
+    return np.where(norm > 1e-8, turns / np.maximum(norm, 1e-8), [0.0, 0.0, 0.0, 1.0])
+
+
+def _check_scene(network: Network, size: int) -> None:
+    inputs = network.scene[0][0].shape[0] if network.scene else 3 * size
+    if len(network.scene) not in (0, 3) or inputs != 3 * size:
+        what = f"the surroundings go through {len(network.scene)} layers, {inputs} numbers a body"
+        raise InputError(f"{what}; it should be 3 and {3 * size}", remedy=_REMEDY)
+
+
+def _check_generator(network: Network, size: int) -> None:
+    _check_scene(network, size)
+    inputs, outputs = network.main[0][0].shape[0], network.main[-1][1].shape[0]
+    wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
+    if (inputs, outputs) != (wanted, 7):
+        raise InputError(
+            f"the generator is given {inputs} numbers and returns {outputs}; it should be {wanted} and 7",
+            remedy=_REMEDY,
+        )
+
+
+def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
+    """The layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
+    dot = f"{prefix}." if prefix else ""
+    layers: list[tuple[Floats, Floats]] = []
+    while f"{dot}{len(layers)}.weight" in arrays and f"{dot}{len(layers)}.bias" in arrays:
+        weight, bias = (np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32) for key in ("weight", "bias"))
+        fits = not layers or layers[-1][0].shape[1] == weight.shape[0]
+        if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
+            raise InputError(
+                f"layer '{dot}{len(layers)}' does not fit: matrix {weight.shape}, bias {bias.shape}",
+                remedy=_REMEDY,
+            )
+        layers.append((weight, bias))
+    return layers

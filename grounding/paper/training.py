@@ -1,0 +1,99 @@
+"""From a data set to the paper's models, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from grounding.dataset import Dataset
+from grounding.paper.codes import coded_table
+from grounding.paper.features import BoxFeatures
+from grounding.paper.runtime import NumpyEncoder
+from grounding.paper.table import Table, table_of
+from grounding.paper.trainer import SCHEMES, Args, Trainer
+from grounding.weights import Weights
+from tamp.errors import InputError
+
+MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
+"""Network and features."""
+
+
+def train(
+    data: Dataset,
+    model: str,
+    scheme: str = "both",
+    *,
+    sizes: Sequence[int],
+    seeds: Sequence[int],
+    iterations: int = 30_000,
+    encoder: Weights | None = None,
+    table: Table | None = None,
+    state: Path | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> list[Weights]:
+    """Train one model for each pair of a size and a seed, all at once, in one thread's worth of small matrices.
+
+    Args:
+        data: The training set.
+        model: One of MODELS.
+        scheme: What teaches the generator, one of SCHEMES.
+        sizes: How many of the examples each model sees.
+        seeds: As many; initial weights, order of the examples and noise.
+        iterations: Of the classifier, and then of the generator.
+        encoder: What codes the clouds, for the models on clouds.
+        table: The data's features, if they are known already.
+        state: A file to go on from, and to save the state of the run in every 2,000 iterations.
+        progress: Told how far it is.
+
+    Raises:
+        InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another run's state.
+    """
+    _check(data, model, scheme, sizes, seeds, encoder)
+    table = table or features_of(data, model, encoder, progress)
+    trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations))
+    trainer.run(state, progress)
+    extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if _clouds(model) and encoder else {}
+    return [
+        Weights(
+            {**arrays, **extra},
+            {
+                "relation": data.relation,
+                "model": model,
+                "scheme": scheme,
+                "samples": size,
+                "seed": seed,
+                "iterations": iterations,
+                "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
+                "architecture": {name: list(array.shape) for name, array in arrays.items()},
+            },
+        )
+        for size, seed, arrays in zip(sizes, seeds, trainer.models(), strict=True)
+    ]
+
+
+def features_of(data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None]) -> Table:
+    """The features that a model is trained on."""
+    if _clouds(model) and encoder is not None:
+        return coded_table(data, NumpyEncoder(encoder.arrays), progress)
+    return table_of(data, BoxFeatures(), progress)
+
+
+def _clouds(model: str) -> bool:
+    return model.endswith("pc")
+
+
+def _check(
+    data: Dataset, model: str, scheme: str, sizes: Sequence[int], seeds: Sequence[int], encoder: Weights | None
+) -> None:
+    if model not in MODELS:
+        raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
+    if scheme not in SCHEMES:
+        raise InputError(f"unknown scheme '{scheme}'", found=scheme, choices=SCHEMES)
+    if len(sizes) != len(seeds) or not sizes:
+        raise InputError(f"{len(sizes)} sizes for {len(seeds)} seeds; each model has one of each")
+    if min(sizes) < 2 or max(sizes) > len(data):
+        raise InputError(f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible")
+    if not 0 < int(data.holds.sum()) < len(data):
+        raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
+    if _clouds(model) and encoder is None:
+        raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")

@@ -1,0 +1,64 @@
+"""Auto-encoders of clouds: they learn, the same seed gives the same, torch's codes are the runtime's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from grounding.dataset import Dataset
+from grounding.paper.codes import coded_table
+from grounding.paper.encoders import ENCODERS, SCALINGS, Args, PosedClouds, chamfer, scaled, train_encoder
+from grounding.paper.features import CloudFeatures
+from grounding.paper.runtime import NumpyEncoder
+from grounding.paper.table import table_of
+from tamp.errors import InputError
+
+FEW = Args(iterations=2, batch=4, validation=4, points=128, validate_every=1)
+
+
+@pytest.mark.parametrize("kind", ENCODERS)
+@pytest.mark.parametrize("scaling", SCALINGS)
+def test_same_seed_same_encoder(data: Dataset, kind: str, scaling: str) -> None:
+    (first, score), (again, same) = (train_encoder(data, kind, scaling, FEW) for _ in range(2))
+    assert score == same
+    assert first.keys() == again.keys()
+    assert all(np.array_equal(first[name], again[name]) for name in first)
+
+
+def test_it_learns(data: Dataset) -> None:
+    longer = replace(FEW, iterations=150, validate_every=50, batch=8)
+    assert train_encoder(data, "conv", "each", longer)[1] < 0.5 * train_encoder(data, "conv", "each", FEW)[1]
+
+
+@pytest.mark.parametrize("scaling", SCALINGS)
+def test_codes_of_a_data_set_are_the_runtimes(data: Dataset, scaling: str) -> None:
+    some = data.take(range(12))
+    encoder = NumpyEncoder(train_encoder(data, "conv", scaling, FEW)[0])
+    fast, slow = coded_table(some, encoder), table_of(some, CloudFeatures(encoder))
+    for name in ("arguments", "others", "share", "holds"):
+        assert getattr(fast, name) == pytest.approx(getattr(slow, name), abs=1e-5), name
+
+
+def test_chamfer_is_of_the_nearest_points() -> None:
+    first, second = torch.rand((2, 20, 3)), torch.rand((2, 20, 3))
+    squares = ((first[:, :, None] - second[:, None]) ** 2).sum(-1)
+    expected = squares.min(2).values.mean(1) + squares.min(1).values.mean(1)
+    assert chamfer(first, second).numpy() == pytest.approx(expected.numpy(), abs=1e-5)
+
+
+def test_scaled_clouds_fill_the_cube(data: Dataset) -> None:
+    clouds = PosedClouds.of(data, "cpu", 256)
+    every = clouds.take(torch.arange(len(clouds)))
+    assert scaled(every, 0.5 / clouds.radius).abs().max() <= 0.5 + 1e-6
+    each = scaled(every, 0.0)
+    assert (each.amax(dim=1) - each.amin(dim=1)).amax(dim=1).numpy() == pytest.approx(1.0, abs=1e-5)
+
+
+def test_unknown_encoders(data: Dataset) -> None:
+    with pytest.raises(InputError, match="unknown encoder 'con'"):
+        train_encoder(data, "con")
+    with pytest.raises(InputError, match="unknown scaling 'a'"):
+        train_encoder(data, "conv", "a")

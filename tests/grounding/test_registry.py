@@ -1,0 +1,97 @@
+"""Groundings by name: what ships, what needs no weights, and what is said of weights that are none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from grounding import registry
+from grounding.registry import BORROWED, GROUNDINGS, MODELS, RELATIONS, UNTRAINED, load_model, shipped_model
+from grounding.train import OPTIONS, TRAINERS, TrainArgs, check
+from grounding.weights import Weights, write_weights
+from tamp.errors import InputError
+from tamp.streams.placements import SurfacePlacements
+from tamp.streams.relations import Generator
+
+
+def test_every_name_is_a_grounding_and_every_trained_one_has_a_trainer() -> None:
+    assert {*MODELS} == {*TRAINERS, *BORROWED}
+    assert all(models and {*models} <= {*TRAINERS} for models in OPTIONS.values())
+    for relation in RELATIONS:
+        assert {*GROUNDINGS[relation]} == {*MODELS, *UNTRAINED}
+        assert isinstance(GROUNDINGS[relation]["surface"](), SurfacePlacements)  # the planner's own
+
+
+@pytest.mark.parametrize("relation", RELATIONS)
+@pytest.mark.parametrize("name", [*MODELS, *UNTRAINED])
+def test_what_ships_loads_and_for_the_rest_there_is_a_command(relation: str, name: str) -> None:
+    if name in UNTRAINED or registry.shipped_weights(relation, name).is_file():
+        assert shipped_model(relation, name)
+        assert isinstance(GROUNDINGS[relation][name](), Generator)
+        return
+    with pytest.raises(InputError, match=f"for '{relation}' are shipped. Train it: tamp-learn train"):
+        GROUNDINGS[relation][name]()
+
+
+def test_weights_that_do_not_ship(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "SHIPPED", tmp_path)
+    with pytest.raises(InputError, match=r"tamp-learn train inside --model gnn-bb --out .*inside_gnn-bb\.safetensors"):
+        shipped_model("inside", "uniform+gnn")
+    with pytest.raises(InputError, match="Did you mean 'uniform'"):
+        shipped_model("on", "unifrom")
+    with pytest.raises(InputError, match="unknown relation 'under'"):
+        shipped_model("under", "uniform")
+
+
+@pytest.mark.parametrize("name", TRAINERS)
+@pytest.mark.parametrize(
+    "arrays",
+    [
+        {},
+        {"x": np.zeros(3)},
+        {f"{part}.main.0.{key}": np.zeros((38,)) for part in ("classifier", "generator") for key in ("weight", "bias")},
+        {f"tree.{key}": np.zeros(19) for key in ("feature", "threshold", "left", "right", "positive", "low", "high")},
+        {name: np.zeros((2, 2)) for name in ("coordinates", "faces", "sizes", "rank.pose.0.weight")},
+    ],
+)
+def test_garbage_is_refused_in_one_line(tmp_path: Path, name: str, arrays: dict[str, np.ndarray]) -> None:
+    path = tmp_path / "some.safetensors"
+    write_weights(path, Weights(arrays, {"model": name, "relation": "on"}))
+    with pytest.raises(InputError, match="some") as caught:
+        load_model(path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("trained", "wanted", "message"),
+    [
+        ("mlp-bb", "uniform+gnn", "these are weights of 'mlp-bb'; 'uniform\\+gnn' is not made of them"),
+        ("flow", "uniform", "these are weights of 'flow'; 'uniform' is not made of them"),
+        ("mlp-bb", "uniform+mpl", "Did you mean 'uniform\\+mlp'"),
+        ("encoder", None, "unknown model 'encoder'"),
+    ],
+)
+def test_weights_of_something_else(tmp_path: Path, trained: str, wanted: str | None, message: str) -> None:
+    path = tmp_path / "some.safetensors"
+    write_weights(path, Weights({}, {"model": trained, "relation": "on"}))
+    with pytest.raises(InputError, match=message):
+        load_model(path, wanted)
+
+
+@pytest.mark.parametrize(
+    ("model", "args", "message"),
+    [
+        ("flow", TrainArgs(scheme="both"), "model 'flow' has no scheme"),
+        ("tree-bb", TrainArgs(iterations=3), "model 'tree-bb' has no iterations"),
+        ("mlp-bb", TrainArgs(encoder=Path("e.safetensors")), "model 'mlp-bb' has no encoder"),
+        ("gnn-pc", TrainArgs(), "Train one: tamp-learn encoder on"),
+        ("uniform", TrainArgs(), "'uniform' needs no training"),
+        ("uniform+gnn", TrainArgs(), "Train that: tamp-learn train on --model gnn-bb"),
+        ("transfre", TrainArgs(), "Did you mean 'transfer'"),
+    ],
+)
+def test_what_cannot_be_trained_is_said(model: str, args: TrainArgs, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        check("on", model, args)
