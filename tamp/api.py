@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
-
-import numpy as np
-
 from tamp.alarm import Alarm
 from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Effort, Outcome, Progress, Result
+from tamp.algorithms.solution import Effort, Outcome, Progress
+from tamp.assembly import assemble, ended_early, random_streams, timed
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.recording import Recorder
-from tamp.solution import Action, Solution
-from tamp.streams.mixture import accounts
-from tamp.trajectories import trajectories
+from tamp.solution import Solution
 
 
 def solve(
@@ -37,7 +32,7 @@ def solve(
         seed: Of all randomness.
         algorithm: "adaptive" or "incremental".
         progress: Called now and then with what was done so far.
-        record: Keep what the streams drew and refused in `Solution.record`; the plan is the same.
+        record: Keep what was tried in the solution, for `tamp.view`; the plan is the same.
 
     Raises:
         InputError: Unknown algorithm, or a time that is not positive.
@@ -47,72 +42,22 @@ def solve(
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
     deadline = Deadline(max_time)
-
-    def make_rng(key: str) -> np.random.Generator:
-        digest = hashlib.blake2b(key.encode(), digest_size=8, key=str(seed).encode()).digest()
-        return np.random.default_rng(int.from_bytes(digest, "little"))
-
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
     alarm = Alarm(deadline)
     try:
         with alarm:
+            make_rng = random_streams(seed)
             result = ALGORITHMS[algorithm](task, make_rng, deadline, progress or _silent)
             planned = deadline.elapsed()
-            plan = _timed(problem, result) if result.outcome is Outcome.SOLVED else ()
+            plan = timed(problem, result)
     except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
-        why = ("it ended before the first plan was tried, or before its motions were timed",)
-        return Solution(
-            problem, outcome, seed, algorithm, explanation=why, seconds={"total": deadline.elapsed()},
-            record=None if recorder is None else recorder.record(()),
-        )  # fmt: skip
+        return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
     finally:
         alarm.disarm()
     total = deadline.elapsed()
-    used = _used(problem, result)
-    by_stream = {name: statistics.seconds for name, statistics in result.statistics.items()}
-    return Solution(
-        problem=problem,
-        outcome=result.outcome,
-        seed=seed,
-        algorithm=algorithm,
-        plan=plan,
-        values=used,
-        certified=result.certified,
-        statistics=result.statistics,
-        effort=result.effort,
-        explanation=result.explanation,
-        warnings=(*problem.warnings, *result.warnings),
-        seconds={
-            "total": total,
-            "search": result.effort.search_seconds,
-            "timing": total - planned,
-            **by_stream,
-        },
-        record=None if recorder is None else recorder.record(result.attempts(), used.values()),
-        samplers=accounts(result.memory),
-    )
-
-
-def _timed(problem: Problem, result: Result) -> tuple[Action, ...]:
-    known = problem.stream_task.values
-    actions: list[Action] = []
-    start = 0.0
-    timed = trajectories(problem.context, result.actions, result.objects.values)
-    for action, trajectory in zip(result.actions, timed, strict=True):
-        objects = tuple(str(known[name]) for name in action.arguments if isinstance(known.get(name), str))
-        actions.append(Action(action.name, action.arguments, objects, trajectory, start, action.cost))
-        start += trajectory.duration
-    return tuple(actions)
-
-
-def _used(problem: Problem, result: Result) -> dict[str, object]:
-    """The values of the names in the plan, its certified facts and the initial facts."""
-    names = {name for action in result.actions for name in action.arguments}
-    names |= {name for fact in (*result.certified, *problem.stream_task.task.initial) for name in fact[1:]}
-    values = result.objects.values
-    return {name: values[name] for name in sorted(names) if name in values and not isinstance(values[name], str)}
+    return assemble(problem, result, plan, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
 
 
 def _silent(effort: Effort) -> None:

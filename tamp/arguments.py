@@ -14,6 +14,9 @@ import tyro
 from tamp.errors import InputError
 from tamp.execution.grasps import GRASPS
 
+MOST_JOBS = 256
+"""More processes than any machine has use for."""
+
 
 @dataclass(frozen=True)
 class Arguments:
@@ -54,6 +57,12 @@ class Arguments:
     """Of a PDDL problem: greedy (lazy, preferred operators), eager, wastar, or astar (optimal)."""
     heuristic: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: by search)")] = None
     """Of a PDDL problem: ff, hadd, landmarks, or several with + (ff+landmarks); lmcut (astar's), hmax, blind."""
+    jobs: Annotated[int, tyro.conf.arg(aliases=["-j"], metavar="NUMBER")] = 1
+    """Plan in so many processes at a time, with other seeds or other searches; the first plan counts. Which
+    one that is depends on the clock; --seed (--search) as the plan file has it makes the plan again."""
+    optimize: bool = False
+    """Improve the first plan until the time is up or you press Ctrl-C: fewer actions, then shorter motions; the best
+    plan is written. For a problem in PDDL: cheaper plans, until one is proven to be the cheapest."""
     verify: bool = False
     """Have the plan judged as by tamp-verify, and write it only when it holds."""
     view: bool = False
@@ -112,6 +121,12 @@ def parsed(arguments: list[str]) -> Arguments:
         raise InputError(f"unknown grasp '{chosen.grasp}'", found=chosen.grasp, choices=GRASPS)
     if math.isnan(chosen.time) or chosen.time <= 0.0:
         raise InputError(f"--time: the time must be positive, not {chosen.time:g}")
+    if chosen.optimize and (chosen.search or chosen.heuristic or chosen.algorithm != "adaptive"):
+        raise InputError("--optimize has searches of its own: leave out --search, --heuristic and --algorithm")
+    if chosen.optimize and chosen.jobs > 1 and chosen.files[-1].endswith(".pddl"):
+        raise InputError("--optimize improves a problem in PDDL in one process: leave out --jobs")
+    if not 1 <= chosen.jobs <= MOST_JOBS:
+        raise InputError(f"--jobs: between 1 and {MOST_JOBS} processes, not {chosen.jobs}")
     if abs(chosen.seed) >= 2**64:
         raise InputError("--seed: the number must be below 2**64")
     return chosen

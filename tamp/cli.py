@@ -18,6 +18,7 @@ from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
     from tamp.execution.report import Execution
+    from tamp.solution import Solution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
 
@@ -60,10 +61,11 @@ def _solve(arguments: Arguments, started: float) -> int:
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
     from tamp.algorithms.solution import Outcome
-    from tamp.api import ALGORITHMS, solve
+    from tamp.api import ALGORITHMS
+    from tamp.parallel import solve_parallel
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
-    from tamp.report import headline, summary
+    from tamp.report import headline, improvement, summary
     from tamp.view.wishes import Wishes, fulfil
 
     if arguments.algorithm not in ALGORITHMS:
@@ -83,12 +85,20 @@ def _solve(arguments: Arguments, started: float) -> int:
     )
     shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
-    solution = solve(
+
+    def improved(plan: Solution) -> None:
+        shown.clear()
+        shown.line(improvement(plan))
+
+    solution = solve_parallel(
         problem,
+        jobs=arguments.jobs,
         max_time=_left(arguments.time, started),
         seed=arguments.seed,
         algorithm=arguments.algorithm,
         progress=shown.update,
+        accept=(lambda plan: _judge(plan_text(plan)).holds) if arguments.verify else None,
+        improved=improved if arguments.optimize else None,
         record=arguments.record or wishes.page,
     )
     shown.clear()
@@ -136,6 +146,8 @@ def _solve_symbolic(arguments: Arguments, started: float) -> int:
         arguments.files,
         search=arguments.search,
         heuristic=arguments.heuristic,
+        jobs=arguments.jobs,
+        optimize=arguments.optimize,
         left=lambda: _left(arguments.time, started),
         out=arguments.out,
         judge=_judge if arguments.verify else None,

@@ -144,10 +144,21 @@ def summary_document(solution: Solution) -> dict[str, Any]:
         ],
         "cost": solution.cost,
         "duration": _number(solution.duration),
+        **_optimization(solution),
         "statistics": _statistics(solution),
         "warnings": list(solution.warnings),
         "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
     }
+
+
+def _optimization(solution: Solution) -> dict[str, Any]:
+    if not solution.improvements:
+        return {}
+    steps = [
+        {"seconds": round(i.seconds, 6), "cost": i.cost, "actions": i.actions, "duration": _number(i.duration)}
+        for i in solution.improvements
+    ]
+    return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
 
 
 def _statistics(solution: Solution) -> dict[str, Any]:

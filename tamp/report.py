@@ -47,7 +47,23 @@ def summary(solution: Solution) -> str:
         lines += ["", *_rows(solution)] if solution.plan else ["  the goal holds at the start"]
     else:
         lines += _no_plan(solution, total)
+    if solution.improvements and solution.bound is not None:
+        better = _count(len(solution.improvements) - 1, "improvement")
+        lines += [
+            "",
+            f"  {better}; lower bound of the cost {solution.bound:g}, gap {100 * (solution.gap or 0.0):.0f} %",
+        ]
     return "\n".join([*lines, "", *_effort(solution)])
+
+
+def improvement(solution: Solution) -> str:
+    """One line about the latest improvement."""
+    latest = solution.improvements[-1]
+    count = _count(latest.actions, "action")
+    line = f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    if solution.bound is None or solution.gap is None:
+        return line
+    return f"{line}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
 
 
 def _no_plan(solution: Solution, total: float) -> list[str]:

@@ -35,6 +35,23 @@ class Action:
 
 
 @dataclass(frozen=True)
+class Improvement:
+    """A plan that was better than those before it.
+
+    Attributes:
+        seconds: When it was found, from the start of planning.
+        cost: The sum of its actions' costs.
+        actions: Their number.
+        duration: Seconds of motion.
+    """
+
+    seconds: float
+    cost: float
+    actions: int
+    duration: float
+
+
+@dataclass(frozen=True)
 class Solution:
     """What `solve` returns, with a plan or without one.
 
@@ -46,6 +63,8 @@ class Solution:
         explanation: Why there is no plan, a line a cause.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
         record: What was tried, when `solve` was asked to record it.
+        improvements: The plans on the way to this one and itself, where the first was not enough.
+        bound: What no plan of the optimistic task costs less than, where it was asked for.
         samplers: What became of the proposals of each relation's generators, those that were asked.
     """
 
@@ -63,6 +82,8 @@ class Solution:
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None
     samplers: Mapping[str, tuple[Account, ...]] = field(default_factory=dict[str, "tuple[Account, ...]"])
+    improvements: tuple[Improvement, ...] = ()
+    bound: float | None = None
 
     @property
     def solved(self) -> bool:
@@ -73,6 +94,13 @@ class Solution:
     def cost(self) -> float:
         """The sum of the actions' costs."""
         return sum(action.cost for action in self.plan)
+
+    @property
+    def gap(self) -> float | None:
+        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        if self.bound is None or not self.plan:
+            return None
+        return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
     @property
     def duration(self) -> float:

@@ -53,12 +53,24 @@ class Trajectory:
         return float(sum(segment.times[-1] for segment in self.segments))
 
 
-def trajectories(context: Context, actions: Sequence[GroundAction], values: dict[str, object]) -> list[Trajectory]:
+Timed = dict[tuple[object, ...], tuple[Path, Segment]]
+"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the bodies are."""
+
+
+def trajectories(
+    context: Context, actions: Sequence[GroundAction], values: dict[str, object], known: Timed | None = None
+) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 
     Corners are rounded only where the rounding is free of collision among the bodies as they stand at that moment.
+
+    Args:
+        context: Of the problem.
+        actions: The plan.
+        values: By name.
+        known: What other plans share with this one; added to.
     """
-    replay = _Replay(context)
+    replay = _Replay(context, {} if known is None else known)
     return [
         Trajectory(
             tuple(
@@ -75,8 +87,9 @@ def trajectories(context: Context, actions: Sequence[GroundAction], values: dict
 class _Replay:
     """Follows where the robot and the bodies are."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, known: Timed) -> None:
         scene = context.scene
+        self._known = known
         self._context = context
         self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
         self._held: Grasp | None = context.holding
@@ -102,6 +115,20 @@ class _Replay:
         )  # fmt: skip
 
     def _path(self, path: Path) -> Segment:
+        """The path timed, or what it was timed to before in the same circumstances."""
+        held = None if self._held is None else (self._held.body, self._held.T_tool_body.position)
+        bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
+        key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
+        if key not in self._known:
+            self._known[key] = path, self._time(path)
+        segment = self._known[key][1]
+        if path.part == "base":
+            self._base = segment.positions[-1]
+        else:
+            self._arm = path.points[-1]
+        return segment
+
+    def _time(self, path: Path) -> Segment:
         context, robot = self._context, self._context.robot
         attachment = None if self._held is None else context.attachment(self._held)
         arrangement = context.collisions.arrangement(self._poses, attachment)
@@ -119,8 +146,4 @@ class _Replay:
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
         timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
-        if path.part == "base":
-            self._base = points[-1]
-        else:
-            self._arm = points[-1]
         return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

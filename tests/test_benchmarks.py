@@ -10,6 +10,7 @@ import pytest
 
 from benchmarks.cold_start import import_times
 from benchmarks.common import percentile, record, times, wilson
+from benchmarks.scale import exponent
 
 
 def test_wilson_interval_is_the_published_one() -> None:
@@ -43,3 +44,7 @@ def test_import_times_add_up_by_package() -> None:
         "import time:       100 |        100 |   numpy.core\nimport time:       200 |        300 | numpy\n"
     )
     assert import_times(log) == pytest.approx({"numpy": 300e-6})
+
+
+def test_the_exponent_of_growth() -> None:
+    assert exponent(0.5, 0.5 * 5.0**1.7, 5.0) == pytest.approx(1.7)

@@ -24,6 +24,8 @@ LADDER = {
         "two_objects",
         "four_objects",
         "eight_objects",
+        "twelve_objects",
+        "twenty_objects",
         "cluttered",
         "shelves",
         "blocked",

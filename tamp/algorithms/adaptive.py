@@ -12,6 +12,7 @@ from typing import Any
 from tamp.algorithms.explanation import explain_infeasible
 from tamp.algorithms.incremental import Incremental
 from tamp.algorithms.run import Run
+from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
 from tamp.clock import Deadline, OutOfTime
 
@@ -20,7 +21,7 @@ FIRST_TRIES = 4
 tried with all poses before the next one has its turn."""
 
 ROUND_BUDGET = 200
-"""Draws in a skeleton's first round."""
+"""Draws in a skeleton's first round, or as many as it has nodes: a long one shall be gone through once."""
 
 PATIENCE = 1000
 """Failures of one thing without a success after which the incremental algorithm is asked; doubled each time."""
@@ -49,10 +50,18 @@ def solve_adaptive(
         deadline: When to give up.
         progress: Told between rounds.
     """
-    return _Adaptive(problem, make_rng, deadline, progress).solve()
+    return Adaptive(problem, make_rng, deadline, progress).solve()
 
 
-class _Adaptive(Run):
+class Adaptive(Run):
+    """One run of the algorithm.
+
+    Attributes:
+        bound: The skeleton of the plan that was found and its values, unless the second opinion found it.
+    """
+
+    bound: tuple[Skeleton, dict[int, str]] | None = None
+
     def solve(self) -> Result:
         """Rounds of search and binding until a plan is bound, nothing is left, or the time is up."""
         patience, dry = PATIENCE, 0
@@ -88,8 +97,10 @@ class _Adaptive(Run):
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
-        values = self.binder.bind(skeleton, tries, ROUND_BUDGET * (1 + skeleton.rounds))
+        budget = max(ROUND_BUDGET, len(skeleton.nodes)) * (1 + skeleton.rounds)
+        values = self.binder.bind(skeleton, tries, budget)
         if values is not None:
+            self.bound = skeleton, values
             return self.solved(skeleton, values)
         skeleton.rounds += 1
         self.effort.draws = self.binder.units

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 
 from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Term
@@ -38,13 +38,14 @@ class Binder:
         self.units = 0
         self._met: list[tuple[Node, Instance]] = []
 
-    def bind(self, skeleton: Skeleton, tries: int, budget: int) -> dict[int, str] | None:
+    def bind(self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()) -> dict[int, str] | None:
         """Values for all variables, or None when none were found within the budget.
 
         Args:
             skeleton: What to bind; it remembers the values that worked, to be tried first next time.
             tries: New draws a visit of a node.
             budget: Draws in all.
+            fresh: The nodes that are to take new values before those that worked.
         """
         nodes = skeleton.nodes
         makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
@@ -54,7 +55,7 @@ class Binder:
         self._met.clear()
         while len(levels) < len(nodes):
             index = len(levels)
-            levels.append(self._enter(skeleton, index, makers, values, tries))
+            levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
             while True:
                 level = levels[-1]
                 index = len(levels) - 1
@@ -105,7 +106,13 @@ class Binder:
                 self._note(node, instance, self._streams.draw(instance) is not None)
 
     def _enter(
-        self, skeleton: Skeleton, index: int, makers: dict[int, int], values: dict[int, str], tries: int
+        self,
+        skeleton: Skeleton,
+        index: int,
+        makers: dict[int, int],
+        values: dict[int, str],
+        tries: int,
+        fresh: bool,
     ) -> _Level:
         node = skeleton.nodes[index]
         inputs = tuple(_value(term, values) for term in node.inputs)
@@ -117,7 +124,7 @@ class Binder:
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
         level = _Level(iter(()), conflict)
-        level.candidates = self._candidates(skeleton, index, instance, makers, level, tries)
+        level.candidates = self._candidates(skeleton, index, instance, makers, level, tries, fresh)
         return level
 
     def _candidates(
@@ -128,6 +135,7 @@ class Binder:
         makers: dict[int, int],
         level: _Level,
         tries: int,
+        fresh: bool,
     ) -> Iterator[tuple[str, ...]]:
         """The value that was taken last time and a few recent ones, then new draws, then the earliest results.
 
@@ -146,16 +154,16 @@ class Binder:
             return True
 
         remembered = skeleton.memory.get(index)
-        if remembered is not None and remembered[0] == key and offer(remembered[1]):
+        if not fresh and remembered is not None and remembered[0] == key and offer(remembered[1]):
             yield remembered[1]
         earlier = list(instance.results)
-        for outputs in reversed(earlier[-RECENT:]):
+        for outputs in () if fresh else reversed(earlier[-RECENT:]):
             if offer(outputs):
                 yield outputs
         if instance.exhausted and not instance.results:
             self._met.append((node, instance))
         draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
-        for _ in range(max(draws - len(earlier), (draws + 1) // 2)):
+        for _ in range(draws if fresh else max(draws - len(earlier), (draws + 1) // 2)):
             if self._deadline.passed:
                 raise OutOfTime
             if instance.exhausted:

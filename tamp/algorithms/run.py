@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -98,22 +99,38 @@ class Run:
         self.effort.search_seconds += time.perf_counter() - started
         return optimism, grounded
 
-    def search(self) -> Found:
-        """A plan of the optimistic task, priced by experience."""
+    def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
+        """A plan of the optimistic task, priced by experience.
+
+        Args:
+            weight: Of the estimate: with less the plans are cheaper and the search is longer.
+            below: What the actions of the plan must cost less than; when it is given, there is one try only.
+        """
         started = time.perf_counter()
         grounded, prices = with_nogoods(self.grounded, self.experience)
         prices |= self.doubts() | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
-        found = search(grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline)
+        found = search(
+            grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below
+        )  # fmt: skip
         self.effort.expanded += found.expanded
-        if found.reason is Reason.LIMIT:  # with many prices many plans look alike: then any plan will do
+        if (
+            found.reason is Reason.LIMIT and below == math.inf
+        ):  # with many prices many plans look alike: then any plan will do
             found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded
         self.effort.searches += 1
         self.effort.search_seconds += time.perf_counter() - started
         return found
+
+    def lower_bound(self, limit: int) -> float:
+        """What no plan of the optimistic task costs less than, whatever its values; `limit` states are expanded."""
+        started = time.perf_counter()
+        found = search(self.grounded, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
+        self.effort.search_seconds += time.perf_counter() - started
+        return found.bound
 
     def doubts(self) -> dict[Fact, float]:
         """A price for each test of placeholders not tried yet: a generator that certifies the same goes first."""

@@ -23,12 +23,13 @@ def astar(search: Expansion) -> Plan | None:
         f, guess, _, cost, state, parent = heappop(queue)
         if cost > search.best[state]:
             continue
+        search.bound = max(search.bound, f)
         closed = s.closure(state)
         h = estimates.get(state)
         if h is None:
             before = None if state == parent else s.closure(parent)
             h = estimates[state] = max(max(e.value for e in search.estimate(closed, before)), guess)
-            if h == math.inf:
+            if cost + h >= search.below:
                 continue
             if cost + h > f:
                 number -= 1
@@ -51,9 +52,10 @@ def astar(search: Expansion) -> Plan | None:
             rest = estimates.get(after)
             if rest is None:
                 rest = max(0.0, h - step)
-            if rest < math.inf:
+            if reached + rest < search.below:
                 number -= 1
                 heappush(queue, (reached + rest, rest, number, reached, after, state))
+    search.bound = search.below
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -42,15 +43,23 @@ class Expansion:
     Attributes:
         best: The cost of the cheapest known way to each state.
         parents: For each state the one before it on that way, and the operator between them.
+        bound: What no plan costs less than, as far as A* knows.
     """
 
     def __init__(
-        self, successors: Successors, heuristics: Sequence[Heuristic], limit: int | None, deadline: Deadline | None
+        self,
+        successors: Successors,
+        heuristics: Sequence[Heuristic],
+        limit: int | None,
+        deadline: Deadline | None,
+        below: float = math.inf,
     ) -> None:
         self.successors = successors
         self.heuristics = tuple(heuristics)
         self.limit = limit
         self.deadline = deadline
+        self.below = below
+        self.bound = 0.0
         self.expanded = 0
         self.evaluated = 0
         self.best: dict[State, float] = {successors.initial: 0.0}

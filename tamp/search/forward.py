@@ -13,7 +13,7 @@ from tamp.search.eager import astar, best_first
 from tamp.search.expansion import Expansion, Stop
 from tamp.search.expansion import Plan as Plan
 from tamp.search.expansion import Reason as Reason
-from tamp.search.heuristics import HEURISTICS
+from tamp.search.heuristics import ADMISSIBLE, HEURISTICS
 from tamp.search.lazy import lazy
 from tamp.search.operators import Grounded
 from tamp.search.successors import Price, Successors
@@ -27,12 +27,14 @@ class Result:
         plan: None when there is none, then `reason` says why.
         expanded: States whose successors were generated.
         evaluated: States that the heuristics were asked about.
+        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0 after other searches.
     """
 
     plan: Plan | None
     reason: Reason | None
     expanded: int
     evaluated: int
+    bound: float = 0.0
 
 
 SEARCHES: dict[str, Callable[[Expansion, float], Plan | None]] = {
@@ -65,6 +67,7 @@ def search(
     price: Price | None = None,
     limit: int | None = None,
     deadline: Deadline | None = None,
+    below: float = math.inf,
 ) -> Result:
     """Search for a plan.
 
@@ -80,20 +83,24 @@ def search(
             A mapping of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
         deadline: When to give up. It never changes the plan that is found, only whether one is.
+        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
+            greedy searches, which keep to the first way to each state.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
+    if below < math.inf and search not in ("wastar", "astar"):
+        raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
     names = split_heuristics(heuristic)
     if not grounded.goal.positive <= grounded.reachable | grounded.initial:
-        return Result(None, Reason.UNSOLVABLE, 0, 0)
+        return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(grounded, price if price is not None else {})
-    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline)
+    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below)
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
     except Stop as stop:
         plan, reason = None, stop.reason
-    return Result(plan, reason, run.expanded, run.evaluated)
+    return Result(plan, reason, run.expanded, run.evaluated, run.bound if ADMISSIBLE.issuperset(names) else 0.0)
 
 
 def unreachable(grounded: Grounded) -> tuple[Fact, ...]:

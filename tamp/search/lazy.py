@@ -40,6 +40,7 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
     number = 0
     goal_price = GoalPrice(s)
     least, end = math.inf, None
+    spent = {s.initial: 0.0}  # what the operators on the way have cost, prices aside
     while any(usual) or any(preferred):
         k = min((k for k in kinds if usual[k]), key=turns.__getitem__, default=None)
         p = min((k for k in kinds if preferred[k]), key=turns_preferred.__getitem__, default=None)
@@ -62,6 +63,7 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
         search.best[state] = cost
         if parent is not None:
             search.parents[state] = (parent, operator)
+            spent[state] = spent[parent] + s.operators[operator].cost
         closed = s.closure(state)
         if s.holds_goal(closed):
             price = goal_price(state)
@@ -89,6 +91,8 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
         helpful = _helpful(s, state, closed, applicable, found[state])
         for rank, operator in enumerate((*helpful, *applicable)):
             if rank >= len(helpful) and operator in helpful:
+                continue
+            if spent[state] + s.operators[operator].cost >= search.below:
                 continue
             after = s.apply(operator, state, closed)
             known = done.get(after)

@@ -9,9 +9,11 @@ from pathlib import Path
 
 from tamp.algorithms.solution import Outcome
 from tamp.errors import InputError
+from tamp.symbolic.anytime import optimize_symbolic
+from tamp.symbolic.parallel import solve_symbolic_parallel
 from tamp.symbolic.problem import load_symbolic
-from tamp.symbolic.report import document, headline, plan_text, summary, write_symbolic_plan
-from tamp.symbolic.solve import SymbolicSolution, choose, solve_symbolic
+from tamp.symbolic.report import document, headline, improvement, plan_text, summary, write_symbolic_plan
+from tamp.symbolic.solve import SymbolicSolution, choose
 from tamp.verification.report import Report
 
 
@@ -41,6 +43,8 @@ def plan_files(
     *,
     search: str | None,
     heuristic: str | None,
+    jobs: int,
+    optimize: bool,
     left: Callable[[], float],
     out: Path,
     judge: Callable[[str], Report] | None,
@@ -52,6 +56,8 @@ def plan_files(
         files: The domain, a file or the name of a shipped one, and the problem's file.
         search: A name of `SEARCHES` or None.
         heuristic: A name of `HEURISTICS` or None.
+        jobs: How many searches at a time.
+        optimize: Whether to look for cheaper plans after the first one.
         left: Seconds that remain.
         out: Where the plan is written.
         judge: Says whether a plan file's text holds; one that does not hold is not written.
@@ -68,7 +74,10 @@ def plan_files(
         raise InputError(f"expected [DOMAIN] PROBLEM, found '{files[0]}' in the domain's place")
     loaded = load_symbolic(*files)
     show(headline(loaded))
-    solution = solve_symbolic(loaded, search=search, heuristic=heuristic, max_time=left())
+    if optimize:
+        solution = optimize_symbolic(loaded, max_time=left(), improved=lambda better: show(improvement(better)))
+    else:
+        solution = solve_symbolic_parallel(loaded, jobs=jobs, search=search, heuristic=heuristic, max_time=left())
     show(summary(solution))
     verdict = judge(plan_text(solution)) if solution.solved and judge is not None else None
     holds = solution.solved and (verdict is None or verdict.holds)

@@ -50,6 +50,13 @@ def summary(solution: SymbolicSolution) -> str:
     return "\n".join(lines)
 
 
+def improvement(solution: SymbolicSolution) -> str:
+    """One line about the latest improvement."""
+    seconds, cost = solution.history[-1]
+    count = _count(len(solution.plan), "action")
+    return f"{seconds:7.2f} s  {count}, cost {cost:g}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
+
+
 def document(solution: SymbolicSolution) -> dict[str, Any]:
     """What `--json` prints, and with the inputs the plan file's content."""
     return {
@@ -58,6 +65,7 @@ def document(solution: SymbolicSolution) -> dict[str, Any]:
         "explanation": list(solution.explanation),
         "problem": solution.problem.name,
         **_plan(solution),
+        **_optimization(solution),
         "statistics": {
             "search": solution.search,
             "heuristic": solution.heuristic,
@@ -104,6 +112,13 @@ def write_symbolic_plan(solution: SymbolicSolution, path: Path) -> Path:
 def _plan(solution: SymbolicSolution) -> dict[str, Any]:
     actions = [{"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan]
     return {"actions": actions, "cost": solution.cost, "optimal": solution.optimal}
+
+
+def _optimization(solution: SymbolicSolution) -> dict[str, Any]:
+    if not solution.history:
+        return {}
+    steps = [{"seconds": round(seconds, 6), "cost": cost} for seconds, cost in solution.history]
+    return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
 
 
 def _file(path: Path) -> dict[str, str]:

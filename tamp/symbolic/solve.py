@@ -32,6 +32,8 @@ class SymbolicSolution:
         explanation: Why there is no plan, a line a cause.
         operators: How many operators the task has.
         facts: How many facts may change.
+        history: The plans on the way to this one and itself, where the first was not enough: seconds and cost.
+        bound: What no plan costs less than, as far as a search with an admissible heuristic knows.
         seconds: Wall-clock time: "total", "instantiation", "search".
     """
 
@@ -46,6 +48,8 @@ class SymbolicSolution:
     evaluated: int = 0
     operators: int = 0
     facts: int = 0
+    history: tuple[tuple[float, float], ...] = ()
+    bound: float = 0.0
     seconds: dict[str, float] = field(default_factory=dict[str, float])
 
     @property
@@ -57,6 +61,11 @@ class SymbolicSolution:
     def cost(self) -> float:
         """The sum of the actions' costs."""
         return sum(operator.cost for operator in self.plan)
+
+    @property
+    def gap(self) -> float:
+        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
 
 def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:

@@ -11,6 +11,7 @@ import pytest
 
 from tamp.cli import BAD_INPUT, NO_PLAN, SOLVED, run
 from tamp.errors import InputError
+from tamp.symbolic.parallel import portfolio
 from tamp.verification.cli import main as judge
 from tamp.verification.verify import verify
 
@@ -179,3 +180,59 @@ def test_the_judge_refuses_what_it_cannot_read(files: Path) -> None:
     with pytest.raises(InputError, match=r"the plan's problem .* is missing"):
         verify(plan)
     assert verify(plan, problem="elsewhere.pddl").holds
+
+
+def test_several_searches_at_a_time_give_the_plan_of_one(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--jobs", "3", "--json", "--verify"]) == SOLVED
+    document = json.loads(capsys.readouterr().out)
+    named = document["statistics"]
+    assert (named["search"], named["heuristic"]) in portfolio(None, None, 3)
+    again = ["d.pddl", "p.pddl", "--search", named["search"], "--heuristic", named["heuristic"], "--json"]
+    assert run(again) == SOLVED
+    assert json.loads(capsys.readouterr().out)["actions"] == document["actions"]
+
+
+def test_searches_beside_an_optimal_one_are_optimal(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pairs = portfolio("astar", None, 9)
+    assert pairs[0] == ("astar", "lmcut") and len(pairs) > 2 and all(search == "astar" for search, _ in pairs)
+    assert run(["d.pddl", "p.pddl", "--jobs", "2", "--search", "astar"]) == SOLVED
+    assert "(optimal)" in capsys.readouterr().out
+
+
+def test_a_number_of_jobs_is_positive(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--jobs", "0"]) == BAD_INPUT
+    assert "--jobs: between 1 and" in capsys.readouterr().err
+
+
+SHOP = """\
+(define (domain shop)
+  (:requirements :strips :typing :action-costs)
+  (:types item)
+  (:predicates (have ?i - item) (ticket))
+  (:functions (total-cost) - number)
+  (:action buy-ticket :effect (and (ticket) (increase (total-cost) 5)))
+  (:action get :parameters (?i - item) :precondition (ticket) :effect (and (have ?i) (increase (total-cost) 1)))
+  (:action take :parameters (?i - item) :effect (and (have ?i) (increase (total-cost) 3))))
+"""
+
+SHOPPING = """\
+(define (problem shopping) (:domain shop) (:objects a b c d - item) (:init (= (total-cost) 0))
+  (:goal (and (have a) (have b) (have c) (have d))) (:metric minimize (total-cost)))
+"""
+
+
+def test_cheaper_plans_are_looked_for_until_one_is_the_cheapest(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (files / "shop.pddl").write_text(SHOP, encoding="utf-8")
+    (files / "shopping.pddl").write_text(SHOPPING, encoding="utf-8")
+    assert run(["shop.pddl", "shopping.pddl", "--optimize", "--json"]) == SOLVED
+    document = json.loads(capsys.readouterr().out)
+    steps = document["optimization"]
+    assert document["optimal"] and document["cost"] == steps["bound"] == 9.0 and steps["gap"] == 0.0
+    costs = [step["cost"] for step in steps["improvements"]]
+    assert costs[-1] == 9.0 and costs == sorted(set(costs), reverse=True)
+    assert run(["shop.pddl", "shopping.pddl", "--optimize"]) == SOLVED
+    lines = capsys.readouterr().out.splitlines()
+    assert any("no plan below" in line and "gap" in line for line in lines)
+    assert any("cost 9 (optimal)" in line for line in lines)
