@@ -64,6 +64,11 @@ MODELS: Mapping[str, Callable[[Weights], Model]] = {
 BORROWED: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
 """Model name to the one whose weights it uses, of which it takes the classifier."""
 
+VARIANTS: Mapping[str, str] = {
+    f"{model}-{scheme}": model for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "classifier")
+}
+"""Name of what ships of another training scheme than "both" to the model that it is."""
+
 UNTRAINED: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
 """Model name to what makes it of nothing."""
 
@@ -109,13 +114,15 @@ def shipped_model(relation: str, name: str) -> Model:
         raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS)
     if name in UNTRAINED:
         return UNTRAINED[name]()
-    if name not in MODELS:
-        raise InputError(f"unknown model '{name}'", found=name, choices=[*MODELS, *UNTRAINED])
+    if name not in MODELS and name not in VARIANTS:
+        raise InputError(f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED])
     path = shipped_weights(relation, name)
+    model = VARIANTS.get(name, name)
     if not path.is_file():
-        remedy = f"Train it: tamp-learn train {relation} --model {BORROWED.get(name, name)} --out {path}"
+        scheme = f" --scheme {name.rpartition('-')[2]}" if name in VARIANTS else ""
+        remedy = f"Train it: tamp-learn train {relation} --model {BORROWED.get(model, model)}{scheme} --out {path}"
         raise InputError(f"no weights of '{name}' for '{relation}' are shipped", remedy=remedy)
-    return load_model(path, name)
+    return load_model(path, model)
 
 
 def load_grounding(path: Path, model: str | None = None) -> Grounding:
@@ -134,7 +141,10 @@ def shipped_weights(relation: str, name: str) -> Path:
 
 
 GROUNDINGS: Mapping[str, Mapping[str, Callable[[], Grounding | Generator]]] = {
-    relation: {**SAMPLERS[relation], **{name: partial(shipped_grounding, relation, name) for name in MODELS}}
+    relation: {
+        **SAMPLERS[relation],
+        **{name: partial(shipped_grounding, relation, name) for name in (*MODELS, *VARIANTS)},
+    }
     for relation in RELATIONS
 }
 """Relation to name to what makes the grounding: what `--sampler on=transfer` means.

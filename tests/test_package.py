@@ -66,6 +66,9 @@ def test_wheel_holds_the_data_and_nothing_foreign(built: dict[str, Path]) -> Non
     here = [path for folder in ("domains", "problems") for path in (ROOT / folder).rglob("*") if path.is_file()]
     assert shipped == {str(path.relative_to(ROOT)) for path in here}
     assert "domains/cupboard.pddl" in shipped
+    weights = {path.name for path in (ROOT / "grounding" / "assets").iterdir()}
+    assert {name.rpartition("/")[2] for name in names if name.startswith("grounding/assets/")} == weights
+    assert "on_transfer.safetensors" in weights
 
 
 def test_sdist_builds_and_tests(built: dict[str, Path]) -> None:

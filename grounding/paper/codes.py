@@ -22,7 +22,13 @@ BATCH = {"cpu": 16, "cuda": 512}
 
 
 def coded_table(
-    data: Dataset, encoder: NumpyEncoder, progress: Callable[[str], None] = lambda _: None, device: str = "cpu"
+    data: Dataset,
+    encoder: NumpyEncoder,
+    progress: Callable[[str], None] = lambda _: None,
+    device: str = "cpu",
+    *,
+    count: int | None = None,
+    surroundings: bool = True,
 ) -> Table:
     """As `table_of` with `CloudFeatures(encoder)`, by torch; agrees to 1e-5.
 
@@ -31,10 +37,15 @@ def coded_table(
         encoder: What codes the clouds.
         progress: Told how far it is.
         device: Where torch computes.
+        count: Only so many scenes, the first of `order`.
+        surroundings: Whether the other bodies are encoded as well; they are most of the work.
     """
-    indices = order(data.holds)
+    indices = order(data.holds)[:count]
     scenes = [data[int(index)].situation for index in indices]
-    placed = [item for scene in scenes for item in (scene.support, scene.body, *scene.others)]
+    around = [scene.others if surroundings else () for scene in scenes]
+    placed = [
+        item for scene, others in zip(scenes, around, strict=True) for item in (scene.support, scene.body, *others)
+    ]
     numbers: dict[Form, int] = {}
     template = np.array([numbers.setdefault(item.form.unit, len(numbers)) for item in placed])
     clouds = [centred(form) for form in numbers]
@@ -52,7 +63,7 @@ def coded_table(
         features[rows, 7:] = encode(template[rows], scale[rows, None, None] * rotations[rows])
         if start // batch % 200 == 199:
             progress(f"codes of {start + batch} of {len(placed)} clouds")
-    sizes = np.array([2 + len(scene.others) for scene in scenes])
+    sizes = np.array([2 + len(others) for others in around])
     first = np.cumsum(sizes) - sizes
     features[:, :3] = middle - np.repeat(middle[first], sizes, axis=0)
     slots = np.arange(max(1, sizes.max() - 2))

@@ -37,13 +37,15 @@ class Table:
         return self.others.shape[2]
 
 
-def table_of(data: Dataset, features: Features, progress: Callable[[str], None] = lambda _: None) -> Table:
-    """The features of all scenes, shuffled by `order`."""
-    arguments = np.zeros((len(data), 2 * features.size), np.float32)
+def table_of(
+    data: Dataset, features: Features, progress: Callable[[str], None] = lambda _: None, count: int | None = None
+) -> Table:
+    """The features of the first `count` scenes of `order`, or of all."""
+    indices = order(data.holds)[:count]
+    arguments = np.zeros((len(indices), 2 * features.size), np.float32)
     most = max(1, data.arrays["body"].shape[1] - 2)
-    others = np.zeros((len(data), most, features.size), np.float32)
-    share = np.zeros((len(data), most), np.float32)
-    indices = order(data.holds)
+    others = np.zeros((len(indices), most, features.size), np.float32)
+    share = np.zeros((len(indices), most), np.float32)
     for row, index in enumerate(indices):
         seen = features.observe(data[int(index)].situation)
         arguments[row] = seen.arguments.reshape(-1)
@@ -51,7 +53,7 @@ def table_of(data: Dataset, features: Features, progress: Callable[[str], None] 
         if count:
             others[row, :count], share[row, :count] = seen.others, 1 / count
         if (row + 1) % 2000 == 0:
-            progress(f"features of {row + 1} of {len(data)} scenes")
+            progress(f"features of {row + 1} of {len(indices)} scenes")
     most = max(1, int((share > 0).sum(axis=1).max(initial=0)))
     return Table(arguments, others[:, :most].copy(), share[:, :most].copy(), data.holds[indices])
 

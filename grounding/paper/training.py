@@ -49,7 +49,7 @@ def train(
         InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another run's state.
     """
     _check(data, model, scheme, sizes, seeds, encoder)
-    table = table or features_of(data, model, encoder, progress)
+    table = table or features_of(data, model, encoder, progress, max(sizes))
     trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations))
     trainer.run(state, progress)
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if _clouds(model) and encoder else {}
@@ -71,11 +71,14 @@ def train(
     ]
 
 
-def features_of(data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None]) -> Table:
-    """The features that a model is trained on."""
+def features_of(
+    data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None], count: int | None = None
+) -> Table:
+    """The features that a model is trained on, of the first `count` scenes or of all."""
     if _clouds(model) and encoder is not None:
-        return coded_table(data, NumpyEncoder(encoder.arrays), progress)
-    return table_of(data, BoxFeatures(), progress)
+        around = model.startswith("gnn")
+        return coded_table(data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around)
+    return table_of(data, BoxFeatures(), progress, count)
 
 
 def _clouds(model: str) -> bool:

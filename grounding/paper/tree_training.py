@@ -47,7 +47,7 @@ def train_tree(
         raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")
     if not 0 < int(data.holds.sum()) < len(data):
         raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
-    table = features_of(data, model, encoder, progress)
+    table = features_of(data, model, encoder, progress, samples)
     progress(f"a tree of {samples} scenes")
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if encoder else {}
     arrays = grown(table, samples, seed)

@@ -8,9 +8,19 @@ import numpy as np
 import pytest
 
 from grounding import registry
-from grounding.registry import BORROWED, GROUNDINGS, MODELS, RELATIONS, UNTRAINED, load_model, shipped_model
+from grounding.registry import (
+    BORROWED,
+    GROUNDINGS,
+    MODELS,
+    RELATIONS,
+    UNTRAINED,
+    VARIANTS,
+    load_model,
+    shipped_model,
+    shipped_weights,
+)
 from grounding.train import OPTIONS, TRAINERS, TrainArgs, check
-from grounding.weights import Weights, write_weights
+from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 from tamp.streams.placements import SurfacePlacements
 from tamp.streams.relations import Generator
@@ -20,25 +30,32 @@ def test_every_name_is_a_grounding_and_every_trained_one_has_a_trainer() -> None
     assert {*MODELS} == {*TRAINERS, *BORROWED}
     assert all(models and {*models} <= {*TRAINERS} for models in OPTIONS.values())
     for relation in RELATIONS:
-        assert {*GROUNDINGS[relation]} == {*MODELS, *UNTRAINED}
+        assert {*GROUNDINGS[relation]} == {*MODELS, *VARIANTS, *UNTRAINED}
         assert isinstance(GROUNDINGS[relation]["surface"](), SurfacePlacements)  # the planner's own
 
 
 @pytest.mark.parametrize("relation", RELATIONS)
-@pytest.mark.parametrize("name", [*MODELS, *UNTRAINED])
-def test_what_ships_loads_and_for_the_rest_there_is_a_command(relation: str, name: str) -> None:
-    if name in UNTRAINED or registry.shipped_weights(relation, name).is_file():
-        assert shipped_model(relation, name)
-        assert isinstance(GROUNDINGS[relation][name](), Generator)
-        return
-    with pytest.raises(InputError, match=f"for '{relation}' are shipped. Train it: tamp-learn train"):
-        GROUNDINGS[relation][name]()
+@pytest.mark.parametrize("name", [*MODELS, *VARIANTS, *UNTRAINED])
+def test_every_name_ships(relation: str, name: str) -> None:
+    assert shipped_model(relation, name)
+    assert isinstance(GROUNDINGS[relation][name](), Generator)
+    if name not in UNTRAINED:
+        card = read_weights(shipped_weights(relation, name)).card
+        assert card["relation"] == relation
+        assert card["commit"] and card["data"]["split"] == "train"
+        assert card.get("scheme", "both") == (name.rpartition("-")[2] if name in VARIANTS else "both")
+
+
+def test_what_ships_is_small() -> None:
+    assert sum(path.stat().st_size for path in registry.SHIPPED.iterdir()) < 15e6
 
 
 def test_weights_that_do_not_ship(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "SHIPPED", tmp_path)
     with pytest.raises(InputError, match=r"tamp-learn train inside --model gnn-bb --out .*inside_gnn-bb\.safetensors"):
         shipped_model("inside", "uniform+gnn")
+    with pytest.raises(InputError, match=r"train on --model mlp-bb --scheme classifier --out .*on_mlp-bb-classifier"):
+        shipped_model("on", "mlp-bb-classifier")
     with pytest.raises(InputError, match="Did you mean 'uniform'"):
         shipped_model("on", "unifrom")
     with pytest.raises(InputError, match="unknown relation 'under'"):

@@ -42,6 +42,15 @@ def test_codes_of_a_data_set_are_the_runtimes(data: Dataset, scaling: str) -> No
         assert getattr(fast, name) == pytest.approx(getattr(slow, name), abs=1e-5), name
 
 
+def test_codes_of_few_scenes_without_their_surroundings(data: Dataset) -> None:
+    encoder = NumpyEncoder(train_encoder(data, "conv", "one", FEW)[0])
+    whole, part = coded_table(data, encoder), coded_table(data, encoder, count=8, surroundings=False)
+    assert len(part.holds) == len(part.others) == 8
+    assert not part.others.any() and not part.share.any()
+    assert part.arguments == pytest.approx(whole.arguments[:8], abs=1e-5)
+    assert np.array_equal(part.holds, whole.holds[:8])
+
+
 def test_chamfer_is_of_the_nearest_points() -> None:
     first, second = torch.rand((2, 20, 3)), torch.rand((2, 20, 3))
     squares = ((first[:, :, None] - second[:, None]) ** 2).sum(-1)
