@@ -36,6 +36,26 @@ class Generate:
 
 
 @dataclass(frozen=True)
+class Explore:
+    """Make labelled scenes by trying poses out in physics; an interrupted run goes on where it was."""
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """on or inside."""
+    count: int = 1000
+    """Scenes; in half of them the relation came to hold."""
+    model: Path | None = None
+    """Weights of a grounding that proposes half of the poses, moved at random; by default all poses are random."""
+    seed: int = 0
+    """Of all randomness: the same seed gives the same bytes."""
+    out: Path | None = None
+    """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION --data FILE."""
+    meshes: Path | None = None
+    """A folder with one mesh a subfolder (as the YCB set comes), to join the objects."""
+    workers: int | None = None
+    """Processes; by default one a core."""
+
+
+@dataclass(frozen=True)
 class Encoder:
     """Train an encoder of point clouds, which the models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
 
@@ -97,9 +117,9 @@ class Evaluate:
     """Of the scenes' order and of the draws."""
 
 
-Arguments = Generate | Encoder | Train | Evaluate
+Arguments = Generate | Explore | Encoder | Train | Evaluate
 
-COMMANDS = {"generate": Generate, "encoder": Encoder, "train": Train, "evaluate": Evaluate}
+COMMANDS = {"generate": Generate, "explore": Explore, "encoder": Encoder, "train": Train, "evaluate": Evaluate}
 
 
 def parsed(arguments: list[str]) -> Arguments:
@@ -132,7 +152,10 @@ def _check(chosen: Arguments) -> None:
             raise InputError(f"--{name} must be positive, not {number}")
     if not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
-    for name, suffix in (("out", ".npz" if isinstance(chosen, Generate) else ".safetensors"), ("data", ".npz")):
+    for name, suffix in (
+        ("out", ".npz" if isinstance(chosen, Generate | Explore) else ".safetensors"),
+        ("data", ".npz"),
+    ):
         path = vars(chosen).get(name)
         if path is not None and path.suffix != suffix:
             raise InputError(f"--{name}: the file must end in {suffix}", file=path)

@@ -8,7 +8,7 @@ import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from grounding.arguments import Encoder, Evaluate, Generate, Train, parsed
+from grounding.arguments import Encoder, Evaluate, Explore, Generate, Train, parsed
 from grounding.dataset import Dataset, read_dataset
 from grounding.weights import Weights, write_weights
 from tamp.data import check_writable
@@ -28,6 +28,8 @@ def run(arguments: list[str]) -> int:
         chosen = parsed(arguments)
         if isinstance(chosen, Generate):
             _generate(chosen)
+        elif isinstance(chosen, Explore):
+            _explore(chosen)
         elif isinstance(chosen, Encoder):
             _encoder(chosen)
         elif isinstance(chosen, Train):
@@ -52,6 +54,17 @@ def _generate(chosen: Generate) -> None:
     data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
+
+
+def _explore(chosen: Explore) -> None:
+    from grounding.exploration import Exploration, explore
+
+    out = chosen.out or Path("data") / f"{chosen.relation}_explored.npz"
+    check_writable(out)
+    job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, chosen.meshes)
+    data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
+    _show("", last=True)
+    print(f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}")
 
 
 def _encoder(chosen: Encoder) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grounding import generate as module
+from grounding import chunks as module
 from grounding.dataset import Dataset, read_dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate, kinds_of

@@ -1,0 +1,191 @@
+"""Data sets made by many processes, a chunk at a time: resumable, and the same bytes for the same job."""
+
+from __future__ import annotations
+
+import io
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grounding.dataset import Dataset, write_dataset
+from grounding.objects import SPLITS, object_templates
+from grounding.scenes import OTHERS, Made
+from grounding.supports import support_templates
+from tamp.data import write_whole
+from tamp.errors import InputError
+
+CHUNK = 100
+"""Scenes that one process makes before they are kept."""
+
+ROWS = 3 + max(most for _, most in OTHERS.values())
+"""Bodies that a row has room for: the arguments, the other support, the others."""
+
+RELATIONS = ("on", "inside")
+
+Progress = Callable[[int, int], None]
+"""Called with the scenes made so far and all."""
+
+
+class Job(Protocol):
+    """What is to be made; a process gets it as a whole, so it must be one that can be sent there."""
+
+    @property
+    def relation(self) -> str:
+        """Is "on" or "inside"."""
+        ...
+
+    @property
+    def split(self) -> str:
+        """Is "train" or "test"; they share no object and no support."""
+        ...
+
+    @property
+    def count(self) -> int:
+        """Scenes."""
+        ...
+
+    @property
+    def seed(self) -> int:
+        """Of all randomness."""
+        ...
+
+    @property
+    def folder(self) -> Path | None:
+        """Of one's own meshes, one a subfolder."""
+        ...
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The types of samples."""
+        ...
+
+    @property
+    def key(self) -> str:
+        """What must be the same for the chunks of an interrupted run to be used, the number of scenes aside."""
+        ...
+
+    def chunk(self, number: int, size: int) -> Sequence[Made]:
+        """The scenes of one chunk, which depend on nothing but the job, the number and the size."""
+        ...
+
+    def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
+        """What the card says beside the rest."""
+        ...
+
+
+def make_dataset(
+    job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+) -> Dataset:
+    """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made is used.
+
+    Args:
+        job: What to make.
+        out: The file.
+        workers: Processes; None for one a core.
+        progress: Told how far it is.
+
+    Raises:
+        InputError: An unknown relation or split, a count that is no count, a folder without meshes.
+    """
+    for found, choices in ((job.relation, RELATIONS), (job.split, SPLITS)):
+        if found not in choices:
+            raise InputError(f"unknown relation or split '{found}'", found=found, choices=choices)
+    if job.count < 1:
+        raise InputError(f"the number of scenes must be positive, not {job.count}")
+    object_templates(job.split, job.folder)  # a bad mesh is said before processes start
+    parts = out.with_name(f".{out.stem}.parts")
+    _claim(parts, job.key)
+    chunks = range((job.count + CHUNK - 1) // CHUNK)
+    waiting = [number for number in chunks if not (parts / f"{number}.npz").is_file()]
+    done = len(chunks) - len(waiting)
+    progress(min(done * CHUNK, job.count), job.count)
+    for number, content in _results(job, waiting, workers):
+        write_whole(parts / f"{number}.npz", content)
+        done += 1
+        progress(min(done * CHUNK, job.count), job.count)
+    data = _merged(job, parts, len(chunks))
+    write_dataset(out, data)
+    shutil.rmtree(parts)
+    return data
+
+
+def _claim(parts: Path, name: str) -> None:
+    mark = parts / "job.json"
+    if parts.is_dir() and (not mark.is_file() or mark.read_text() != name):
+        shutil.rmtree(parts)
+    write_whole(mark, name.encode())
+
+
+def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
+    count = min(workers or os.cpu_count() or 1, len(waiting))
+    if count <= 1:
+        yield from ((number, _packed(job, number, CHUNK)) for number in waiting)
+        return
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
+        futures = {pool.submit(_packed, job, number, CHUNK): number for number in waiting}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+def _packed(job: Job, number: int, size: int) -> bytes:
+    """The scenes of one chunk, as the bytes of an npz."""
+    tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
+    names = {name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])}
+    arrays: dict[str, Any] = _arrays(job.chunk(number, size), names, job.kinds)
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=False, **arrays)
+    return buffer.getvalue()
+
+
+def _arrays(made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+    count = len(made)
+    arrays: dict[str, NDArray[Any]] = {
+        "holds": np.array([one.holds for one in made]),
+        "kind": np.array([kinds.index(one.kind) for one in made], dtype=np.int8),
+        "feasible": np.array([one.feasible for one in made]),
+        "body": np.full((count, ROWS), -1, dtype=np.int16),
+        "scale": np.ones((count, ROWS)),
+        "pose": np.tile(np.eye(4), (count, ROWS, 1, 1)),
+        "hollow": np.array([one.support.region.hollow for one in made]),
+        "region": np.stack([one.support.region.matrix for one in made]),
+        "size": np.stack([one.support.region.size for one in made]),
+        "box": np.stack([one.support.region.box for one in made]),
+    }
+    arrays |= {name: np.array([one.columns[name] for one in made]) for name in made[0].columns}
+    for row, one in enumerate(made):
+        bodies = len(one.names)
+        arrays["body"][row, :bodies] = [names[name] for name in one.names]
+        arrays["scale"][row, :bodies] = one.scales
+        arrays["pose"][row, :bodies] = one.poses
+    return arrays
+
+
+def _merged(job: Job, parts: Path, chunks: int) -> Dataset:
+    loaded = []
+    for number in range(chunks):
+        with np.load(parts / f"{number}.npz", allow_pickle=False) as archive:
+            loaded.append({name: archive[name] for name in archive.files})
+    arrays = {name: np.concatenate([one[name] for one in loaded])[: job.count] for name in loaded[0]}
+    supports = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
+    objects = object_templates(job.split, job.folder)
+    card = {
+        "relation": job.relation,
+        "split": job.split,
+        "seed": job.seed,
+        "count": job.count,
+        "objects": list(objects),
+        "supports": list(support_templates(job.relation, job.split)),
+        "by type": {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(job.kinds)},
+        "feasible": float(arrays["feasible"].mean()),
+        **job.card(arrays),
+    }
+    templates = {**{name: support.parts for name, support in supports.items()}, **objects}
+    return Dataset(arrays, templates, job.kinds, card)

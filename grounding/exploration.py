@@ -1,0 +1,211 @@
+"""Data from exploration: poses proposed without knowing what holds, tried in physics, labelled by what happened.
+
+A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is let go at each: it
+stays, or it falls and may come to rest where the relation holds after all. What came to rest is then moved a little or
+a lot and tried again, which finds where the relation ends. One trial of a scene is kept, success and failure in turn.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator as Random
+from numpy.typing import NDArray
+
+from grounding.chunks import RELATIONS, Progress, make_dataset
+from grounding.dataset import Dataset
+from grounding.model import Model
+from grounding.oracles import Verdict, settled
+from grounding.random_poses import random_turn
+from grounding.registry import load_model
+from grounding.scenes import Drawn, Made, Scenes
+from grounding.weights import read_weights
+from tamp.errors import InputError
+from tamp.simulation.drop import Drops
+from tamp.streams.placements import GROWTH
+from tamp.world.pose import Array, Pose
+
+STAYED, RESTED = "stayed", "came to rest"
+"""How a relation can come to hold: the body stayed where it was put, or it fell and lies where it holds too."""
+
+KINDS = (STAYED, RESTED, *(verdict.value for verdict in Verdict if verdict is not Verdict.HOLDS))
+"""The types of samples: the failures are those of `settled`."""
+
+DRAWN, MOVED = 12, 6
+"""Poses that are drawn in a scene, and poses around one that was found."""
+
+CROWDED = 0.8
+"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive samples)."""
+
+FARTHEST, STEEPEST = 0.3, 1.0
+"""Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as likely."""
+
+SECONDS = 2.5
+"""For how long a body may fall until it counts as come to rest."""
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """What is to be explored; a `grounding.chunks.Job`.
+
+    Attributes:
+        relation: "on" or "inside".
+        count: Scenes, half of them positive.
+        seed: Of all randomness.
+        weights: Of a grounding that draws half of the poses; None for random ones alone.
+        folder: Of one's own meshes, one a subfolder.
+    """
+
+    relation: str
+    count: int
+    seed: int = 0
+    weights: Path | None = None
+    folder: Path | None = None
+
+    @property
+    def split(self) -> str:
+        """Exploration is for training."""
+        return "train"
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """What can happen."""
+        return KINDS
+
+    @property
+    def key(self) -> str:
+        """All but the count; of the weights what they are, not where."""
+        digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
+        return json.dumps(["explored", self.relation, self.seed, str(self.folder), digest])
+
+    def chunk(self, number: int, size: int) -> list[Made]:
+        """Scenes of chunk `number`, `size` of them."""
+        explorer = _explorer(self.relation, self.weights, self.folder)
+        rng = np.random.default_rng([self.seed, RELATIONS.index(self.relation), number, len(KINDS)])
+        return [explorer.make(row % 2 == 0, rng) for row in range(size)]
+
+    def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
+        """How often a body was let go, and who drew."""
+        drawn = None if self.weights is None else dict(read_weights(self.weights).card)
+        return {"trials": int(arrays["trials"].sum()), "drawn by": drawn or "random"}
+
+
+def explore(
+    job: Exploration, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+) -> Dataset:
+    """Make a data set by exploration and write it, see `make_dataset`.
+
+    Raises:
+        InputError: As there; or the weights are missing, damaged or of another relation.
+    """
+    if job.weights is not None:
+        load_model(job.weights)
+        relation = read_weights(job.weights).card.get("relation")
+        if relation != job.relation:
+            raise InputError(f"these are weights for '{relation}', not '{job.relation}'", file=job.weights)
+    return make_dataset(job, out, workers, progress)
+
+
+class Explorer:
+    """Tries poses out; keep it, for its shapes are made once.
+
+    Args:
+        scenes: Where it plays.
+        drops: The engine.
+        model: What draws half of the poses; None for random ones alone.
+    """
+
+    def __init__(self, scenes: Scenes, drops: Drops, model: Model | None = None) -> None:
+        self._scenes, self._drops, self._model = scenes, drops, model
+
+    def make(self, holds: bool, rng: Random) -> Made:
+        """A scene where the relation came to hold, or where it did not; explores until there is one."""
+        trials = 0
+        while True:
+            scene = self._scenes.draw(rng, crowded=rng.random() < CROWDED)
+            tried, count = self.explore(scene, rng)
+            trials += count
+            kinds = sorted({kind for kind, _ in tried if (kind in (STAYED, RESTED)) == holds})
+            if kinds:  # a rare way to fail is kept as often as a frequent one
+                kind = kinds[int(rng.integers(len(kinds)))]
+                poses = [pose for name, pose in tried if name == kind]
+                return scene.made(poses[int(rng.integers(len(poses)))], kind, holds, True, {"trials": trials})
+
+    def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array]], int]:
+        """What happened in a scene: kinds and poses T_world_body, and how often the body was let go."""
+        drawn = np.stack([uniform(scene, rng) for _ in range(DRAWN)])
+        if self._model is not None:
+            proposed = self._model.propose(scene.situation(drawn[0]), DRAWN // 2, rng)
+            drawn[: len(proposed)] = [moved(pose, rng) for pose in proposed]
+        tried, found, trials = self._try(scene, drawn)
+        if found:
+            chosen = found[int(rng.integers(len(found)))]
+            more, _, count = self._try(scene, np.stack([moved(chosen, rng) for _ in range(MOVED)]))
+            tried, trials = tried + more, trials + count
+        return tried, trials
+
+    def _try(self, scene: Drawn, poses: Array) -> tuple[list[tuple[str, Array]], list[Array], int]:
+        """Let the body go at each pose: what happened, where it lies so that the relation holds, and how many trials.
+
+        A pose that holds is kept as the pose at which the body comes to rest from there, if that one holds too.
+        """
+        situation, items = scene.situation(poses[0]), self._scenes.items
+        verdicts = settled(situation, poses, self._drops, items)
+        tried = [(verdict.value, pose) for verdict, pose in zip(verdicts, poses, strict=True)]
+        # what is lower than the region, or in another body, cannot come to rest in it
+        falling = (Verdict.HOLDS, Verdict.TOO_HIGH, Verdict.OUTSIDE, Verdict.OVERLAPPING, Verdict.TIPS)
+        rests, stayed = [], []
+        self._drops.set_up(
+            items(scene.body), [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)]
+        )
+        for verdict, pose in zip(verdicts, poses, strict=True):
+            if verdict in falling and all(one.distance > -0.0005 for one in self._drops.contacts(pose)):
+                rests.append(self._drops.drop(pose, SECONDS))
+                stayed.append(verdict is Verdict.HOLDS)
+        found: list[tuple[str, Array]] = []
+        after = settled(situation, np.stack(rests), self._drops, items) if rests else []
+        for verdict, pose, there in zip(after, rests, stayed, strict=True):
+            if verdict is Verdict.HOLDS:
+                found.append((STAYED if there else RESTED, pose))
+        failed = [one for one in tried if one[0] != Verdict.HOLDS]
+        return failed + found, [pose for _, pose in found], len(poses)
+
+
+def uniform(scene: Drawn, rng: Random) -> Array:
+    """T_world_body: anywhere in argument 0's box, grown by half its largest half extent, turned in any way; (4, 4)."""
+    low, high = scene.support.region.box
+    margin = GROWTH * float((high - low).max()) / 2
+    pose = random_turn(rng)
+    pose[:3, 3] = rng.uniform(low - margin, high + margin)
+    return scene.stand.matrix @ pose
+
+
+def moved(pose: Array, rng: Random) -> Array:
+    """T_world_body moved by FARTHEST and turned by STEEPEST at most; half of them only sideways, half of them only
+    about the vertical, by any angle. Shape (4, 4).
+    """
+    result = pose.copy()
+    far, steep = (most * 10.0 ** -rng.uniform(0.0, 2.0) for most in (FARTHEST, STEEPEST))
+    step, axis = rng.normal(size=3), rng.normal(size=3)
+    if rng.random() < 0.5:
+        step[2] = 0.0
+    if rng.random() < 0.5:
+        steep, axis = rng.uniform(-math.pi, math.pi), np.array([0.0, 0.0, 1.0])
+    x, y, z = (float(v) for v in math.sin(steep / 2) * axis / np.linalg.norm(axis))
+    turn = Pose((0.0, 0.0, 0.0), (x, y, z, math.cos(steep / 2))).matrix
+    result[:3, :3] = turn[:3, :3] @ pose[:3, :3]
+    result[:3, 3] += far * step / np.linalg.norm(step)
+    return result
+
+
+@lru_cache(maxsize=2)
+def _explorer(relation: str, weights: Path | None, folder: Path | None) -> Explorer:
+    model = None if weights is None else load_model(weights)
+    return Explorer(Scenes(relation, "train", folder), Drops(), model)

@@ -1,0 +1,208 @@
+"""Random scenes to put a body into: a support or container, another support, and bodies on, in and around them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.random import Generator as Random
+
+from grounding.form import Form
+from grounding.objects import object_templates
+from grounding.oracles import REACH, ItemOf
+from grounding.random_poses import afloat, on_ground, pick, random_rest, random_scale, solids, upright
+from grounding.separation import Obstacles, separations
+from grounding.situation import Placed, Situation, gap, near
+from grounding.supports import Support, scaled_region, support_templates
+from tamp.simulation.drop import Item
+from tamp.world.pose import Array
+
+OTHERS = {"train": (5, 9), "test": (5, 15)}
+"""Bodies in a scene beside the arguments and the other support."""
+
+OBJECT_SCALES = {"train": (0.5, 1.6), "test": (0.4, 1.8)}
+SUPPORT_SCALES = {"train": (0.8, 1.2), "test": (0.6, 1.4)}
+"""Sizes; the paper's ranges. In steps of 0.1."""
+
+TRIES = 16
+"""Poses at rest that are tried at once."""
+
+GAP = 0.001
+"""Metres that are kept between bodies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """One labelled scene: what `Dataset` keeps of it. Index 0 is argument 0, index 1 the body.
+
+    Attributes:
+        columns: Numbers that are kept beside, the same names in every scene of a data set.
+    """
+
+    names: list[str]
+    scales: list[float]
+    poses: list[Array]
+    support: Support
+    kind: str
+    holds: bool
+    feasible: bool
+    columns: Mapping[str, int] = field(default_factory=dict[str, int])
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A scene without a pose for its body.
+
+    Attributes:
+        names, scales: Of argument 0 and the body.
+        stand: Argument 0.
+        support: Of what it is made, with its region at its size.
+        body: Argument 1.
+        others: Names, scales and places of all other bodies.
+    """
+
+    names: tuple[str, str]
+    scales: tuple[float, float]
+    stand: Placed
+    support: Support
+    body: Form
+    others: tuple[tuple[str, float, Placed], ...]
+    obstacles: Obstacles
+    T_world_region: Array
+
+    @property
+    def placed(self) -> list[Placed]:
+        """The other bodies."""
+        return [item for _, _, item in self.others]
+
+    def situation(self, pose: Array) -> Situation:
+        """With the body at T_world_body, shape (4, 4)."""
+        return near(self.stand, self.support.region, Placed(self.body, pose), self.placed)
+
+    def made(
+        self, pose: Array, kind: str, holds: bool, feasible: bool, columns: Mapping[str, int] | None = None
+    ) -> Made:
+        """This scene, labelled, with the body at T_world_body, shape (4, 4)."""
+        names = [*self.names, *(name for name, _, _ in self.others)]
+        scales = [*self.scales, *(scale for _, scale, _ in self.others)]
+        poses = [self.stand.matrix, pose, *(item.matrix for item in self.placed)]
+        return Made(names, scales, poses, self.support, kind, holds, feasible, columns or {})
+
+
+class Scenes:
+    """Draws scenes of one relation and split; keep it, for its shapes are made once.
+
+    Args:
+        relation: "on" or "inside".
+        split: "train" or "test".
+        folder: Of one's own meshes, as for `object_templates`.
+    """
+
+    def __init__(self, relation: str, split: str, folder: Path | None = None) -> None:
+        self.split, self.items = split, ItemOf()
+        self._objects = {name: Form(parts) for name, parts in object_templates(split, folder).items()}
+        self._supports = dict(support_templates(relation, split))
+        self._tables = dict(support_templates("on", split))
+        self._forms = {name: Form(support.parts) for name, support in (self._supports | self._tables).items()}
+        self._scaled: dict[tuple[str, float], Form] = {}
+
+    def draw(self, rng: Random, *, crowded: bool = True) -> Drawn:
+        """A scene; `crowded` has bodies on or in argument 0."""
+        name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
+        support = self._supports[name]
+        support = replace(support, region=scaled_region(support.region, scale))
+        stand = Placed(self._form(name, scale), upright(rng.uniform(-1.5, 1.5, 2), rng))
+        body_name, body_scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
+        others = [self._other_support(stand, rng)]
+        for number in range(int(rng.integers(OTHERS[self.split][0], OTHERS[self.split][1] + 1))):
+            found = self._distractor(crowded, number, stand, support, others, rng)
+            if found is not None:
+                others.append(found)
+        return Drawn(
+            (name, body_name),
+            (scale, body_scale),
+            stand,
+            support,
+            self._form(body_name, body_scale),
+            tuple(others),
+            Obstacles([item for _, _, item in others]),
+            stand.matrix @ support.region.matrix,
+        )
+
+    def around(self, scene: Drawn, pose: Array) -> list[tuple[Item, Array]]:
+        """What the body can touch from T_world_body, shape (4, 4), as the engine's items and their matrices."""
+        box = Placed(scene.body, pose).box
+        bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
+        return [(self.items(item.form), item.matrix) for item in bodies]
+
+    def on_other(self, form: Form, other: tuple[str, float, Placed], rng: Random) -> Array | None:
+        """At rest on the other support."""
+        name, scale, item = other
+        region = scaled_region(self._tables[name].region, scale)
+        pose = random_rest(form, region.size, False, rng)
+        return None if pose is None else item.matrix @ region.matrix @ pose
+
+    def _other_support(self, stand: Placed, rng: Random) -> tuple[str, float, Placed]:
+        name, scale = pick(self._tables, rng), random_scale(SUPPORT_SCALES[self.split], rng)
+        form = self._form(name, scale)
+        reach = 0.5 * float(np.linalg.norm(np.ptp(stand.form.corners, axis=0)[:2]))
+        reach += 0.5 * float(np.linalg.norm(np.ptp(form.corners, axis=0)[:2]))
+        angle = rng.uniform(-math.pi, math.pi)
+        away = (reach + rng.uniform(0.02, 0.5)) * np.array([math.cos(angle), math.sin(angle)])
+        return name, scale, Placed(form, upright(stand.matrix[:2, 3] + away, rng))
+
+    def _distractor(
+        self,
+        crowded: bool,
+        number: int,
+        stand: Placed,
+        support: Support,
+        others: list[tuple[str, float, Placed]],
+        rng: Random,
+    ) -> tuple[str, float, Placed] | None:
+        name, scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
+        form = self._form(name, scale)
+        where = rng.random()
+        T_world_region = stand.matrix @ support.region.matrix
+        if crowded and (where < 0.6 or number == 0):
+            poses = [random_rest(form, support.region.size, False, rng) for _ in range(6)]
+            poses = [T_world_region @ pose for pose in poses if pose is not None]
+        elif where < 0.75:
+            poses = [self.on_other(form, others[0], rng)]
+        elif where < 0.9:
+            poses = [on_ground(form, stand, rng) for _ in range(3)]
+        else:
+            poses = [afloat(stand, rng) for _ in range(3)]
+        obstacles = Obstacles([*(item for _, _, item in others), *solids(stand)])
+        for pose in (pose for pose in poses if pose is not None):
+            if (separations(form, pose[None], obstacles) > 0.5 * GAP).all():
+                return name, scale, Placed(form, pose)
+        return None
+
+    def _form(self, name: str, scale: float) -> Form:
+        if (name, scale) not in self._scaled:
+            self._scaled[name, scale] = (self._objects.get(name) or self._forms[name]).scaled(scale)
+        return self._scaled[name, scale]
+
+
+def free(poses: Array, scene: Drawn) -> Array:
+    """Those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the other bodies."""
+    if not len(poses) or not scene.others:
+        return poses
+    return poses[(separations(scene.body, poses, scene.obstacles) > GAP).all(axis=1)]
+
+
+def resting(scene: Drawn, rng: Random) -> Array:
+    """World poses at rest in the region, up to TRIES: any face, any yaw, the body or its centre inside."""
+    region = scene.support.region
+    poses = [
+        scene.T_world_region @ pose
+        for pose in (
+            random_rest(scene.body, region.size, not region.hollow and rng.random() < 0.3, rng) for _ in range(TRIES)
+        )
+        if pose is not None
+    ]
+    return np.stack(poses) if poses else np.zeros((0, 4, 4))
