@@ -2,7 +2,8 @@
 
 A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is let go at each: it
 stays, or it falls and may come to rest where the relation holds after all. What came to rest is then moved a little or
-a lot and tried again, which finds where the relation ends. One trial of a scene is kept, success and failure in turn.
+a lot, or slid elsewhere, and tried again, which finds where the relation ends. One trial of a scene is kept, success
+and failure in turn.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from grounding.model import Model
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import random_turn
 from grounding.registry import load_model
-from grounding.scenes import Drawn, Made, Scenes
+from grounding.scenes import Drawn, Made, Scenes, free
 from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.simulation.drop import Drops
@@ -38,14 +39,17 @@ STAYED, RESTED = "stayed", "came to rest"
 KINDS = (STAYED, RESTED, *(verdict.value for verdict in Verdict if verdict is not Verdict.HOLDS))
 """The types of samples: the failures are those of `settled`."""
 
-DRAWN, MOVED = 12, 6
-"""Poses that are drawn in a scene, and poses around one that was found."""
+DRAWN, MOVED, SLID = 12, 6, 8
+"""Poses that are drawn in a scene, that one which was found is moved to, and that it is slid to."""
 
 CROWDED = 0.8
 """The share of scenes with bodies on or in argument 0 (the paper's share of the positive samples)."""
 
 FARTHEST, STEEPEST = 0.3, 1.0
 """Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as likely."""
+
+HARD = 0.75
+"""The share of failures that are taken from poses near one that was found: they show where the relation ends."""
 
 SECONDS = 2.5
 """For how long a body may fall until it counts as come to rest."""
@@ -127,34 +131,44 @@ class Explorer:
 
     def make(self, holds: bool, rng: Random) -> Made:
         """A scene where the relation came to hold, or where it did not; explores until there is one."""
-        trials = 0
+        trials, near = 0, not holds and rng.random() < HARD
         while True:
             scene = self._scenes.draw(rng, crowded=rng.random() < CROWDED)
             tried, count = self.explore(scene, rng)
             trials += count
-            kinds = sorted({kind for kind, _ in tried if (kind in (STAYED, RESTED)) == holds})
-            if kinds:  # a rare way to fail is kept as often as a frequent one
+            kept = [one for one in tried if (one[0] in (STAYED, RESTED)) == holds and (one[2] or not near)]
+            kinds = sorted({one[0] for one in kept})
+            if kinds and not holds:  # a rare way to fail is kept as often as a frequent one
                 kind = kinds[int(rng.integers(len(kinds)))]
-                poses = [pose for name, pose in tried if name == kind]
-                return scene.made(poses[int(rng.integers(len(poses)))], kind, holds, True, {"trials": trials})
+                kept = [one for one in kept if one[0] == kind]
+            if kept:
+                kind, pose, _ = kept[int(rng.integers(len(kept)))]
+                return scene.made(pose, kind, holds, True, {"trials": trials})
 
-    def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array]], int]:
-        """What happened in a scene: kinds and poses T_world_body, and how often the body was let go."""
+    def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array, bool]], int]:
+        """What happened in a scene, and how often the body was let go.
+
+        Returns:
+            Kinds, poses T_world_body, and whether it was tried because of one that was found; and the number.
+        """
         drawn = np.stack([uniform(scene, rng) for _ in range(DRAWN)])
         if self._model is not None:
             proposed = self._model.propose(scene.situation(drawn[0]), DRAWN // 2, rng)
             drawn[: len(proposed)] = [moved(pose, rng) for pose in proposed]
-        tried, found, trials = self._try(scene, drawn)
+        tried = [(kind, pose, False) for kind, pose in self._try(scene, drawn)]
+        found = [pose for kind, pose, _ in tried if kind in (STAYED, RESTED)]
+        trials = len(drawn)
         if found:
             chosen = found[int(rng.integers(len(found)))]
-            more, _, count = self._try(scene, np.stack([moved(chosen, rng) for _ in range(MOVED)]))
-            tried, trials = tried + more, trials + count
+            poses = [moved(chosen, rng) for _ in range(MOVED)] + [slid(scene, chosen, rng) for _ in range(SLID)]
+            tried += [(kind, pose, True) for kind, pose in self._try(scene, np.stack(poses))]
+            trials += len(poses)
         return tried, trials
 
-    def _try(self, scene: Drawn, poses: Array) -> tuple[list[tuple[str, Array]], list[Array], int]:
-        """Let the body go at each pose: what happened, where it lies so that the relation holds, and how many trials.
+    def _try(self, scene: Drawn, poses: Array) -> list[tuple[str, Array]]:
+        """Let the body go at each pose: the failures, and where it came to rest so that the relation holds.
 
-        A pose that holds is kept as the pose at which the body comes to rest from there, if that one holds too.
+        What came to rest against other bodies is neither: it stays, but is no place to put something.
         """
         situation, items = scene.situation(poses[0]), self._scenes.items
         verdicts = settled(situation, poses, self._drops, items)
@@ -172,10 +186,10 @@ class Explorer:
         found: list[tuple[str, Array]] = []
         after = settled(situation, np.stack(rests), self._drops, items) if rests else []
         for verdict, pose, there in zip(after, rests, stayed, strict=True):
-            if verdict is Verdict.HOLDS:
+            if verdict is Verdict.HOLDS and len(free(pose[None], scene)):
                 found.append((STAYED if there else RESTED, pose))
         failed = [one for one in tried if one[0] != Verdict.HOLDS]
-        return failed + found, [pose for _, pose in found], len(poses)
+        return failed + found
 
 
 def uniform(scene: Drawn, rng: Random) -> Array:
@@ -185,6 +199,15 @@ def uniform(scene: Drawn, rng: Random) -> Array:
     pose = random_turn(rng)
     pose[:3, 3] = rng.uniform(low - margin, high + margin)
     return scene.stand.matrix @ pose
+
+
+def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
+    """T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned by any angle; (4, 4)."""
+    low, high = scene.support.region.box
+    place = scene.stand.matrix[:3, :3] @ rng.uniform(low, high) + scene.stand.matrix[:3, 3]
+    result = Pose.from_xyz_yaw(0.0, 0.0, 0.0, rng.uniform(-math.pi, math.pi)).matrix @ pose
+    result[:3, 3] = (*place[:2], pose[2, 3])
+    return result
 
 
 def moved(pose: Array, rng: Random) -> Array:

@@ -16,6 +16,7 @@ from grounding.model import Model
 from grounding.oracles import ItemOf, Verdict, settled
 from grounding.registry import load_model
 from grounding.scenes import Scenes
+from grounding.separation import Obstacles, separations
 from grounding.situation import Situation
 from grounding.train import train
 from grounding.weights import write_weights
@@ -44,6 +45,8 @@ def test_labels_are_what_happened(data: Dataset) -> None:
             verdict = settled(example.situation, example.situation.body.matrix[None], drops, items)[0]
             assert (verdict is Verdict.HOLDS) == example.holds == (example.kind in (STAYED, RESTED))
             assert example.holds or verdict == example.kind
+            pose, others = example.situation.body, Obstacles(example.situation.others)
+            assert not example.holds or (separations(pose.form, pose.matrix[None], others) > 0.0).all()
     assert data.holds.tolist() == [True, False] * 15
     assert data.kinds == KINDS and sum(data.card["by type"].values()) == 30
     assert data.card["trials"] >= 30 * 12 and data.card["drawn by"] == "random"
