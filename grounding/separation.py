@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
 from grounding.form import Form
 from grounding.situation import Placed
@@ -24,6 +26,10 @@ class Obstacles:
         count: How many, m.
         low: The least coordinates, shape (m, 3).
         high: The largest coordinates, shape (m, 3).
+        axes: Their own ones, shape (m, 3, 3).
+        spans: Least and largest coordinates along these, shape (m, 3, 2).
+        points: Outermost vertices, the last one repeated, shape (m, v, 3),
+        sizes: and how many each has, shape (m,).
     """
 
     def __init__(self, placed: Sequence[Placed]) -> None:
@@ -31,18 +37,17 @@ class Obstacles:
         if not placed:
             return
         matrices = np.array([item.matrix for item in placed])
-        longest = max(len(item.form.outer) for item in placed)
-        rows = np.arange(longest)
-        own = np.stack([item.form.outer[np.minimum(rows, len(item.form.outer) - 1)] for item in placed])  # (m, v, 3)
-        self.axes = matrices[:, :3, :3].transpose(0, 2, 1).reshape(-1, 3)  # (3 m, 3)
-        points = own @ matrices[:, :3, :3].transpose(0, 2, 1) + matrices[:, None, :3, 3]
-        self.points = np.ascontiguousarray(points.transpose(1, 0, 2))  # (v, m, 3)
-        self.low, self.high = self.points.min(axis=0), self.points.max(axis=0)
-        self.centres = (self.low + self.high) / 2
+        self.sizes = np.array([len(item.form.outer) for item in placed])
+        own = np.zeros((len(placed), self.sizes.max(), 3))
+        for row, item in enumerate(placed):
+            own[row, : len(item.form.outer)] = item.form.outer
+            own[row, len(item.form.outer) :] = item.form.outer[-1]
+        self.axes = np.ascontiguousarray(matrices[:, :3, :3].transpose(0, 2, 1))
+        self.points = own @ self.axes + matrices[:, None, :3, 3]
+        self.low, self.high = self.points.min(axis=1), self.points.max(axis=1)
         # along a body's own axes its own box is moved by where its origin is
-        origin = (self.axes.reshape(-1, 3, 3) @ matrices[:, :3, 3, None])[:, :, 0]
-        boxes = np.array([item.form.outer_box for item in placed])
-        self.along_low, self.along_high = (origin + boxes[:, 0]).ravel(), (origin + boxes[:, 1]).ravel()  # (3 m,)
+        origin = self.axes @ matrices[:, :3, 3, None]  # (m, 3, 1)
+        self.spans = origin + np.array([item.form.outer_box for item in placed]).transpose(0, 2, 1)
 
 
 def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
@@ -62,29 +67,49 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     count = len(poses)
     if not obstacles.count:
         return np.zeros((count, 0))
-    rotations, positions = poses[:, :3, :3], poses[:, :3, 3]
-    points = (form.outer @ rotations.reshape(-1, 3).T).reshape(-1, count, 3) + positions  # (v, n, 3)
-    low, high = points.min(axis=0), points.max(axis=0)
-    # the vertical
-    best = np.maximum(low[:, 2:] - obstacles.high[:, 2], obstacles.low[:, 2] - high[:, 2:])
-    # the obstacles' axes
-    along = (points.reshape(-1, 3) @ obstacles.axes.T).reshape(len(points), -1)  # (v, n 3 m)
-    own_low, own_high = along.min(axis=0).reshape(count, -1), along.max(axis=0).reshape(count, -1)
-    gaps = np.maximum(own_low - obstacles.along_high, obstacles.along_low - own_high)
-    best = np.maximum(best, gaps.reshape(count, obstacles.count, 3).max(axis=2))
-    # the body's axes
-    axes = rotations.transpose(0, 2, 1)
-    along = (obstacles.points.reshape(-1, 3) @ axes.reshape(-1, 3).T).reshape(len(obstacles.points), -1)  # (v, m 3 n)
-    other_low, other_high = along.min(axis=0).reshape(-1, 3 * count), along.max(axis=0).reshape(-1, 3 * count)
-    origin = (axes @ positions[:, :, None])[:, :, 0]
-    own_low, own_high = (origin + form.outer_box[0]).ravel(), (origin + form.outer_box[1]).ravel()
-    gaps = np.maximum(own_low - other_high, other_low - own_high)
-    best = np.maximum(best, gaps.reshape(obstacles.count, count, 3).max(axis=2).T)
-    # the horizontal line between the centres
-    line = ((low + high) / 2)[:, None, :2] - obstacles.centres[:, :2]  # (n, m, 2)
-    x, y = line[:, :, 0], line[:, :, 1]
-    length = np.maximum(np.sqrt(x * x + y * y), 1e-9)
-    x, y = x / length, y / length
-    own = (points[:, :, :1] * x + points[:, :, 1:2] * y).min(axis=0)
-    other = (obstacles.points[:, None, :, 0] * x + obstacles.points[:, None, :, 1] * y).max(axis=0)
-    return np.maximum(best, own - other)
+    out = np.empty((count, obstacles.count))
+    placed = (obstacles.points, obstacles.sizes, obstacles.axes, obstacles.spans, obstacles.low, obstacles.high)
+    _separate(form.outer, form.outer_box, np.ascontiguousarray(poses, dtype=float), *placed, out)
+    return out
+
+
+@njit(cache=True)
+def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):  # type: ignore[no-untyped-def]
+    """`separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
+    points = np.empty_like(own)
+    for n in range(len(poses)):
+        pose = poses[n]
+        least, most = np.full(3, np.inf), np.full(3, -np.inf)
+        for v in range(len(own)):
+            for k in range(3):
+                at = pose[k, 0] * own[v, 0] + pose[k, 1] * own[v, 1] + pose[k, 2] * own[v, 2] + pose[k, 3]
+                points[v, k] = at
+                least[k], most[k] = min(least[k], at), max(most[k], at)
+        for m in range(len(sizes)):
+            best = max(least[2] - high[m, 2], low[m, 2] - most[2])  # the vertical
+            for k in range(3):  # the obstacle's axes
+                x, y, z = axes[m, k]
+                first, last = np.inf, -np.inf
+                for v in range(len(own)):
+                    at = x * points[v, 0] + y * points[v, 1] + z * points[v, 2]
+                    first, last = min(first, at), max(last, at)
+                best = max(best, first - spans[m, k, 1], spans[m, k, 0] - last)
+            for k in range(3):  # the body's axes
+                x, y, z = pose[0, k], pose[1, k], pose[2, k]
+                first, last = np.inf, -np.inf
+                for v in range(sizes[m]):
+                    at = x * others[m, v, 0] + y * others[m, v, 1] + z * others[m, v, 2]
+                    first, last = min(first, at), max(last, at)
+                origin = x * pose[0, 3] + y * pose[1, 3] + z * pose[2, 3]
+                best = max(best, origin + box[0, k] - last, first - origin - box[1, k])
+            # the horizontal line between the centres
+            x = (least[0] + most[0] - low[m, 0] - high[m, 0]) / 2
+            y = (least[1] + most[1] - low[m, 1] - high[m, 1]) / 2
+            length = max(math.sqrt(x * x + y * y), 1e-9)
+            x, y = x / length, y / length
+            first, last = np.inf, -np.inf
+            for v in range(len(own)):
+                first = min(first, x * points[v, 0] + y * points[v, 1])
+            for v in range(sizes[m]):
+                last = max(last, x * others[m, v, 0] + y * others[m, v, 1])
+            out[n, m] = max(best, first - last)

@@ -13,9 +13,10 @@ from torch import Tensor
 from grounding.dataset import Dataset
 from grounding.form import Form
 from grounding.paper.encoders import centred, scaled
-from grounding.paper.features import PC, quaternions
+from grounding.paper.features import PC
 from grounding.paper.runtime import NumpyEncoder
 from grounding.paper.table import Table, order
+from grounding.paper.turns import quaternions
 
 BATCH = {"cpu": 16, "cuda": 512}
 """Clouds that are encoded at once."""

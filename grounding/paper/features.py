@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.paper.clouds import cloud
+from grounding.paper.turns import quaternions, rotations
 from grounding.situation import Placed, Situation
 from tamp.world.pose import Array
 
@@ -54,8 +55,8 @@ class Features(Protocol):
 
     size: int
 
-    def observe(self, situation: Situation) -> Observation:
-        """The features of a situation as it is."""
+    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
+        """The features of a situation as it is; without its surroundings for a network that does not see them."""
         ...
 
     def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
@@ -68,12 +69,12 @@ class BoxFeatures:
 
     size = BB
 
-    def observe(self, situation: Situation) -> Observation:
+    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
         """See Features."""
         support, body = situation.support, situation.body
-        boxes = [situation.region.box, body.form.corners, *(other.form.corners for other in situation.others)]
-        matrices = np.stack([support.matrix, body.matrix, *(other.matrix for other in situation.others)])
-        corners = np.stack(boxes)
+        others = situation.others if surroundings else ()
+        corners = np.array([situation.region.box, body.form.corners, *(other.form.corners for other in others)])
+        matrices = np.array([support.matrix, body.matrix, *(other.matrix for other in others)])
         centres = _moved(matrices, corners.mean(axis=1))
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
@@ -97,9 +98,9 @@ class CloudFeatures:
     def __init__(self, encoder: Encoder) -> None:
         self._encode = encoder
 
-    def observe(self, situation: Situation) -> Observation:
+    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
         """See Features."""
-        placed = (situation.support, situation.body, *situation.others)
+        placed = (situation.support, situation.body, *(situation.others if surroundings else ()))
         features = np.stack([self._features(item) for item in placed])
         origin = features[0, :3].copy()
         features[:, :3] -= origin
@@ -152,40 +153,6 @@ def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
     poses[:, :3, :3] = rotations(turns)
     poses[:, :3, 3] = seen.origin + positions - poses[:, :3, :3] @ seen.centre
     return poses
-
-
-QUADRATIC: NDArray[np.float64] = np.zeros((16, 9))
-"""R = 1 + (q q^T) QUADRATIC for a unit quaternion xyzw: entries of q q^T row by row to entries of R row by row."""
-for _row, _column, _first, _second, _factor in (
-    (0, 0, 1, 1, -2), (0, 0, 2, 2, -2), (1, 1, 0, 0, -2), (1, 1, 2, 2, -2), (2, 2, 0, 0, -2), (2, 2, 1, 1, -2),
-    (0, 1, 0, 1, 2), (0, 1, 2, 3, -2), (0, 2, 0, 2, 2), (0, 2, 1, 3, 2), (1, 0, 0, 1, 2), (1, 0, 2, 3, 2),
-    (1, 2, 1, 2, 2), (1, 2, 0, 3, -2), (2, 0, 0, 2, 2), (2, 0, 1, 3, -2), (2, 1, 1, 2, 2), (2, 1, 0, 3, 2),
-):  # fmt: skip
-    QUADRATIC[4 * _first + _second, 3 * _row + _column] = _factor
-
-
-def rotations(turns: Array) -> Array:
-    """Rotation matrices, shape (n, 3, 3), of unit quaternions xyzw, shape (n, 4)."""
-    products = (turns[:, :, None] * turns[:, None, :]).reshape(-1, 16)
-    return (products @ QUADRATIC.astype(turns.dtype)).reshape(-1, 3, 3) + np.eye(3, dtype=turns.dtype)
-
-
-def quaternions(matrices: Array) -> Array:
-    """Unit quaternions xyzw with w >= 0, shape (n, 4), of rotation matrices, shape (n, 3, 3) (Shepperd's method)."""
-    r = matrices
-    trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
-    squares = np.stack([r[:, 0, 0], r[:, 1, 1], r[:, 2, 2], trace], axis=1)
-    products = np.empty((len(r), 4, 4))
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        products[:, i, i] = 1 - trace + 2 * r[:, i, i]
-        products[:, i, j] = products[:, j, i] = r[:, j, i] + r[:, i, j]
-        products[:, i, 3] = products[:, 3, i] = r[:, k, j] - r[:, j, k]
-    products[:, 3, 3] = 1 + trace
-    turns = products[np.arange(len(r)), np.argmax(squares, axis=1)]
-    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
-    turns[turns[:, 3] < 0] *= -1
-    return turns
 
 
 def _moved(matrices: Array, points: Array) -> Array:

@@ -15,7 +15,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from grounding.paper.features import BB, CODE, QUADRATIC
+from grounding.paper.features import BB, CODE
+from grounding.paper.turns import QUADRATIC
 
 NOISE = 4
 """Gaussian numbers that the generator is given."""

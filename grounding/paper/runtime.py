@@ -39,17 +39,19 @@ class PaperModel:
         self.classifier, self.generator = Network(arrays, "classifier"), Network(arrays, "generator")
         self._features = features_in(arrays, self.classifier)
         _check_generator(self.generator, self._features.size)
+        self._sees = bool(self.classifier.scene or self.generator.scene)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """`count` poses, in no order: the generator moves argument 1 from where it is, each time by other noise."""
-        seen = self._features.observe(situation)
+        seen = self._features.observe(situation, self._sees)
         noise = rng.standard_normal((count, NOISE), dtype=np.float32)
         positions, turns = generated(self.generator, seen, noise)
         return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
 
     def classify(self, situation: Situation, poses: Array) -> Array:
         """The probability that the relation holds with argument 1 at each of the poses, shape (n,)."""
-        return classified(self.classifier, self._features, self._features.observe(situation), situation, poses)
+        seen = self._features.observe(situation, self._sees)
+        return classified(self.classifier, self._features, seen, situation, poses)
 
 
 class Network:

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.paper.features import BB, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of, rotations
+from grounding.paper.features import BB, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
 from grounding.paper.runtime import Arrays, NumpyEncoder, unit
+from grounding.paper.turns import rotations
 from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.errors import InputError

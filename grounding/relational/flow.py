@@ -99,7 +99,7 @@ def surroundings(view: View) -> NDArray[np.float32]:
     around = view.obstacles
     if not around.count:
         return np.zeros((0, AROUND), np.float32)
-    middle, half = around.centres[:, :2], (around.high - around.low)[:, :2] / 2
+    middle, half = (around.low + around.high)[:, :2] / 2, (around.high - around.low)[:, :2] / 2
     heights = np.clip(np.stack([around.low[:, 2], around.high[:, 2]], axis=1), -1.0, 1.0)
     return np.concatenate([middle, half, heights], axis=1, dtype=np.float32)
 

@@ -24,7 +24,7 @@ BEST_OF = 16
 """Candidates of which the best is returned."""
 
 ROUNDS = 5
-"""How often twice as many candidates are drawn when too few keep what all demonstrations keep."""
+"""How often more candidates are drawn, of one pose twice as many each time, when too few keep what all have kept."""
 
 
 class RelationalModel:
@@ -58,7 +58,7 @@ class RelationalModel:
             return np.zeros((0, 4, 4))
         poses, scores = np.zeros((0, 4, 4)), np.zeros(0)
         for turn in range(ROUNDS):
-            drawn = self.proposals.draw(view, max(BEST_OF, 2 * count) << turn, rng)
+            drawn = self.proposals.draw(view, max(BEST_OF << turn, 2 * count), rng)
             poses = np.concatenate([poses, drawn.poses])
             scores = np.concatenate([scores, self._scores(drawn)])
             if (scores > HOPELESS).sum() >= count:

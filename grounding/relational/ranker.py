@@ -60,10 +60,11 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     around = view.obstacles
     if not around.count:
         return pose.astype(np.float32), np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
-    apart = np.minimum(measured.apart, REACH)
-    over = np.maximum(
-        measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:]
-    )  # fmt: skip
-    size = np.broadcast_to((around.high - around.low).max(axis=1), apart.shape)
-    pair = np.stack([np.tanh(8 * apart), np.tanh(100 * apart), np.tanh(8 * over), np.tanh(100 * over), size], axis=2)
-    return pose.astype(np.float32), pair.astype(np.float32)
+    apart = np.minimum(measured.apart, REACH).astype(np.float32)
+    over = np.maximum(measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:])
+    over = over.astype(np.float32)
+    pair = np.empty((*apart.shape, PAIR), np.float32)
+    for row, lengths in enumerate((8 * apart, 100 * apart, 8 * over, 100 * over)):
+        np.tanh(lengths, out=pair[:, :, row])
+    pair[:, :, 4] = (around.high - around.low).max(axis=1)
+    return pose.astype(np.float32), pair
