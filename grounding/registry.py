@@ -10,6 +10,7 @@ from grounding.model import Model
 from grounding.runtime import Grounding
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
+from tamp.streams.choice import ANY
 from tamp.streams.registry import SAMPLERS
 from tamp.streams.relations import Generator
 
@@ -130,6 +131,18 @@ def load_grounding(path: Path, model: str | None = None) -> Grounding:
     return Grounding(load_model(path, model))
 
 
+def file_grounding(relation: str, path: Path) -> Grounding:
+    """`load_grounding` of a file that must be about this relation.
+
+    Raises:
+        InputError: It is about another one, or as for `load_model`.
+    """
+    found = read_weights(path).card.get("relation")
+    if found != relation:
+        raise InputError(f"these are weights for '{found}', not '{relation}'", file=path)
+    return load_grounding(path)
+
+
 def shipped_grounding(relation: str, name: str) -> Grounding:
     """`shipped_model` for the planner."""
     return Grounding(shipped_model(relation, name))
@@ -140,14 +153,17 @@ def shipped_weights(relation: str, name: str) -> Path:
     return SHIPPED / f"{relation}_{BORROWED.get(name, name)}.safetensors"
 
 
-GROUNDINGS: Mapping[str, Mapping[str, Callable[[], Grounding | Generator]]] = {
-    relation: {
-        **SAMPLERS[relation],
-        **{name: partial(shipped_grounding, relation, name) for name in (*MODELS, *VARIANTS)},
-    }
-    for relation in RELATIONS
+GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
+    **{
+        relation: {
+            **SAMPLERS[relation],
+            **{name: partial(shipped_grounding, relation, name) for name in (*MODELS, *VARIANTS)},
+        }
+        for relation in RELATIONS
+    },
+    ANY: {".safetensors": file_grounding},
 }
-"""Relation to name to what makes the grounding: what `--sampler on=transfer` means.
+"""Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler on=FILE.safetensors` mean.
 
 `surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for it says so and how to
 train them.

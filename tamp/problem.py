@@ -17,7 +17,7 @@ from tamp.initial import initial_state
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import Stream, StreamFile, Task
-from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, mix, parse_choice
+from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, maker, mix, parse_choice
 from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation
 from tamp.streams.registry import SAMPLERS, STREAMS
@@ -85,7 +85,7 @@ def load_problem(
         groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
             samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
             served to the streams sample-<relation> and test-<relation>.
-        registry: Further samplers: relation to name to what makes the object.
+        registry: Further samplers: relation to name to what makes the object; also of files (tamp/streams/choice.py).
         functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
             f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
@@ -161,7 +161,7 @@ class _Served:
         groundings: Mapping[str, Grounding],
         registry: Registry,
     ) -> _Served:
-        known: dict[str, dict[str, Callable[[], Grounding]]] = {}
+        known: dict[str, dict[str, Callable[..., Grounding]]] = {}
         given = {relation: {GIVEN: partial(_same, item)} for relation, item in groundings.items()}
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
@@ -169,14 +169,14 @@ class _Served:
         choices = {relation: Choice(next(iter(makers)), alone=True) for relation, makers in SAMPLERS.items()}
         for relation, text in loaded.samplers.items():
             try:
-                choices[relation] = parse_choice(relation, text, known)
+                choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
             except InputError as error:
                 raise error.at(loaded.path, _line(loaded, "samplers", relation)) from None
         choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
         for relation, item in groundings.items():
             if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
                 choices[relation] = Choice(GIVEN, alone=False)
-        made: dict[str, Grounding] = {name: known[name][choice.name]() for name, choice in choices.items()}
+        made: dict[str, Grounding] = {name: maker(name, choice, known)() for name, choice in choices.items()}
         for relation, item in made.items():
             if not isinstance(item, Generator):
                 what = f"sampler '{choices[relation].name}' for '{relation}' has no method propose"

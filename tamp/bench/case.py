@@ -8,7 +8,7 @@ from typing import Any
 
 from tamp.data import find_problem, shipped
 from tamp.errors import InputError
-from tamp.streams.choice import Registry, parse_choice
+from tamp.streams.choice import ANY, Registry, maker, parse_choice
 
 DEFAULT = "default"
 """The samplers that the problem has by itself."""
@@ -98,12 +98,12 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
         pairs = [pair.partition("=") for pair in sampler.split(",")]
         chosen = {relation: parse_choice(relation, text, known) for relation, _, text in pairs}
         for relation, choice in chosen.items():
-            known[relation][choice.name]()
+            maker(relation, choice, known)()
         return {relation: choice.text for relation, choice in chosen.items()}
     name = sampler.partition(":")[0]
     able = [relation for relation in known if name in known[relation]]
     if not able:
-        names = dict.fromkeys(name for makers in known.values() for name in makers)
+        names = dict.fromkeys(name for other, makers in known.items() if other != ANY for name in makers)
         raise InputError(f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names))
     made: dict[str, str] = {}
     missing: list[InputError] = []

@@ -9,7 +9,7 @@ from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.report import GoalFact
 from tamp.execution.truth import Truth
 from tamp.pddl.structs import Atom, Formula
-from tamp.streams.choice import Registry
+from tamp.streams.choice import ANY, Registry
 from tamp.streams.relations import Classifier
 from tamp.verification.formulas import flat, show
 from tamp.verification.semantics import State
@@ -40,6 +40,8 @@ def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
     """Relation to the name and the object of the first learned classifier whose weights are there."""
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
+        if relation == ANY:
+            continue
         for name, make in makers.items():
             classifier = _made(make)
             if classifier is not None:

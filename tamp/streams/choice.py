@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.streams.mixture import Mixture
@@ -13,8 +15,11 @@ from tamp.streams.relations import Classifier, Generator
 Grounding = Generator | Classifier
 """What grounds a relation: its generator, its classifier, or an object that is both."""
 
-Registry = Mapping[str, Mapping[str, Callable[[], Grounding]]]
-"""Relation to sampler name to what makes it; it may raise InputError."""
+Registry = Mapping[str, Mapping[str, Callable[..., Grounding]]]
+"""Relation to sampler name to what makes it, f(); it may raise InputError. See ANY."""
+
+ANY = "*"
+"""The relation under which a registry has suffixes of files for names; what reads such a file is f(relation, file)."""
 
 GIVEN = "given"
 """The name of an object that was given in the place of a name."""
@@ -46,15 +51,26 @@ HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
 """The samplers that are alone unless it is said that they are mixed."""
 
 
-def parse_choice(relation: str, text: str, known: Registry) -> Choice:
-    """Read NAME, NAME:mixed or NAME:alone.
+def parse_choice(relation: str, text: str, known: Registry, folder: Path | None = None) -> Choice:
+    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole path.
+
+    Args:
+        relation: Of any name where a file serves it.
+        text: What is to be read.
+        known: All samplers.
+        folder: Where a relative path starts; by default where the program runs.
 
     Raises:
         InputError: Unknown relation, name or mode.
     """
-    if relation not in known:
-        raise InputError(f"unknown relation '{relation}'", found=relation, choices=known)
+    name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
+    if Path(name).suffix in known.get(ANY, {}):
+        return Choice(str(((folder or Path()) / name).resolve()), alone=mode == "alone")
     name, colon, mode = text.partition(":")
+    if relation not in known or relation == ANY:
+        choices = [other for other in known if other != ANY]
+        remedy = f"Of one's own: {relation}=FILE{next(iter(known[ANY]))}" if known.get(ANY) else ""
+        raise InputError(f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy)
     if name not in known[relation]:
         raise InputError(f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation])
     if colon and mode not in MODES:
@@ -63,9 +79,16 @@ def parse_choice(relation: str, text: str, known: Registry) -> Choice:
     return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
 
 
+def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:
+    """What makes the chosen sampler; it may raise InputError."""
+    if choice.name in known.get(relation, {}):
+        return known[relation][choice.name]
+    return partial(known[ANY][Path(choice.name).suffix], relation, Path(choice.name))
+
+
 def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
     """The chosen generator, with the relation's hand-made one beside it unless it is to be alone."""
     trusted = next(iter(SAMPLERS.get(relation, {})), None)
     if choice.alone or trusted is None or choice.name == trusted:
-        return Mixture((choice.name,), (generator,))
-    return Mixture((choice.name, trusted), (generator, SAMPLERS[relation][trusted]()))
+        return Mixture((Path(choice.name).name,), (generator,))
+    return Mixture((Path(choice.name).name, trusted), (generator, SAMPLERS[relation][trusted]()))
