@@ -56,11 +56,23 @@ class Explore:
 
 
 @dataclass(frozen=True)
+class Collect:
+    """Make labelled scenes of problem files in which a relation of one's own holds, or does not."""
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """Any name."""
+    files: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    """Problem files, or folders of them. Their goals say what holds in them: (RELATION BODY PLACE), or (not (...))."""
+    out: Path | None = None
+    """The file; by default data/RELATION_train.npz."""
+
+
+@dataclass(frozen=True)
 class Encoder:
     """Train an encoder of point clouds, which the models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
 
     relation: Annotated[str, tyro.conf.Positional]
-    """on or inside."""
+    """on or inside, or one's own."""
     kind: str = "conv"
     """conv, which serves the models; pointnet++ and dense are for comparison."""
     scaling: str = "one"
@@ -82,7 +94,7 @@ class Train:
     """Train a grounding on a data set; the paper's networks go on where an interrupted run was."""
 
     relation: Annotated[str, tyro.conf.Positional]
-    """on or inside."""
+    """on or inside, or one's own."""
     model: str = "transfer"
     """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
     scheme: str | None = None
@@ -117,9 +129,16 @@ class Evaluate:
     """Of the scenes' order and of the draws."""
 
 
-Arguments = Generate | Explore | Encoder | Train | Evaluate
+Arguments = Generate | Explore | Collect | Encoder | Train | Evaluate
 
-COMMANDS = {"generate": Generate, "explore": Explore, "encoder": Encoder, "train": Train, "evaluate": Evaluate}
+COMMANDS = {
+    "generate": Generate,
+    "explore": Explore,
+    "collect": Collect,
+    "encoder": Encoder,
+    "train": Train,
+    "evaluate": Evaluate,
+}
 
 
 def parsed(arguments: list[str]) -> Arguments:
@@ -144,18 +163,32 @@ def parsed(arguments: list[str]) -> Arguments:
 
 
 def _check(chosen: Arguments) -> None:
-    if not isinstance(chosen, Evaluate) and chosen.relation not in RELATIONS:
-        raise InputError(f"unknown relation '{chosen.relation}'", found=chosen.relation, choices=RELATIONS)
+    if isinstance(chosen, Generate | Explore | Encoder | Train) and chosen.relation not in RELATIONS:
+        _check_own(chosen)
     for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
         number = vars(chosen).get(name)
         if number is not None and number < 1:
             raise InputError(f"--{name} must be positive, not {number}")
-    if not 0 <= chosen.seed < 2**63:
+    if not isinstance(chosen, Collect) and not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
     for name, suffix in (
-        ("out", ".npz" if isinstance(chosen, Generate | Explore) else ".safetensors"),
+        ("out", ".npz" if isinstance(chosen, Generate | Explore | Collect) else ".safetensors"),
         ("data", ".npz"),
     ):
         path = vars(chosen).get(name)
         if path is not None and path.suffix != suffix:
             raise InputError(f"--{name}: the file must end in {suffix}", file=path)
+
+
+def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
+    """A relation of one's own has data of one's own."""
+    relation = chosen.relation
+    if isinstance(chosen, Encoder | Train) and (chosen.data is not None or data_file(relation, "train").is_file()):
+        return
+    remedy = f"Of one's own: tamp-learn collect {relation} FILES makes its data"
+    raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS, remedy=remedy)
+
+
+def data_file(relation: str, split: str) -> Path:
+    """Where a relation's data are unless it is said."""
+    return Path("data") / f"{relation}_{split}.npz"

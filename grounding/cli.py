@@ -8,8 +8,8 @@ import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from grounding.arguments import Encoder, Evaluate, Explore, Generate, Train, parsed
-from grounding.dataset import Dataset, read_dataset
+from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
+from grounding.dataset import Dataset, read_dataset, write_dataset
 from grounding.weights import Weights, write_weights
 from tamp.data import check_writable
 from tamp.errors import InputError
@@ -30,6 +30,8 @@ def run(arguments: list[str]) -> int:
             _generate(chosen)
         elif isinstance(chosen, Explore):
             _explore(chosen)
+        elif isinstance(chosen, Collect):
+            _collect(chosen)
         elif isinstance(chosen, Encoder):
             _encoder(chosen)
         elif isinstance(chosen, Train):
@@ -48,7 +50,7 @@ def run(arguments: list[str]) -> int:
 def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
-    out = chosen.out or Path("data") / f"{chosen.relation}_{chosen.split}.npz"
+    out = chosen.out or data_file(chosen.relation, chosen.split)
     check_writable(out)
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, chosen.meshes)
     data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
@@ -59,12 +61,22 @@ def _generate(chosen: Generate) -> None:
 def _explore(chosen: Explore) -> None:
     from grounding.exploration import Exploration, explore
 
-    out = chosen.out or Path("data") / f"{chosen.relation}_explored.npz"
+    out = chosen.out or data_file(chosen.relation, "explored")
     check_writable(out)
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, chosen.meshes)
     data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}")
+
+
+def _collect(chosen: Collect) -> None:
+    from grounding.collect import collect, read_demonstrations
+
+    out = chosen.out or data_file(chosen.relation, "train")
+    check_writable(out)
+    data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
+    write_dataset(out, data)
+    print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
 def _encoder(chosen: Encoder) -> None:
@@ -145,7 +157,7 @@ def _evaluate(chosen: Evaluate) -> None:
 
 
 def _data(path: Path | None, relation: str, split: str) -> Dataset:
-    path = path or Path("data") / f"{relation}_{split}.npz"
+    path = path or data_file(relation, split)
     data = read_dataset(path)
     if data.relation != relation:
         raise InputError(f"the data are about '{data.relation}', not '{relation}'", file=path)
