@@ -70,11 +70,13 @@ def _explore(chosen: Explore) -> None:
 
 
 def _collect(chosen: Collect) -> None:
-    from grounding.collect import collect, read_demonstrations
+    from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
     check_writable(out)
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
+    for text in unsteady(data):
+        print(f"warning: {text}", file=sys.stderr)
     write_dataset(out, data)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.dataset import Dataset
+from grounding.relational.measures import View
 from grounding.situation import Region, region_of
 from tamp.errors import InputError
 from tamp.pddl.nodes import Group, Node, Symbol, error
 from tamp.pddl.sexpr import read
+from tamp.streams.resting import SNAP_TILT
 from tamp.world.load import load_scene
 from tamp.world.pose import Array
 from tamp.world.scene import Part, Scene
@@ -67,6 +71,22 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
     by_type = {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(KINDS)}
     card = {"relation": relation, "split": "train", "count": len(rows), "by type": by_type, "feasible": 1.0}
     return Dataset(arrays, {name: parts for parts, name in templates.items()}, KINDS, card)
+
+
+def unsteady(data: Dataset) -> list[str]:
+    """Warnings of bodies for which the relation holds as they stand on none of their stable faces."""
+    found: Counter[str] = Counter()
+    for example in data:
+        if not example.holds:
+            continue
+        view = View(example.situation)
+        measured = view.measure((view.T_region_world @ example.situation.body.matrix)[None])
+        if not len(view.faces) or np.linalg.norm(measured.tilt) > math.sin(SNAP_TILT):
+            found[example.names[1]] += 1
+    return [
+        f"{name} stands on none of its stable faces ({count} scene{'s' * (count > 1)}): no plan will put it down so"
+        for name, count in found.items()
+    ]
 
 
 def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demonstration]:

@@ -66,6 +66,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
     from tamp.report import headline, improvement, summary
+    from tamp.streams.python_file import given_by_files
     from tamp.view.wishes import Wishes, fulfil
 
     if arguments.algorithm not in ALGORITHMS:
@@ -74,12 +75,14 @@ def _solve(arguments: Arguments, started: float) -> int:
     wishes = Wishes(html=arguments.html, png=arguments.png, video=arguments.video, view=arguments.view)
     if wishes.any:
         wishes.check()
+    samplers, groundings = given_by_files(samplers)
     *domain, problem_name = arguments.files
     problem = load_problem(
         problem_name,
         domain[0] if domain else None,
         streams=arguments.streams,
         samplers=samplers,
+        groundings=groundings,
         registry=registry(),
         steering=arguments.steering,
     )

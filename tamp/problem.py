@@ -284,8 +284,16 @@ def _without_function(stream: Stream, file: str | None, known: Mapping[str, Any]
         column=place.column if place else None,
         found=stream.name,
         choices=known,
-        remedy=f"Give it one from Python: load_problem(..., functions={{'{stream.name}': f}})",
+        remedy=_remedy(stream.name),
     )
+
+
+def _remedy(stream: str) -> str:
+    verb, _, relation = stream.partition("-")
+    if verb in ("sample", "test") and relation:
+        object_given = f"load_problem(..., groundings={{'{relation}': object}})"
+        return f"Give '{relation}' a grounding: --sampler {relation}=FILE, or from Python: {object_given}"
+    return f"Give it one from Python: load_problem(..., functions={{'{stream}': f}})"
 
 
 def _check_start(loaded: LoadedProblem, context: Context) -> None:

@@ -6,6 +6,7 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from numpy.random import Generator as Random
 
@@ -33,7 +34,13 @@ Judge = Callable[[Pose], Pose | Rejection]
 
 
 def draw(
-    context: Context, relation: str, mixture: Mixture, arguments: tuple[str, ...], judge: Judge, call: Call
+    context: Context,
+    relation: str,
+    mixture: Mixture,
+    arguments: tuple[str, ...],
+    judge: Judge,
+    call: Call,
+    at: Mapping[str, Pose] = MappingProxyType({}),
 ) -> Iterator[Pose | Rejection]:
     """Poses of the body `arguments[0]` that the judge accepts; a try is a batch of every generator at most.
 
@@ -47,9 +54,10 @@ def draw(
         arguments: The relation's.
         judge: What a pose must pass whatever the other bodies do.
         call: Of the stream that draws.
+        at: Where bodies are wanted in the scene, whatever the plan has.
     """
     ledger = Ledger.of(relation, mixture, call.memory)
-    poses: dict[str, Pose] = {name: pose for _, name, pose in call.fluents if name != arguments[0]}
+    poses: dict[str, Pose] = {name: pose for _, name, pose in call.fluents if name != arguments[0]} | dict(at)
     alone = len(mixture.generators) == 1
     sources: list[_Source] = []
     for index, (generator, account) in enumerate(zip(mixture.generators, ledger.accounts, strict=True)):

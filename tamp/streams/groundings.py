@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 from tamp.call import Call
@@ -23,10 +24,11 @@ def sample_relation(
 ) -> Iterator[Pose | Rejection]:
     """Poses that the generator proposes for the relation's first argument, put to rest on whatever is below them.
 
-    The generator sees the scene as it will be at that step; that the body rests there, clear of the fixed bodies, is
-    certified here, everything else by other streams' tests.
+    The generator sees the scene as it will be at that step; a pose among the inputs is that of the body before it. That
+    the body rests there, clear of the fixed bodies, is certified here, everything else by other streams' tests.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
+    at = {name: pose for name, pose in pairwise((body, *others)) if isinstance(name, str) and isinstance(pose, Pose)}
     scene = context.scene
     regions = [place for place in (*scene.surfaces.values(), *scene.cavities.values()) if place.body in scene.fixed]
 
@@ -38,7 +40,7 @@ def sample_relation(
         hit = context.collisions.between(body, pose, {})
         return pose if hit is None else Rejection(f"hits {hit}")
 
-    yield from draw(context, relation, Mixture((relation,), (generator,)), arguments, judge, call)
+    yield from draw(context, relation, Mixture((relation,), (generator,)), arguments, judge, call, at)
 
 
 def test_relation(context: Context, *arguments: Any, classifier: Classifier, call: Call) -> bool | Rejection:

@@ -1,0 +1,193 @@
+"""Relations of one's own: demonstrations in problem files, groundings learned from them or written, the planner."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tamp
+from grounding.cli import BAD_INPUT, DONE, run
+from grounding.collect import Demonstration, collect, read_demonstrations
+from grounding.dataset import read_dataset, write_dataset
+from grounding.registry import load_grounding
+from grounding.train import train
+from grounding.weights import write_weights
+from tamp import cli
+from tamp.streams.python_file import python_grounding
+from tamp.verification.verify import verify
+
+SCENE = """robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
+room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
+bodies:
+  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0]}}
+  tray:
+    {{box: [0.3, 0.2, 0.02], on: table, at: [0.3, 0.0], surfaces: {{tray_top: {{at: [0, 0, 0.01], size: [0.3, 0.2]}}}}}}
+  can: {{cylinder: {{radius: 0.033, height: 0.102}}, on: tray_top, at: [0.05, 0.02]}}
+  jar: {{cylinder: {{radius: 0.03, height: 0.15}}, on: table, at: [-0.3, 0.1]}}
+goal: {goal}
+"""
+
+
+@pytest.fixture
+def kitchen(root: Path) -> Path:
+    return root / "examples/kitchen"
+
+
+def scene(folder: Path, goal: str) -> Path:
+    path = folder / "scene.yaml"
+    path.write_text(SCENE.format(goal=goal))
+    return path
+
+
+def test_goals_say_what_holds(tmp_path: Path) -> None:
+    path = scene(tmp_path, "(and (Stacked can tray_top) (not (stacked jar TABLE)) (on jar table))")
+    first, second = read_demonstrations("stacked", [path])
+    assert (first.arguments, first.holds) == (("can", "tray_top"), True)
+    assert (second.arguments, second.holds) == (("jar", "table"), False)
+    data = collect("stacked", [first, second])
+    assert data.relation == "stacked" and data.holds.tolist() == [True, False]
+    write_dataset(tmp_path / "stacked.npz", data)
+    again = read_dataset(tmp_path / "stacked.npz")
+    assert [example.names for example in again] == [("tray", "can", "table", "jar"), ("table", "jar", "tray", "can")]
+    situation = again[0].situation
+    assert np.allclose(situation.T_world_region, first.scene.world_pose(first.scene.surfaces["tray_top"]).matrix)
+    assert np.allclose(situation.body.matrix, first.scene.bodies["can"].pose.matrix)
+
+
+def test_bodies_of_one_name_and_two_shapes_are_told_apart(tmp_path: Path) -> None:
+    one = next(iter(read_demonstrations("stacked", [scene(tmp_path, "(stacked jar table)")])))
+    text = (tmp_path / "scene.yaml").read_text().replace("height: 0.15", "height: 0.2")
+    (tmp_path / "scene.yaml").write_text(text)
+    other = next(iter(read_demonstrations("stacked", [tmp_path])))
+    data = collect("stacked", [one, other])
+    first, second = (example.situation.body.form.corners[1, 2] for example in data)
+    assert (first, second) == pytest.approx((0.075, 0.1))
+    assert {"jar", "jar#2", "table"} <= {*data.templates} and len(data.templates) == 5
+
+
+def test_what_would_not_stay_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = scene(tmp_path, "(and (stacked can tray_top) (stacked jar table))")
+    path.write_text(path.read_text().replace("at: [-0.3, 0.1]", "at: [-0.3, 0.1], rpy: [90 deg, 0 deg, 0 deg]"))
+    assert run(["collect", "stacked", str(path), "--out", str(tmp_path / "x.npz")]) == DONE
+    said = capsys.readouterr().err
+    assert said == "warning: jar stands on none of its stable faces (1 scene): no plan will put it down so\n"
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ("(on jar table)", "scene.yaml:9: the goal says nothing of 'stacked'"),
+        ("(stacked jar)", "a demonstration names a body, and a surface or container"),
+        ("(stacked jra table)", "scene.yaml:9:16: unknown object 'jra'"),
+        ("(stacked jar can)", "scene.yaml:9: 'can' is no surface or container"),
+        ("(stacked table table)", "'table' is a part of 'table' itself"),
+    ],
+)
+def test_what_is_wrong_with_a_demonstration(
+    goal: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["collect", "stacked", str(scene(tmp_path, goal)), "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+    assert message in capsys.readouterr().err
+
+
+def test_there_must_be_demonstrations(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(tamp.InputError, match="no demonstrations of 'stacked'"):
+        collect("stacked", [])
+    found = next(iter(read_demonstrations("stacked", [scene(tmp_path, "(stacked jar table)")])))
+    with pytest.raises(tamp.InputError, match="'lamp' is no body"):
+        collect("stacked", [Demonstration(found.scene, ("lamp", "table"))])
+    (tmp_path / "empty").mkdir()
+    assert run(["collect", "stacked", str(tmp_path / "empty")]) == BAD_INPUT
+    assert "no .yaml files in this folder" in capsys.readouterr().err
+    assert run(["train", "stacked"]) == BAD_INPUT
+    assert "tamp-learn collect stacked FILES makes its data" in capsys.readouterr().err
+
+
+def test_what_lies_is_learned_from_a_dozen_demonstrations(kitchen: Path, tmp_path: Path) -> None:
+    """The milk stands at the start, and `on` would mostly leave it so; every proposal lays it down."""
+    weights = tmp_path / "lying.safetensors"
+    write_weights(weights, train(collect("lying", read_demonstrations("lying", [kitchen / "lying"])), "transfer"))
+    lying = load_grounding(weights)
+    problem = tamp.load_problem(
+        kitchen / "kitchen.yaml", groundings={"lying": lying, "near": python_grounding(kitchen / "near.py")}
+    )
+    poses = lying.propose(problem.scene, ("milk", "sideboard"), 16, np.random.default_rng(0))
+    assert len(poses) == 16 and all(abs(pose.matrix[2, 2]) < 0.05 for pose in poses)
+
+
+def test_both_from_the_command_line(
+    kitchen: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["collect", "lying", str(kitchen / "lying")]) == DONE
+    assert "data/lying_train.npz written: 14 scenes, {'holds': 12, 'does not hold': 2}" in capsys.readouterr().out
+    assert run(["train", "lying"]) == DONE
+    line = [str(kitchen / "kitchen.pddl"), str(kitchen / "kitchen.yaml"), "--time", "30", "--quiet"]
+    assert cli.run([*line, "--sampler", "lying=weights/lying_transfer.safetensors"]) == cli.BAD_INPUT
+    assert "Give 'near' a grounding: --sampler near=FILE" in capsys.readouterr().err
+    line += ["--sampler", "lying=weights/lying_transfer.safetensors", "--sampler", f"near={kitchen / 'near.py'}"]
+    assert cli.run(line) == cli.SOLVED, capsys.readouterr()
+    assert verify(json.loads(Path("plan.json").read_text())).holds
+
+
+class Watched:
+    """A grounding that keeps where it saw the second body."""
+
+    def __init__(self, path: Path) -> None:
+        self.grounding, self.seen = python_grounding(path), set[tuple[float, ...]]()
+
+    def classify(self, scene: tamp.Scene, arguments: Sequence[str]) -> float:
+        return self.grounding.classify(scene, arguments)  # type: ignore[union-attr]
+
+    def propose(
+        self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: np.random.Generator
+    ) -> list[tamp.Pose]:
+        self.seen.add(scene.bodies[arguments[1]].pose.position)
+        return self.grounding.propose(scene, arguments, count, rng)  # type: ignore[union-attr]
+
+
+def test_a_generator_sees_the_pose_that_the_stream_names(kitchen: Path, tmp_path: Path) -> None:
+    """The mug has to move, and the can to stand near where the mug will be: the generator is shown it there."""
+    text = (kitchen / "kitchen.yaml").read_text().replace("domain: kitchen.pddl\n", "")
+    text = text.replace("on: sideboard, at: [0.2, -0.1]", "on: table, at: [0.0, 0.2]")
+    text = re.sub(r"goal: .*", "goal: (and (on mug sideboard) (near can mug))", text)
+    (tmp_path / "moved.yaml").write_text(text)
+    near = Watched(kitchen / "near.py")
+    problem = tamp.load_problem(
+        tmp_path / "moved.yaml", kitchen / "kitchen.pddl", groundings={"near": near, "lying": near}
+    )
+    solution = tamp.solve(problem, max_time=30.0, seed=0)
+    assert solution.outcome is tamp.Outcome.SOLVED
+    assert any(x < 0.0 for x, _, _ in near.seen)  # on the sideboard; the table is at x > 0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (None, "no such file"),
+        ("grounding = ", "mine.py:1: it cannot be run: SyntaxError"),
+        ("import nothing_there", "it cannot be run: ModuleNotFoundError: No module named 'nothing_there'"),
+        ("x = 1", "it defines no 'grounding'"),
+        ("grounding = 1", "'grounding' has neither propose nor classify"),
+        ("class grounding:\n    def propose(self): ...", "'grounding' is a class, not an object"),
+    ],
+)
+def test_what_is_wrong_with_a_python_file(text: str | None, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(tamp.InputError, match=re.escape(message)):
+        python_grounding(path)
+
+
+def test_only_the_command_line_runs_python_files(kitchen: Path, tmp_path: Path, root: Path) -> None:
+    text = (root / "problems/one_object.yaml").read_text()
+    (tmp_path / "mine.yaml").write_text(f"{text}\nsamplers: {{on: mine.py}}\n")
+    (tmp_path / "mine.py").write_text("raise SystemExit")
+    with pytest.raises(tamp.InputError, match=r"unknown sampler 'mine\.py'"):
+        tamp.load_problem(tmp_path / "mine.yaml", registry=cli.registry())
