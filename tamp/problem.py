@@ -16,10 +16,11 @@ from tamp.errors import InputError
 from tamp.initial import initial_state
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
-from tamp.pddl.structs import Stream, StreamFile, Task
+from tamp.pddl.structs import StreamFile, Task
 from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, maker, mix, parse_choice
 from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation
+from tamp.streams.missing import without_function
 from tamp.streams.registry import SAMPLERS, STREAMS
 from tamp.streams.relations import Classifier, Generator
 from tamp.streams.values import Grasp
@@ -247,7 +248,7 @@ def _bind(
     bound: list[BoundStream] = []
     for stream in declared.streams:
         if stream.name not in known:
-            raise _without_function(stream, declared.file, known)
+            raise without_function(stream, declared.file, known)
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
         bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
@@ -273,27 +274,6 @@ def _refuse_decided(declared: StreamFile) -> None:
 def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
     names = [one.name for one in (*declared.streams, *declared.functions)]
     return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
-
-
-def _without_function(stream: Stream, file: str | None, known: Mapping[str, Any]) -> InputError:
-    place = stream.place
-    return InputError(
-        f"stream '{stream.name}' has no function",
-        file=file,
-        line=place.line if place else None,
-        column=place.column if place else None,
-        found=stream.name,
-        choices=known,
-        remedy=_remedy(stream.name),
-    )
-
-
-def _remedy(stream: str) -> str:
-    verb, _, relation = stream.partition("-")
-    if verb in ("sample", "test") and relation:
-        object_given = f"load_problem(..., groundings={{'{relation}': object}})"
-        return f"Give '{relation}' a grounding: --sampler {relation}=FILE, or from Python: {object_given}"
-    return f"Give it one from Python: load_problem(..., functions={{'{stream}': f}})"
 
 
 def _check_start(loaded: LoadedProblem, context: Context) -> None:
