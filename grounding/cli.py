@@ -9,7 +9,9 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
+from grounding.dataset import FORMAT as DATA
 from grounding.dataset import Dataset, read_dataset, write_dataset
+from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.data import check_writable
 from tamp.errors import InputError
@@ -51,7 +53,7 @@ def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
-    check_writable(out)
+    _check_out(out, DATA)
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, chosen.meshes)
     data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
@@ -62,7 +64,7 @@ def _explore(chosen: Explore) -> None:
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
-    check_writable(out)
+    _check_out(out, DATA)
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, chosen.meshes)
     data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
@@ -73,7 +75,7 @@ def _collect(chosen: Collect) -> None:
     from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
-    check_writable(out)
+    _check_out(out, DATA)
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
     for text in unsteady(data):
         print(f"warning: {text}", file=sys.stderr)
@@ -83,7 +85,7 @@ def _collect(chosen: Collect) -> None:
 
 def _encoder(chosen: Encoder) -> None:
     out = chosen.out or _encoder_file(chosen.relation)
-    check_writable(out)
+    _check_out(out, WEIGHTS)
     data = _data(chosen.data, chosen.relation, "train")
     try:
         from grounding.paper.encoders import Args, train_encoder
@@ -124,7 +126,7 @@ def _train(chosen: Train) -> None:
         commit=_commit(),
     )
     check(chosen.relation, chosen.model, args)
-    check_writable(out)
+    _check_out(out, WEIGHTS)
     data = _data(chosen.data, chosen.relation, "train")
     try:
         weights = train(data, chosen.model, args, _show)
@@ -164,6 +166,23 @@ def _data(path: Path | None, relation: str, split: str) -> Dataset:
     if data.relation != relation:
         raise InputError(f"the data are about '{data.relation}', not '{relation}'", file=path)
     return data
+
+
+def _check_out(out: Path, form: str) -> None:
+    """Refuse an output that cannot be written, or whose card would take the place of something else.
+
+    Raises:
+        InputError: As for `check_writable`, or the .json beside it is no card of this form.
+    """
+    check_writable(out)
+    card = out.with_suffix(".json")
+    try:
+        found = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {"format": form}
+    except (OSError, ValueError):
+        return
+    if not isinstance(found, dict) or found.get("format") != form:
+        what = f"the card of {out.name} would overwrite it"
+        raise InputError(what, file=card, remedy="Choose another name with --out")
 
 
 def _encoder_file(relation: str) -> Path:

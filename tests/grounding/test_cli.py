@@ -122,6 +122,10 @@ def test_an_interrupted_training_goes_on(
         ("train on --out weights/on.bin", "the file must end in .safetensors"),
         ("train on --data data/none.npz", "data/none.npz: no such data set"),
         ("train inside --data data/on_train.npz", "the data are about 'on', not 'inside'"),
+        (
+            "train on --out data/on_train.safetensors",
+            "the card of on_train.safetensors would overwrite it",
+        ),
         ("train on --out data/on_train.npz/x.safetensors", "the output cannot be written"),
         ("generate on --split tset", "Did you mean 'test'?"),
         ("generate on --count 0", "--count must be positive"),
