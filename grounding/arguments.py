@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -30,7 +31,10 @@ class Generate:
     out: Path | None = None
     """The file; by default data/RELATION_SPLIT.npz."""
     meshes: Path | None = None
-    """A folder with one mesh a subfolder (as the YCB set comes), to join the objects."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
+    For training and test take different ones."""
+    mesh_scale: float = 1.0
+    """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
     """Processes; by default one a core."""
 
@@ -50,7 +54,10 @@ class Explore:
     out: Path | None = None
     """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION --data FILE."""
     meshes: Path | None = None
-    """A folder with one mesh a subfolder (as the YCB set comes), to join the objects."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
+    For training and test take different ones."""
+    mesh_scale: float = 1.0
+    """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
     """Processes; by default one a core."""
 
@@ -169,6 +176,8 @@ def _check(chosen: Arguments) -> None:
         number = vars(chosen).get(name)
         if number is not None and number < 1:
             raise InputError(f"--{name} must be positive, not {number}")
+    if isinstance(chosen, Generate | Explore) and not 0.0 < chosen.mesh_scale < math.inf:
+        raise InputError(f"--mesh-scale must be positive, not {chosen.mesh_scale}")
     if not isinstance(chosen, Collect) and not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
     for name, suffix in (

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.dataset import Dataset, write_dataset
+from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
 from grounding.scenes import OTHERS, Made
 from grounding.supports import support_templates
@@ -55,8 +56,8 @@ class Job(Protocol):
         ...
 
     @property
-    def folder(self) -> Path | None:
-        """Of one's own meshes, one a subfolder."""
+    def folder(self) -> MeshFolder | None:
+        """Of one's own meshes."""
         ...
 
     @property

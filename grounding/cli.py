@@ -11,6 +11,7 @@ from pathlib import Path
 from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
 from grounding.dataset import FORMAT as DATA
 from grounding.dataset import Dataset, read_dataset, write_dataset
+from grounding.mesh_folder import MeshFolder, read_folder
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.data import check_writable
@@ -54,7 +55,7 @@ def _generate(chosen: Generate) -> None:
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
     _check_out(out, DATA)
-    job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, chosen.meshes)
+    job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
     data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
@@ -65,7 +66,7 @@ def _explore(chosen: Explore) -> None:
 
     out = chosen.out or data_file(chosen.relation, "explored")
     _check_out(out, DATA)
-    job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, chosen.meshes)
+    job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
     data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}")
@@ -158,6 +159,16 @@ def _evaluate(chosen: Evaluate) -> None:
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
     print(f"one pose  {found.milliseconds:.2f} ms")
     print(json.dumps(asdict(found)))
+
+
+def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
+    """The folder of one's own meshes, with what there is to say of them."""
+    if chosen.meshes is None:
+        return None
+    folder = MeshFolder(chosen.meshes, chosen.mesh_scale)
+    for text in read_folder(folder).warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    return folder
 
 
 def _data(path: Path | None, relation: str, split: str) -> Dataset:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator as Random
 
+from grounding.mesh_folder import MeshFolder
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import afloat, on_ground, random_rest, random_turn
 from grounding.scenes import Drawn, Made, Scenes, free, resting
@@ -44,10 +44,10 @@ class Maker:
         relation: "on" or "inside".
         split: "train" or "test".
         drops: The engine.
-        folder: Of one's own meshes, as for `object_templates`.
+        folder: Of one's own meshes.
     """
 
-    def __init__(self, relation: str, split: str, drops: Drops, folder: Path | None = None) -> None:
+    def __init__(self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None) -> None:
         self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
 
     def make(self, kind: str, rng: Random) -> Made:

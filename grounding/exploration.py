@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from grounding.chunks import RELATIONS, Progress, make_dataset
 from grounding.dataset import Dataset
+from grounding.mesh_folder import MeshFolder
 from grounding.model import Model
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import random_turn
@@ -64,14 +65,14 @@ class Exploration:
         count: Scenes, half of them positive.
         seed: Of all randomness.
         weights: Of a grounding that draws half of the poses; None for random ones alone.
-        folder: Of one's own meshes, one a subfolder.
+        folder: Of one's own meshes.
     """
 
     relation: str
     count: int
     seed: int = 0
     weights: Path | None = None
-    folder: Path | None = None
+    folder: MeshFolder | None = None
 
     @property
     def split(self) -> str:
@@ -87,7 +88,7 @@ class Exploration:
     def key(self) -> str:
         """All but the count; of the weights what they are, not where."""
         digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
-        return json.dumps(["explored", self.relation, self.seed, str(self.folder), digest])
+        return json.dumps(["explored", self.relation, self.seed, self.folder and self.folder.key, digest])
 
     def chunk(self, number: int, size: int) -> list[Made]:
         """Scenes of chunk `number`, `size` of them."""
@@ -229,6 +230,6 @@ def moved(pose: Array, rng: Random) -> Array:
 
 
 @lru_cache(maxsize=2)
-def _explorer(relation: str, weights: Path | None, folder: Path | None) -> Explorer:
+def _explorer(relation: str, weights: Path | None, folder: MeshFolder | None) -> Explorer:
     model = None if weights is None else load_model(weights)
     return Explorer(Scenes(relation, "train", folder), Drops(), model)

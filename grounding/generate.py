@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from grounding.chunks import Progress, make_dataset
 from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE, Maker
+from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS
 from grounding.scenes import Made
 from tamp.simulation.drop import Drops
@@ -29,14 +30,14 @@ class Job:
         split: "train" or "test"; they share no object and no support.
         count: Scenes, half of them positive.
         seed: Of all randomness.
-        folder: Of one's own meshes, one a subfolder.
+        folder: Of one's own meshes.
     """
 
     relation: str
     split: str
     count: int
     seed: int = 0
-    folder: Path | None = None
+    folder: MeshFolder | None = None
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -46,7 +47,7 @@ class Job:
     @property
     def key(self) -> str:
         """All but the count."""
-        return json.dumps([self.relation, self.split, self.seed, str(self.folder)])
+        return json.dumps([self.relation, self.split, self.seed, self.folder and self.folder.key])
 
     def chunk(self, number: int, size: int) -> list[Made]:
         """Scenes of chunk `number`, `size` of them."""
@@ -82,5 +83,5 @@ def kinds_of(relation: str, count: int) -> list[str]:
 
 
 @lru_cache(maxsize=2)
-def _maker(relation: str, split: str, folder: Path | None) -> Maker:
+def _maker(relation: str, split: str, folder: MeshFolder | None) -> Maker:
     return Maker(relation, split, Drops(), folder)

@@ -10,10 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from grounding.form import Form
 from grounding.household import SHAPES, YCB
-from tamp.errors import InputError
-from tamp.world.meshes import SUFFIXES, find_mesh, load_mesh
+from grounding.mesh_folder import MeshFolder, read_folder, unusable
+from tamp.world.meshes import find_mesh, load_mesh
 from tamp.world.scene import Part
 
 SPLITS = ("train", "test")
@@ -27,19 +26,18 @@ MESHES: Mapping[str, Mapping[str, float]] = {
 }
 """Meshes of pybullet_data and the factors that make them a hand's size."""
 _SEED = 20261125
-_LARGEST = 0.28
 
 
 @lru_cache(maxsize=4)
-def object_templates(split: str, folder: Path | None = None) -> Mapping[str, tuple[Part, ...]]:
+def object_templates(split: str, folder: MeshFolder | None = None) -> Mapping[str, tuple[Part, ...]]:
     """The objects of a split by name, parts in metres; deterministic.
 
     Args:
         split: "train" or "test".
-        folder: With one mesh a subfolder, as the YCB set comes: those objects join the household ones.
+        folder: Of one's own meshes: those objects join the household ones.
 
     Raises:
-        InputError: The folder has no meshes, or one of them is no usable mesh.
+        InputError: As for `read_folder`.
     """
     rng = np.random.default_rng([_SEED, SPLITS.index(split)])
     found: dict[str, tuple[Part, ...]] = {}
@@ -54,31 +52,5 @@ def object_templates(split: str, folder: Path | None = None) -> Mapping[str, tup
         mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
         found[Path(path).stem] = mesh.parts
     if folder is not None:
-        found |= folder_templates(folder)
-    return {name: parts for name, parts in found.items() if _usable(parts)}
-
-
-def folder_templates(folder: Path) -> dict[str, tuple[Part, ...]]:
-    """One object for each subfolder of `folder`, named after it: its first mesh (OBJ, STL, URDF), at any depth.
-
-    Raises:
-        InputError: There are none, or one of them is no usable mesh.
-    """
-    found: dict[str, tuple[Part, ...]] = {}
-    for place in sorted(path for path in folder.iterdir() if path.is_dir()) if folder.is_dir() else []:
-        meshes = sorted(file for file in place.rglob("*") if file.suffix.lower() in SUFFIXES)
-        if meshes:
-            try:
-                found[place.name] = load_mesh(meshes[0]).parts
-            except InputError as error:
-                raise error.at(meshes[0]) from None
-    if not found:
-        raise InputError("no folders with a mesh each", file=folder, remedy=f"One of {', '.join(SUFFIXES)} in each")
-    return found
-
-
-def _usable(parts: tuple[Part, ...]) -> bool:
-    """Whether it is of a size that a hand moves, and rests on some face."""
-    form = Form(parts)
-    size = float(np.ptp(form.corners, axis=0).max())
-    return 0.02 < size < _LARGEST and bool(form.faces)
+        found |= read_folder(folder).templates
+    return {name: parts for name, parts in found.items() if unusable(parts) is None}

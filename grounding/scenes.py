@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator as Random
 
 from grounding.form import Form
+from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
 from grounding.oracles import REACH, ItemOf
 from grounding.random_poses import afloat, on_ground, pick, random_rest, random_scale, solids, upright
@@ -98,10 +98,10 @@ class Scenes:
     Args:
         relation: "on" or "inside".
         split: "train" or "test".
-        folder: Of one's own meshes, as for `object_templates`.
+        folder: Of one's own meshes.
     """
 
-    def __init__(self, relation: str, split: str, folder: Path | None = None) -> None:
+    def __init__(self, relation: str, split: str, folder: MeshFolder | None = None) -> None:
         self.split, self.items = split, ItemOf()
         self._objects = {name: Form(parts) for name, parts in object_templates(split, folder).items()}
         self._supports = dict(support_templates(relation, split))

@@ -14,7 +14,7 @@ from tamp.world.pose import Array
 
 LARGEST = 5.0
 SMALLEST = 0.001
-SUFFIXES = (".obj", ".stl")
+SUFFIXES = (".obj", ".stl", ".ply")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class MeshSurface:
 
 
 def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
-    """Read an OBJ or STL file. Imports trimesh, which takes half a second.
+    """Read an OBJ, STL or PLY file. Imports trimesh, which takes half a second.
 
     Raises:
         InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of units.
@@ -44,14 +44,14 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
 
     name = path.name
     if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"'{name}' is neither OBJ, STL nor URDF")
+        raise InputError(f"'{name}' is neither OBJ, STL, PLY nor URDF")
     try:
         mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
         vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
     except Exception as error:  # trimesh raises whatever its readers stumble on
         known = {ImportError: "it is not text or binary of its format", IndexError: "a face names a missing corner"}
         why = next((words for kind, words in known.items() if isinstance(error, kind)), str(error))
-        raise InputError(f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ or STL") from None
+        raise InputError(f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY") from None
     if not len(vertices) or not len(faces):
         raise InputError(f"the mesh '{name}' is empty: it holds no triangles")
     if faces.min() < 0 or faces.max() >= len(vertices):

@@ -1,4 +1,4 @@
-"""Meshes from OBJ, STL and one-link URDF files, as convex pieces."""
+"""Meshes from OBJ, STL, PLY and one-link URDF files, as convex pieces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tamp.world.scene import Part
 from tamp.world.urdf_link import read_link
 
 Scale = tuple[float, float, float]
-SUFFIXES = (".obj", ".stl", ".urdf")
+SUFFIXES = (".obj", ".stl", ".ply", ".urdf")
 _PYBULLET = "pybullet_data"
 
 
@@ -75,7 +75,7 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
     """A mesh file as convex parts in the file's frame.
 
     Args:
-        path: An OBJ, STL or one-link URDF file.
+        path: An OBJ, STL, PLY or one-link URDF file.
         scale: Factors for the file's x, y, z that make it metres.
 
     Raises:

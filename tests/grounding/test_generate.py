@@ -11,7 +11,6 @@ from grounding import chunks as module
 from grounding.dataset import Dataset, read_dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate, kinds_of
-from grounding.objects import folder_templates
 from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
 from grounding.separation import Obstacles, separations
 from tamp.errors import InputError
@@ -74,11 +73,6 @@ def test_a_damaged_data_set_is_refused(data: Dataset, tmp_path: Path) -> None:
         read_dataset(path)
     with pytest.raises(InputError, match="no such data set"):
         read_dataset(tmp_path / "none.npz")
-
-
-def test_a_folder_without_meshes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no folders with a mesh"):
-        folder_templates(tmp_path)
 
 
 def test_separations_never_promise_too_much(data: Dataset) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial import ConvexHull
 
 from tamp.data import cache_folder, shipped
@@ -227,6 +228,13 @@ def test_stl_in_both_ways(tmp_path: Path) -> None:
         assert ConvexHull(hulls(load_mesh(tmp_path / name))[0]).volume == pytest.approx(0.001, rel=1e-5)
 
 
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+def test_ply_in_both_ways(tmp_path: Path, encoding: str) -> None:
+    mesh = trimesh.Trimesh(CUBE, CUBE_FACES, process=False)
+    mesh.export(tmp_path / "cube.ply", encoding=encoding)
+    assert ConvexHull(hulls(load_mesh(tmp_path / "cube.ply"))[0]).volume == pytest.approx(0.001, rel=1e-5)
+
+
 @pytest.mark.parametrize(
     ("vertices", "faces", "message"),
     [
@@ -249,7 +257,7 @@ def test_what_is_no_solid_is_refused(tmp_path: Path, vertices: object, faces: ob
     assert not cache_folder().exists()
 
 
-@pytest.mark.parametrize("name", ["bad.obj", "bad.stl", "bad.urdf"])
+@pytest.mark.parametrize("name", ["bad.obj", "bad.stl", "bad.ply", "bad.urdf"])
 @pytest.mark.parametrize("content", [b"", b"\x00\x01\x02", b"<not", b"hello there\n" * 20])
 def test_files_that_are_no_mesh_are_refused(tmp_path: Path, name: str, content: bytes) -> None:
     (tmp_path / name).write_bytes(content)
