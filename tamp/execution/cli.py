@@ -20,7 +20,9 @@ def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     given = _parser().parse_args(arguments)
     from tamp.execution.command import Options, carry_out  # after --help
 
-    options = Options(given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem)
+    options = Options(
+        given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, tuple(given.sampler)
+    )
     try:
         done = carry_out(given.plan, options, registry())
     except InputError as error:
@@ -67,6 +69,13 @@ def _parser() -> argparse.ArgumentParser:
         "--seed", type=int, default=0, metavar="NUMBER", help="of the disturbance and of planning anew (0)"
     )
     parser.add_argument("--time", type=float, default=30.0, metavar="SECONDS", help="for each new plan (30)")
+    parser.add_argument(
+        "--sampler",
+        action="append",
+        default=[],
+        metavar="RELATION=NAME",
+        help="for planning anew, over the plan's own: as for tamp-solve (repeatable)",
+    )
     parser.add_argument("--problem", type=Path, metavar="FILE", help="the problem, instead of the one the plan names")
     parser.add_argument("--json", action="store_true", help="print one JSON document instead of text")
     parser.add_argument("--quiet", action="store_true", help="print nothing: the exit status says it")

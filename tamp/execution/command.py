@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from tamp.arguments import sampler_choices
 from tamp.errors import InputError
 from tamp.execution.disturbance import DISTURBANCES
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.goal import classifiers_of
 from tamp.execution.grasps import GRASPS
-from tamp.execution.replan import Replanner
+from tamp.execution.replan import Replanner, is_given
 from tamp.execution.report import Execution
-from tamp.stored import open_plan
+from tamp.stored import Stored, open_plan
 from tamp.streams.choice import Registry
+from tamp.streams.python_file import given_by_files
+from tamp.streams.registry import SAMPLERS
 
 
 @dataclass(frozen=True)
@@ -26,6 +30,7 @@ class Options:
     seed: int = 0
     time: float = 30.0
     problem: Path | None = None
+    sampler: tuple[str, ...] = ()
 
 
 def check(options: Options) -> None:
@@ -52,15 +57,27 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         registry: The learned groundings, for their opinion of the goal and for planning anew.
 
     Raises:
-        InputError: The plan file is malformed, of another version, or what it was made from has changed.
+        InputError: The plan file is malformed, of another version, or what it was made from has changed; a sampler
+            that it needs for planning anew is not to be had.
     """
     check(options)
+    names, objects = given_by_files(sampler_choices(options.sampler))
     stored = open_plan(file, options.problem)
+    if options.replan:
+        _check_samplers(stored, names)
     circumstances = Circumstances(
         grasp=options.grasp,
-        replanner=Replanner(stored, registry, options.time, options.seed) if options.replan else None,
+        replanner=Replanner(stored, registry, options.time, options.seed, names, objects) if options.replan else None,
         disturbance=options.disturb,
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
     )
     return execute(stored, circumstances)
+
+
+def _check_samplers(stored: Stored, named: Mapping[str, str]) -> None:
+    """An object in Python that served a relation of the user's own is not in the plan file."""
+    for relation, text in stored.document.get("options", {}).get("samplers", {}).items():
+        if is_given(text) and relation not in named and relation not in SAMPLERS:
+            what = f"to plan anew, '{relation}' needs the object in Python that the plan was made with"
+            raise InputError(what, remedy=f"Name its file: --sampler {relation}=FILE.py")

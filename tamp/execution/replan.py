@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from tamp.api import solve
 from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
-from tamp.execution.expected import Expected
+from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.truth import Truth
+from tamp.pddl.structs import Atom, Formula
 from tamp.plan_file import plan_text
 from tamp.problem import Problem, load_problem
 from tamp.stored import Stored
-from tamp.streams.choice import Registry
+from tamp.streams.choice import GIVEN, Grounding, Registry
 from tamp.streams.values import Grasp
 from tamp.verification.files import source_file
+from tamp.verification.formulas import flat
 from tamp.verification.plan_file import PlanFile, TimedAction, read_plan
 from tamp.verification.start import apart
 from tamp.world.pose import Array, Pose
@@ -45,12 +48,24 @@ class Replanner:
         registry: Further samplers, as `load_problem` takes them.
         max_time: Seconds for each plan.
         seed: Of the first new plan; the next ones count on.
+        samplers: By relation, over the plan's.
+        groundings: Objects, as `load_problem` takes them.
     """
 
-    def __init__(self, stored: Stored, registry: Registry | None = None, max_time: float = 30.0, seed: int = 0) -> None:
+    def __init__(
+        self,
+        stored: Stored,
+        registry: Registry | None = None,
+        max_time: float = 30.0,
+        seed: int = 0,
+        samplers: Mapping[str, str] = MappingProxyType({}),
+        groundings: Mapping[str, Grounding] = MappingProxyType({}),
+    ) -> None:
         self._stored, self._registry = stored, registry or {}
         self._max_time, self._seed = max_time, seed
         self._options = stored.document.get("options", {})
+        own = {name: text for name, text in self._options.get("samplers", {}).items() if not is_given(text)}
+        self._samplers, self._groundings = {**own, **samplers}, groundings
 
     def grasp(self, body: str, T_tool_body: Array, opening: float) -> Grasp:
         """What is in the hand, as the planner has it."""
@@ -101,7 +116,8 @@ class Replanner:
             self._stored.loaded.path,
             source_file(plan, "domain", None),
             streams=None if streams is None else streams.path,
-            samplers=self._options.get("samplers", {}),
+            samplers=self._samplers,
+            groundings=self._groundings,
             registry=self._registry,
             scene=truth.scene,
             holding=grasp,
@@ -121,6 +137,9 @@ class Replanner:
             return False
         there = {name.lower() for name in truth.scene.bodies}
         if any(fact[1] in there for fact in expected.facts - truth.facts):
+            return False
+        later = {segment.attach.body.lower() for action in rest for segment in action.segments if segment.attach}
+        if {one.body.lower() for one in found} & _placed_so(problem.stream_task.task.goal) - later:
             return False
         context = problem.context
         poses = {name: body.pose for name, body in truth.scene.bodies.items() if body.movable}
@@ -155,6 +174,17 @@ class Replanner:
         return True
 
 
+def _placed_so(goal: Formula) -> set[str]:
+    """Bodies, in PDDL's names, of which the goal asks what only the plan's own poses are known to give."""
+    parts = [part for part in flat(goal) if isinstance(part, Atom) and part.predicate not in RELATIONS]
+    return {term for part in parts for term in part.terms}
+
+
 def _same(first: Array, second: Array) -> bool:
     moved, turned = apart(first, second)
     return moved <= SAME[0] and turned <= SAME[1]
+
+
+def is_given(sampler: str) -> bool:
+    """Whether a plan's sampler was an object, which no file keeps."""
+    return sampler.partition(":")[0] == GIVEN

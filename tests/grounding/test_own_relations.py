@@ -135,6 +135,36 @@ def test_both_from_the_command_line(
     assert verify(json.loads(Path("plan.json").read_text())).holds
 
 
+def executed(line: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    """What tamp-execute returns and prints."""
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as ended:
+        cli.execute(line.split())
+    said = capsys.readouterr()
+    return int(ended.value.code or 0), said.out + said.err
+
+
+def test_execution_and_planning_anew(
+    kitchen: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A relation of one's own holds where the plan put its bodies, and no longer when they are pushed away."""
+    monkeypatch.chdir(tmp_path)
+    for line in (f"collect lying {kitchen / 'lying'}", "train lying"):
+        assert run(line.split()) == DONE
+    samplers = f"--sampler lying=weights/lying_transfer.safetensors --sampler near={kitchen / 'near.py'}"
+    solve = f"{kitchen / 'kitchen.pddl'} {kitchen / 'kitchen.yaml'} --time 30 --quiet {samplers}"
+    assert cli.run(solve.split()) == cli.SOLVED
+    code, said = executed("plan.json --grasp constraint", capsys)
+    assert code == 0 and "(lying milk sideboard) holds" in said and "(near can mug) holds" in said, said
+    code, said = executed("plan.json --grasp constraint --disturb object-moved", capsys)
+    assert code == 1 and "(lying milk sideboard) does not hold: milk is not where the plan put it" in said, said
+    code, said = executed("plan.json --replan", capsys)
+    assert code == 2 and "'near' needs the object in Python" in said and "--sampler near=FILE.py" in said
+    again = f"plan.json --grasp constraint --disturb object-moved --replan --sampler near={kitchen / 'near.py'}"
+    code, said = executed(again, capsys)
+    assert code == 0 and "Goal reached" in said, said
+
+
 class Watched:
     """A grounding that keeps where it saw the second body."""
 
