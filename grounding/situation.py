@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from grounding.form import Form, form_of
+from tamp.errors import InputError
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array
 from tamp.world.scene import Body, Cavity, Scene, Surface
@@ -79,9 +80,13 @@ def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
     """What a scene shows about (body, surface or cavity), the planner's order of a relation's arguments.
 
     Raises:
-        KeyError: No such body or region.
+        InputError: They are something else.
     """
-    body, place = scene.bodies[arguments[0]], scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
+    body = scene.bodies.get(arguments[0])
+    place = scene.surfaces.get(arguments[1]) or scene.cavities.get(arguments[1])
+    if body is None or place is None:
+        said = ", ".join(arguments)
+        raise InputError(f"a learned grounding takes a body, and a surface or container: not ({said})")
     support = scene.bodies[place.body]
     placed = {name: Placed(form_of(item.parts), item.pose.matrix) for name, item in scene.bodies.items()}
     others = [item for name, item in placed.items() if name not in (body.name, support.name)]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import tamp
-from grounding.registry import GROUNDINGS, shipped_weights
+from grounding.registry import GROUNDINGS, load_grounding, shipped_weights
 from grounding.weights import Weights, read_weights, write_weights
 from tamp import cli
 from tamp.bench.case import relations
@@ -54,6 +55,15 @@ def test_a_problem_names_files_from_where_it_is(weights: Path, root: Path, tmp_p
 def test_what_is_wrong_is_said(choice: str, message: str, weights: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.run(["one_object", "--sampler", choice.format(weights)]) == cli.BAD_INPUT
     assert message in capsys.readouterr().err
+
+
+def test_a_learned_grounding_says_what_it_takes(weights: Path) -> None:
+    scene = tamp.load_problem("two_objects").scene
+    grounding, bodies = load_grounding(weights), list(scene.movable)
+    for arguments in (bodies[:2], ["nobody", "table"]):
+        with pytest.raises(tamp.InputError, match=f"a surface or container: not .{', '.join(arguments)}.") as raised:
+            grounding.propose(scene, arguments, 1, np.random.default_rng(0))
+        assert "takes a body" in str(raised.value)
 
 
 def test_benchmarks_take_files(weights: Path) -> None:
