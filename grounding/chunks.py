@@ -70,8 +70,11 @@ class Job(Protocol):
         """What must be the same for the chunks of an interrupted run to be used, the number of scenes aside."""
         ...
 
-    def chunk(self, number: int, size: int) -> Sequence[Made]:
-        """The scenes of one chunk, which depend on nothing but the job, the number and the size."""
+    def chunk(self, number: int, start: int, size: int) -> Sequence[Made]:
+        """`size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
+
+        They depend on nothing else but the job, and not on the size: it only says after how many to stop.
+        """
         ...
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
@@ -102,17 +105,23 @@ def make_dataset(
     parts = out.with_name(f".{out.stem}.parts")
     _claim(parts, job.key)
     chunks = range((job.count + CHUNK - 1) // CHUNK)
-    waiting = [number for number in chunks if not (parts / f"{number}.npz").is_file()]
+    files = {number: parts / f"{number}_{_size(job, number)}.npz" for number in chunks}
+    waiting = [number for number in chunks if not files[number].is_file()]
     done = len(chunks) - len(waiting)
     progress(min(done * CHUNK, job.count), job.count)
     for number, content in _results(job, waiting, workers):
-        write_whole(parts / f"{number}.npz", content)
+        write_whole(files[number], content)
         done += 1
         progress(min(done * CHUNK, job.count), job.count)
-    data = _merged(job, parts, len(chunks))
+    data = _merged(job, [*files.values()])
     write_dataset(out, data)
     shutil.rmtree(parts)
     return data
+
+
+def _size(job: Job, number: int) -> int:
+    """Scenes of a chunk; the last one may be smaller."""
+    return min(CHUNK, job.count - number * CHUNK)
 
 
 def _claim(parts: Path, name: str) -> None:
@@ -125,22 +134,22 @@ def _claim(parts: Path, name: str) -> None:
 def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
     count = min(workers or os.cpu_count() or 1, len(waiting))
     if count <= 1:
-        yield from ((number, _packed(job, number, CHUNK)) for number in waiting)
+        yield from ((number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting)
         return
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
 
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(_packed, job, number, CHUNK): number for number in waiting}
+        futures = {pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number for number in waiting}
         for future in as_completed(futures):
             yield futures[future], future.result()
 
 
-def _packed(job: Job, number: int, size: int) -> bytes:
+def _packed(job: Job, number: int, start: int, size: int) -> bytes:
     """The scenes of one chunk, as the bytes of an npz."""
     tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     names = {name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])}
-    arrays: dict[str, Any] = _arrays(job.chunk(number, size), names, job.kinds)
+    arrays: dict[str, Any] = _arrays(job.chunk(number, start, size), names, job.kinds)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()
@@ -169,12 +178,12 @@ def _arrays(made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...])
     return arrays
 
 
-def _merged(job: Job, parts: Path, chunks: int) -> Dataset:
+def _merged(job: Job, files: Sequence[Path]) -> Dataset:
     loaded = []
-    for number in range(chunks):
-        with np.load(parts / f"{number}.npz", allow_pickle=False) as archive:
+    for file in files:
+        with np.load(file, allow_pickle=False) as archive:
             loaded.append({name: archive[name] for name in archive.files})
-    arrays = {name: np.concatenate([one[name] for one in loaded])[: job.count] for name in loaded[0]}
+    arrays = {name: np.concatenate([one[name] for one in loaded]) for name in loaded[0]}
     supports = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     objects = object_templates(job.split, job.folder)
     card = {

@@ -90,8 +90,8 @@ class Exploration:
         digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
         return json.dumps(["explored", self.relation, self.seed, self.folder and self.folder.key, digest])
 
-    def chunk(self, number: int, size: int) -> list[Made]:
-        """Scenes of chunk `number`, `size` of them."""
+    def chunk(self, number: int, start: int, size: int) -> list[Made]:
+        """The first `size` scenes of chunk `number`."""
         explorer = _explorer(self.relation, self.weights, self.folder)
         rng = np.random.default_rng([self.seed, RELATIONS.index(self.relation), number, len(KINDS)])
         return [explorer.make(row % 2 == 0, rng) for row in range(size)]

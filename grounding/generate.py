@@ -49,10 +49,10 @@ class Job:
         """All but the count."""
         return json.dumps([self.relation, self.split, self.seed, self.folder and self.folder.key])
 
-    def chunk(self, number: int, size: int) -> list[Made]:
-        """Scenes of chunk `number`, `size` of them."""
+    def chunk(self, number: int, start: int, size: int) -> list[Made]:
+        """The first `size` scenes of chunk `number`."""
         maker = _maker(self.relation, self.split, self.folder)
-        kinds = kinds_of(self.relation, (number + 1) * size)[number * size :]
+        kinds = kinds_of(self.relation, start + size)[start:]
         rng = np.random.default_rng([self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number])
         return [maker.make(kind, rng) for kind in kinds]
 

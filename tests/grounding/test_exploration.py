@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -23,14 +22,6 @@ from grounding.weights import write_weights
 from tamp.errors import InputError
 from tamp.simulation.drop import Drops
 from tamp.world.pose import Array
-
-
-@pytest.fixture(scope="module", autouse=True)
-def small_chunks() -> Iterator[None]:
-    """A chunk is made whole, whatever the count: small ones for small data sets."""
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(chunks, "CHUNK", 4)
-        yield
 
 
 @pytest.fixture(scope="module", params=["on", "inside"])
@@ -135,3 +126,9 @@ def test_from_the_command_line(
     assert run(["explore", "on", "--model", "none.safetensors"]) == BAD_INPUT
     assert "none.safetensors: no such weight file" in capsys.readouterr().err
     assert run(["explore", "on", "--out", "weights/on.safetensors"]) == BAD_INPUT
+
+
+def test_fewer_scenes_are_the_first_of_more(tmp_path: Path) -> None:
+    """What a chunk begins with does not depend on how many are wanted."""
+    few, more = (explore(Exploration("on", count, seed=5), tmp_path / f"{count}.npz", workers=1) for count in (2, 5))
+    assert all(np.array_equal(few.arrays[name], more.arrays[name][:2]) for name in few.arrays)

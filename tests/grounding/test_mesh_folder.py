@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import trimesh
 
-from grounding import chunks
 from grounding.cli import BAD_INPUT, DONE, run
 from grounding.generate import Job, generate
 from grounding.mesh_folder import MeshFolder, read_folder
@@ -62,8 +61,7 @@ def test_a_cloud_of_points_beside_the_mesh_is_passed_over(tmp_path: Path) -> Non
         read_folder(MeshFolder(tmp_path / "mug"))
 
 
-def test_data_are_made_with_it(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(chunks, "CHUNK", 4)
+def test_data_are_made_with_it(folder: Path, tmp_path: Path) -> None:
     own = MeshFolder(folder)
     data = generate(Job("on", "train", 4, folder=own), tmp_path / "own.npz", workers=1)
     assert {"003_cracker_box", "ring"} <= {*data.card["objects"]}
@@ -88,10 +86,7 @@ def test_a_mesh_that_is_not_watertight_is_repaired_and_said(folder: Path, capsys
     assert "open.stl" in warning and "is not watertight (4 open edges): they were closed" in warning
 
 
-def test_millimetres_are_seen_and_mended_by_an_option(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(chunks, "CHUNK", 2)
+def test_millimetres_are_seen_and_mended_by_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     put(tmp_path, "mm/box/box.stl", box((60.0, 80.0, 100.0)))
     line = ["generate", "on", "--count", "2", "--workers", "1", "--meshes", str(tmp_path / "mm")]
     line += ["--out", str(tmp_path / "x.npz")]
