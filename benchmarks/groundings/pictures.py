@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.groundings.case import FAILING
+from benchmarks.groundings.case import GENERATORS
 from benchmarks.groundings.measure import BATCHES
 from benchmarks.groundings.summary import JUDGES, Share, failures, feasible, grouped, share
+from grounding.registry import VARIANTS
 from tamp.bench.picture import COLOURS, STYLES
 from tamp.errors import InputError
 
@@ -51,6 +52,7 @@ def draw(figure: str, lines: Sequence[Line], folder: Path) -> Path:
     relations = list(dict.fromkeys(relation for relation, _ in grouped(lines)))
     sheet = Figure(layout="constrained")
     _DRAWN[figure](sheet, lines, relations)
+    sheet.suptitle(_note(lines), fontsize=9)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{figure}_groundings.png"
     sheet.savefig(path, dpi=100)
@@ -69,9 +71,7 @@ def _accuracy(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
             colours = [_style(model)["color"] for model in models]
             axes.bar(places, [one.mean for one in found], 0.38, color=colours, alpha=alpha)
             _errors(axes, places, found)
-        axes.set_xticks(
-            range(len(models)), [f"{model}\n{_scenes(_whole(groups[relation, model]))}" for model in models]
-        )
+        axes.set_xticks(range(len(models)), models)
         axes.tick_params(axis="x", labelsize=8)
         axes.set_ylim(0.5, 1.01)
         axes.set_ylabel("accuracy")
@@ -102,6 +102,7 @@ def _curves(axes: Any, lines: Sequence[Line], relation: str, judge: str) -> None
         axes.plot(places, [one.mean for one in found], label=model, marker=".", linewidth=1.2, **_style(model))
         _errors(axes, places, found, _style(model)["color"])
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter("{x:,.0f}")
 
 
 def _failures(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
@@ -132,16 +133,19 @@ def _times(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
     for row, relation in zip(panels, relations, strict=True):
         for axes, what in zip(row, ("propose", "classify"), strict=True):
             models = [model for name, model in groups if name == relation]
+            times = {model: _whole(groups[relation, model])[0] for model in models}
+            models = [model for model in models if times[model][f"{what}_{BATCHES[0]}_ms"] is not None]
+            colours = [_style(model)["color"] for model in models]
             for side, (count, alpha) in enumerate(zip(BATCHES, (1.0, 0.45), strict=True)):
-                found = [_whole(groups[relation, model])[0][f"{what}_{count}_ms"] for model in models]
-                known = [(place, value) for place, value in enumerate(found) if value is not None]
-                places = [place + 0.4 * (side - 0.5) for place, _ in known]
-                colours = [_style(models[place])["color"] for place, _ in known]
-                axes.barh(places, [value for _, value in known], 0.38, color=colours, alpha=alpha)
+                places = [place + 0.4 * (side - 0.5) for place in range(len(models))]
+                found = [times[model][f"{what}_{count}_ms"] for model in models]
+                axes.barh(places, found, 0.38, color=colours, alpha=alpha)
             axes.set_yticks(range(len(models)), models)
             axes.invert_yaxis()
             axes.tick_params(axis="y", labelsize=8)
             axes.set_xscale("log")
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_formatter("")
             axes.set_xlabel("ms for a batch of 1, and (pale) of 64")
             axes.set_title(f"{relation}: {'generators' if what == 'propose' else 'classifiers'}")
 
@@ -168,7 +172,7 @@ def _errors(axes: Any, places: Sequence[float], found: Sequence[Share], colour: 
 
 
 def _legend(sheet: Any, panels: Sequence[Any], columns: int) -> None:
-    """One for all panels, with the numbers of scenes."""
+    """One for all panels."""
     labels: dict[str, Any] = {}
     for axes in panels:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -178,7 +182,7 @@ def _legend(sheet: Any, panels: Sequence[Any], columns: int) -> None:
 
 def _style(model: str) -> dict[str, str]:
     """The same model looks the same everywhere."""
-    index = FAILING.index(model)
+    index = [*reversed(GENERATORS), *VARIANTS].index(model)
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": STYLES[index // len(COLOURS)]}
 
 
@@ -191,8 +195,16 @@ def _shares(lines: Sequence[Line], judge: str) -> dict[str, float]:
     return {"holds": share(lines, judge).mean, **failures(lines, judge)}
 
 
-def _scenes(lines: Sequence[Line]) -> str:
-    return f"n={lines[0]['test_scenes']}, {len(lines)} seed{'s' * (len(lines) > 1)}"
+def _note(lines: Sequence[Line]) -> str:
+    """On how many scenes and trainings it rests."""
+    counts = {cloud: set[int]() for cloud in (False, True)}
+    for line in lines:
+        counts[line["config"]["model"].endswith("-pc")].add(line["config"]["scenes"])
+    shown = {cloud: ", ".join(str(count) for count in sorted(found)) for cloud, found in counts.items() if found}
+    clouds = f" ({shown[True]} for models on clouds)" if False in shown and True in shown else ""
+    seeds = 1 + max(line["config"]["seed"] for line in lines)
+    trainings = f"; up to {seeds} trainings, a dot each; bars: Wilson, 95 %" if seeds > 1 else ""
+    return f"{shown.get(False, shown.get(True))} scenes{clouds}{trainings}"
 
 
 _DRAWN: Mapping[str, Callable[[Any, Sequence[Line], list[str]], None]] = {
