@@ -109,7 +109,8 @@ def test_the_cases_of_the_figures() -> None:
         found = cases(figure, plan)
         assert {case.samples for case in found} == {0, 100} | ({10} if figure == "fig5" else set())
         assert {case.seed for case in found} == ({0} if figure == "fig7" else {0, 1, 2})
-        assert {case.scenes for case in found} == ({50, 20} if figure == "fig7" else {500, 200})
+        times = {"fig4": 2, "fig7": 0.1}.get(figure, 1)
+        assert {case.scenes for case in found} == {500 * times, 200 * times}
     assert {case for case in cases("fig6", plan) if case.model not in VARIANTS} < {*cases("fig5", plan)}
     borrowed = Case("success", "on", "uniform+gnn", 100, 2, 5)
     assert borrowed.weights == replace(borrowed, model=BORROWED["uniform+gnn"]).weights == "on-gnn-bb-100-2"
