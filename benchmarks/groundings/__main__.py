@@ -94,14 +94,17 @@ def _arranged(options: Options) -> tuple[Plan, Library, Path, Path]:
             options.relations, options.models, options.sizes, options.seeds, options.scenes, options.cloud_scenes
         )
         return plan, Library(data, weights, options.train, say=_say), out, folder
-    sizes = (*(size for size in options.sizes if size < QUICK_TRAIN), QUICK_TRAIN)
-    plan = Plan(options.relations, options.models, sizes, min(options.seeds, 2), QUICK_TEST, QUICK_TEST // 4)
+    sizes = (*(size for size in options.sizes if size in QUICK_SIZES), QUICK_TRAIN)
+    plan = Plan(options.relations, options.models, sizes, 1, QUICK_TEST, QUICK_TEST // 4)
     generate = (QUICK_TRAIN, QUICK_TEST)
     return plan, Library(data, weights, options.train, QUICK_ITERATIONS, generate, _say), out, folder
 
 
 QUICK_TRAIN, QUICK_TEST, QUICK_ITERATIONS = 200, 60, 300
 """Scenes of training and test, and iterations of the paper's networks, of --quick."""
+
+QUICK_SIZES = (10, 100)
+"""Its smaller training sets."""
 
 
 def _measure(journal: Journal, wanted: list[Case], library: Library) -> list[str]:
