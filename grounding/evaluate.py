@@ -12,8 +12,11 @@ import numpy as np
 
 from grounding.dataset import Dataset
 from grounding.model import Model
-from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
+from grounding.oracles import ItemOf, Verdict, paper_verdicts, settled
 from tamp.simulation.drop import Drops
+
+NOTHING = "nothing proposed"
+"""What is counted where a model knows of no pose."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class Evaluation:
         feasible: The share of scenes in which a placement was found at all, by the data's maker or by the model.
         accuracy: Of the classifier, at the scenes' own poses; None when it has none.
         failures: How the failures failed in physics, shares by verdict.
+        mca_failures: How they failed by the paper's oracle.
         milliseconds: Of one returned pose, the median.
     """
 
@@ -36,6 +40,7 @@ class Evaluation:
     feasible: float
     accuracy: float | None
     failures: dict[str, float]
+    mca_failures: dict[str, float]
     milliseconds: float
 
 
@@ -58,36 +63,59 @@ def evaluate(
     rng = np.random.default_rng(seed)
     order = rng.permutation(len(data))[: scenes or len(data)]
     verdicts: Counter[str] = Counter()
-    mca, right, feasible, times, classifies = 0, 0, 0, [], True
+    papers: Counter[str] = Counter()
+    feasible, times = 0, []
     items = ItemOf()
     with Drops() as drops:
         for done, index in enumerate(order):
-            example = data[int(index)]
-            situation = example.situation
-            own = float(model.classify(situation, situation.body.matrix[None])[0])
-            classifies = classifies and not math.isnan(own)
-            right += bool((own > 0.5) == example.holds)
+            situation = data[int(index)].situation
             started = time.perf_counter()
             poses = model.propose(situation, 1, rng)
             times.append(time.perf_counter() - started)
             verdict = settled(situation, poses, drops, items)[0] if len(poses) else None
-            verdicts[str(verdict or "nothing proposed")] += 1
-            mca += bool(len(poses) and paper_oracle(situation, poses)[0])
+            verdicts[str(verdict or NOTHING)] += 1
+            papers[str(paper_verdicts(situation, poses)[0] if len(poses) else NOTHING)] += 1
             known = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
             feasible += known or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
     count = len(order)
-    failures = {name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS}
     return Evaluation(
         count,
-        mca / count,
+        papers[Verdict.HOLDS] / count,
         verdicts[Verdict.HOLDS] / count,
         feasible / count,
-        right / count if classifies else None,
-        failures,
+        accuracy(model, data, scenes, seed),
+        _failures(verdicts),
+        _failures(papers),
         1e3 * float(np.median(times)),
     )
+
+
+def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int = 0) -> float | None:
+    """The share of scenes that the classifier is right about, at their own poses; None when there is no classifier.
+
+    Args:
+        model: The grounding.
+        data: Labelled scenes.
+        scenes: At most so many of them, the same ones as `evaluate` takes.
+        seed: Of their order.
+    """
+    order = np.random.default_rng(seed).permutation(len(data))[: scenes or len(data)]
+    right = 0
+    for index in order:
+        example = data[int(index)]
+        own = float(model.classify(example.situation, example.situation.body.matrix[None])[0])
+        if math.isnan(own):
+            return None
+        right += (own > 0.5) == example.holds
+    return right / len(order)
+
+
+def _failures(verdicts: Counter[str]) -> dict[str, float]:
+    """Shares of all."""
+    count = verdicts.total()
+    return {name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS}
 
 
 def wilson(share: float, count: int) -> tuple[float, float]:

@@ -31,7 +31,10 @@ SLACK = 0.002
 
 
 class Verdict(StrEnum):
-    """What `settled` says; all but `HOLDS` are failures, in the order in which they are looked for."""
+    """What the judges say; all but `HOLDS` are failures, in the order in which they are looked for.
+
+    The paper's knows neither `PENETRATES` nor `TIPS`.
+    """
 
     HOLDS = "holds"
     TOO_LOW = "too low"
@@ -50,19 +53,36 @@ def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
     `inside`: the box around the body, along the container's axes, in the container's box up to SLACK. Both: no
     collision with the surrounding bodies, for which the paper asks a simulator and we their convex hulls.
     """
+    return np.array([verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool)
+
+
+def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
+    """What `paper_oracle` says, and of failures the type (the paper's figure 6): the first that is true of too low, too
+    high, outside (with or without overlap, seen from above), collides.
+    """
     region, form = situation.region, situation.body.form
+    frame = situation.support.matrix if region.hollow else situation.T_world_region
+    inner = np.linalg.inv(frame) @ poses
+    points = form.vertices @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
+    low, high = points.min(axis=1), points.max(axis=1)
     if region.hollow:
-        inner = np.linalg.inv(situation.support.matrix) @ poses
-        points = form.vertices @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
-        good = ((points >= region.box[0] - SLACK) & (points <= region.box[1] + SLACK)).all(axis=(1, 2))
+        floor, top, least, most = region.box[0, 2], region.box[1, 2], region.box[0, :2], region.box[1, :2]
+        too_low, too_high = low[:, 2] < floor - SLACK, high[:, 2] > top + SLACK
+        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(axis=1)
     else:
-        inner = np.linalg.inv(situation.T_world_region) @ poses
-        points = form.vertices @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
-        low, high = points.min(axis=1), points.max(axis=1)
-        above = np.abs((low + high)[:, :2] / 2) <= region.size[:2] / 2
-        good = (np.abs(low[:, 2]) <= NEAR) & above.all(axis=1)
+        least, most = -region.size[:2] / 2, region.size[:2] / 2
+        too_low, too_high = low[:, 2] < -NEAR, low[:, 2] > NEAR
+        within = (np.abs((low + high)[:, :2] / 2) <= most).all(axis=1)
+    overlaps = (low[:, :2] < most).all(axis=1) & (high[:, :2] > least).all(axis=1)
     free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
-    return good & free
+    failed = {
+        Verdict.TOO_LOW: too_low,
+        Verdict.TOO_HIGH: too_high,
+        Verdict.OVERLAPPING: ~within & overlaps,
+        Verdict.OUTSIDE: ~within,
+        Verdict.COLLIDES: ~free,
+    }
+    return [next((name for name, true in failed.items() if true[row]), Verdict.HOLDS) for row in range(len(poses))]
 
 
 def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:

@@ -1,0 +1,73 @@
+"""The three measurements: a classifier's accuracy, a generator's success and how it fails, times."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from benchmarks.groundings.library import Library
+from grounding.dataset import Dataset
+from grounding.evaluate import accuracy, evaluate
+from grounding.model import Model
+
+BATCHES = (1, 64)
+"""Poses that are asked for, or judged, at once."""
+
+
+def measured_accuracy(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+    """Accuracy on scenes of the training set (all of it, also where a model has seen fewer) and of the test set."""
+    splits = {split: library.scenes(relation, split) for split in ("train", "test")}
+    return {split: accuracy(model, data, scenes) for split, data in splits.items()} | {
+        f"{split}_scenes": min(scenes, len(data)) for split, data in splits.items()
+    }
+
+
+def measured_success(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+    """What `grounding.evaluate` finds on test scenes."""
+    return asdict(evaluate(model, library.scenes(relation, "test"), scenes))
+
+
+def measured_times(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+    """Medians over test scenes of the milliseconds for a batch, of proposals and of judgements, in one thread.
+
+    A model that classifies nothing has None.
+    """
+    data, rng = library.scenes(relation, "test"), np.random.default_rng(0)
+    found: dict[str, Any] = {}
+    for count in BATCHES:
+        found[f"propose_{count}_ms"] = _median(data, scenes, lambda s, n=count: model.propose(s, n, rng))
+    own = data[0].situation
+    if np.isnan(model.classify(own, own.body.matrix[None])).any():
+        return found | {f"classify_{count}_ms": None for count in BATCHES}
+    for count in BATCHES:
+        found[f"classify_{count}_ms"] = _median(
+            data, scenes, lambda s, n=count: model.classify(s, np.repeat(s.body.matrix[None], n, axis=0))
+        )
+    return found
+
+
+WARM = 3
+"""Calls that are not counted: compiled code is loaded in the first one."""
+
+
+def _median(data: Dataset, scenes: int, asked: Callable[[Any], Any]) -> float:
+    for row in range(min(WARM, len(data))):
+        asked(data[row].situation)
+    seconds: list[float] = []
+    for row in range(min(scenes, len(data))):
+        situation = data[row].situation
+        started = time.perf_counter()
+        asked(situation)
+        seconds.append(time.perf_counter() - started)
+    return 1e3 * float(np.median(seconds))
+
+
+MEASURES: dict[str, Callable[[Model, Library, str, int], dict[str, Any]]] = {
+    "accuracy": measured_accuracy,
+    "success": measured_success,
+    "times": measured_times,
+}
