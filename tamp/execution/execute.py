@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from tamp.execution.deviation import Deviation, Seen, deviations
-from tamp.execution.disturbance import Happening, schedule
+from tamp.execution.disturbance import Happening, Scheduled, schedule
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
 from tamp.execution.playing import CLOSING, Player
@@ -142,7 +143,7 @@ class _Run:
         for number, segment in enumerate(action.segments):
             body = self._scene_name(segment.attach.body) if segment.attach else None
             happens = due is not None and due.segment == number
-            event, at = (self._disturb, due.share) if happens and due else (None, 0.0)
+            event, at = (partial(self._disturb, due), due.share) if happens and due else (None, 0.0)
             guard = self._scene_name(segment.holding) if segment.holding and self._chosen.replanner else None
             if not self._player.play(segment, body, watch, event, at, guard):
                 break
@@ -164,9 +165,8 @@ class _Run:
             event=self._event if due else None,
         )
 
-    def _disturb(self) -> None:
-        assert self._scheduled is not None
-        self._event = self._scheduled.happen(Happening(self._world, self._player, self._expected, self._rng))
+    def _disturb(self, due: Scheduled) -> None:
+        self._event = due.happen(Happening(self._world, self._player, self._expected, self._rng))
 
     def _active(self, action: TimedAction) -> str | None:
         named = [segment.attach.body if segment.attach else segment.detach for segment in action.segments]

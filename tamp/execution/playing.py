@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TypeGuard
 
 import numpy as np
 
@@ -112,10 +113,9 @@ class Player:
         world.squeezing = segment.attach is not None and self._grasp == "friction"
         self._wait(lasts, watch)
         if segment.attach is not None and self._grasp == "constraint" and self._between(body):
-            assert body is not None
             world.bind(body)
 
-    def _between(self, body: str | None) -> bool:
+    def _between(self, body: str | None) -> TypeGuard[str]:
         """Whether the body is where the fingers close: what is not there is not held by a constraint either."""
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 

@@ -85,7 +85,11 @@ def test_a_body_that_is_gone_is_missed_when_the_goal_needs_it(stored: Stored) ->
         seed = next(seed for seed in range(500) if removes(stored, seed) == (0, choice))
         done = mended(stored, "object-removed", seed)
         runs[done.disturbance] = done
-    assert runs["block is taken away"].reached and runs["block is taken away"].kept == 1
+    without = runs["block is taken away"]
+    (noticed,) = [action for action in without.actions if action.event]
+    assert [one.kind for one in noticed.deviations] == ["gone"]
+    assert noticed.after == "the rest of the plan still holds"
+    assert without.reached and without.replans == 0
     gone = runs["Can is taken away"]
     assert not gone.reached and gone.explanation == ("Can is gone, and the goal needs it",)
     assert gone.goal[0].why == "it is gone"
