@@ -67,7 +67,8 @@ class Alarm:
     def __enter__(self) -> Alarm:
         usable = sys.platform != "win32" and threading.current_thread() is threading.main_thread()
         if usable and self._deadline.seconds < threading.TIMEOUT_MAX:
-            self._before = signal.signal(signal.SIGALRM, self._ring), signal.getitimer(signal.ITIMER_REAL)
+            timer = signal.setitimer(signal.ITIMER_REAL, 0.0)  # first, so that an outer alarm never rings in here
+            self._before = signal.signal(signal.SIGALRM, self._ring), timer
             self._began = time.monotonic()
             self._armed = True
             signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again)
@@ -89,7 +90,10 @@ class Alarm:
             signal.signal(signal.SIGALRM, handler)
             self._before = None
             if left > 0.0:
-                signal.setitimer(signal.ITIMER_REAL, max(left - (time.monotonic() - self._began), SOONEST), interval)
+                left -= time.monotonic() - self._began
+                signal.setitimer(signal.ITIMER_REAL, max(left, SOONEST), interval)
+                if left <= SOONEST:  # the next alarm may begin before the timer rings
+                    signal.raise_signal(signal.SIGALRM)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
         if not self._armed:
