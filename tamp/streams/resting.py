@@ -19,7 +19,7 @@ SNAP_HEIGHT = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance for `on`), metres."""
 
 SNAP_TILT = math.radians(15.0)
-"""A proposal tilted less than this from a stable face is laid onto that face."""
+"""A proposal tilted less than this from a stable face, or than the face withstands, is laid onto that face."""
 
 SAME_FACET = 0.9995
 """Triangles whose normals' cosine is at least this belong to one facet."""
@@ -85,10 +85,10 @@ class Resting:
         return tuple(faces)
 
     def nearest(self, rotation: Array) -> Face | None:
-        """The stable face that is down up to SNAP_TILT under this rotation of the body."""
+        """The stable face onto which the body, let go under this rotation, tips back; None when it may tip over."""
         down = -rotation[2]
         best = max(self.faces, key=lambda face: float(-face.rotation[2] @ down), default=None)
-        if best is None or float(-best.rotation[2] @ down) < math.cos(SNAP_TILT):
+        if best is None or float(-best.rotation[2] @ down) < math.cos(max(SNAP_TILT, best.angle)):
             return None
         return best
 
