@@ -71,8 +71,11 @@ def draw(
             drawer.dismiss()
         result = drawer.next()
         if result is None:
-            return
+            break
         yield result
+    unruly = next((source for source in sources if source.account.out is not None or source.strikes >= STALE), None)
+    if unruly is not None:
+        yield Rejection(f"{unruly.account.name} is asked no more", given_up=True)
 
 
 @dataclass
