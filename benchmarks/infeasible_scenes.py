@@ -150,9 +150,9 @@ def caged(rng: Random) -> Case:
     bodies = ""
     for i in range(4):
         angle = i * math.pi / 2
-        x, y = at * math.cos(angle), at * math.sin(angle)
+        x, y, long = at * math.cos(angle), at * math.sin(angle), inner + (0.044 if i % 2 else 0.0)
         bodies += (
-            f"  wall_{i}: {{box: [0.02, {inner + (0.044 if i % 2 else 0.0):.3f}, {height:.2f}], on: table, at: [{x:.3f}, {y:.3f}], "
+            f"  wall_{i}: {{box: [0.02, {long:.3f}, {height:.2f}], on: table, at: [{x:.3f}, {y:.3f}], "
             f"yaw: {90 * i} deg, fixed: true, surfaces: {{}}}}\n"
         )
     bodies += f"  {name}: {{box: [0.05, 0.05, 0.1], on: table, at: [0.0, 0.0]}}\n"
@@ -167,7 +167,7 @@ def walled_in(rng: Random) -> Case:
     bodies = f"  wall: {{box: {size}, at: [{x:.2f}, 0.0, 1.1], fixed: true, surfaces: {{}}}}\n"
     bodies += "  side_table: {furniture: table, size: [0.6, 0.6, 0.7], at: [-2.1, 0.0, 0.0]}\n"
     bodies += _box(rng, name, "side_table", at="[0.0, 0.0]")
-    reasons = ("no motion", "no way", "hits wall", "wall")
+    reasons = ("straight ahead: wall",)
     return _case("walled_in", rng, bodies, f"(on {name} table)", ((name, "move"), reasons))
 
 
