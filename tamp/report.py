@@ -85,9 +85,10 @@ def _tried(solution: Solution) -> list[str]:
     rows = [tally for tally in solution.tallies if tally.failures][:MOST]
     if not rows:
         return []
-    actions = max(len(tally.action) for tally in rows)
+    title = "what was tried for"
+    actions = max(len(title), *(len(tally.action) for tally in rows))
     streams = max(len(tally.stream) for tally in rows)
-    lines = ["", f"  {'what was tried for':{actions}}  {'by':{streams}}  {'worked':>15}   why not"]
+    lines = ["", f"  {title:{actions}}  {'by':{streams}}  {'worked':>15}   why not"]
     for tally in rows:
         worked = f"{tally.successes:,} of {tally.tries:,}"
         reasons = ", ".join(f"{count:,} {reason}" for reason, count in tally.reasons.most_common(3))

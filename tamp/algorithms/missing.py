@@ -64,9 +64,8 @@ class Missing:
                 break
             name, lacks = found
             said.append(f"{name} needs {' and '.join(map(_shown, lacks))}")
-            ground = [atom for atom in lacks if not any(term.startswith("?") for term in atom.terms)]
-            fact = (ground[0].predicate, *ground[0].terms) if ground else ()
-            if not fact or fact in seen:
+            fact = (lacks[0].predicate, *lacks[0].terms)
+            if fact in seen:
                 break
             seen.add(fact)
         if not said:
@@ -143,6 +142,8 @@ class Missing:
             return None
         grown = dict(binding)
         for term, word in zip(atom.terms, fact[1:], strict=True):
+            if word.startswith("?"):  # any object
+                continue
             if not term.startswith("?"):
                 if term != word:
                     return None

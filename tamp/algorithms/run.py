@@ -220,7 +220,7 @@ class Run:
 
     def tallies(self) -> tuple[Tally, ...]:
         """What was tried, by action and stream."""
-        return tallies(self.skeletons.values(), self.experience, self.problem.values)
+        return tallies(list(self.skeletons.values()), self.experience, self.problem.values)
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
         """What the run ends with; by default the explanation is what failed most."""

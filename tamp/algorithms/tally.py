@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tamp.algorithms.optimistic import MARK
-from tamp.algorithms.skeleton import Node, Skeleton
+from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.statistics import Experience, Record
 from tamp.algorithms.stream import ADVISORY
+from tamp.pddl.structs import Fact
+
+LATEST = 100
+"""So many plans, the latest, are looked at: the user waits for the answer."""
 
 
 @dataclass
@@ -47,32 +51,33 @@ class Tally:
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
 
 
-def tallies(skeletons: Iterable[Skeleton], experience: Experience, names: Mapping[str, object]) -> tuple[Tally, ...]:
+def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]) -> tuple[Tally, ...]:
     """What was tried by action and stream: what never worked first, then by failures.
 
     Args:
-        skeletons: The plans that were tried.
+        skeletons: The plans that were tried, in order.
         experience: What binding them has taught.
         names: The values of the problem's objects: those that are their own names stand for things.
     """
-    records: dict[str, list[Record]] = {}
-    for fact, record in experience.facts.items():
-        records.setdefault(" ".join(fact), []).append(record)
+    records: dict[Fact, list[Record]] = {fact: [record] for fact, record in experience.facts.items()}
     for (fact, _), record in experience.nogoods.items():
-        records.setdefault(" ".join(fact), []).append(record)
+        records.setdefault(fact, []).append(record)
     made: dict[tuple[str, str], Tally] = {}
-    counted: set[tuple[str, str, str]] = set()
-    for skeleton in skeletons:
-        labels = [_label(skeleton, number, names) for number in range(len(skeleton.steps))]
-        for node in skeleton.nodes:
-            fact = " ".join(node.fact)
-            label = labels[_user(skeleton, node)] if labels else "the goal"
-            key = (label, node.stream.name)
-            if (*key, fact) in counted:
+    counted: set[tuple[str, str, Fact]] = set()
+    for skeleton in skeletons[-LATEST:]:
+        users = _users(skeleton)
+        labels: dict[int, str] = {}
+        for node, user in zip(skeleton.nodes, users, strict=True):
+            if node.fact not in records:
                 continue
-            counted.add((*key, fact))
+            if user not in labels:
+                labels[user] = _label(skeleton, user, users, names)
+            key = (labels[user], node.stream.name)
+            if (*key, node.fact) in counted:
+                continue
+            counted.add((*key, node.fact))
             tally = made.setdefault(key, Tally(*key))
-            for record in records.get(fact, ()):
+            for record in records[node.fact]:
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
@@ -91,20 +96,31 @@ def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tupl
     return tuple(counts.most_common())
 
 
-def _user(skeleton: Skeleton, node: Node) -> int:
-    """The step with which a call has most objects in common; the first of those that need it."""
-    own = {*node.guess[0], *node.guess[1]}
-    shared = [len(own.intersection(step.arguments)) for step in skeleton.steps]
-    return max(range(len(shared)), key=lambda number: (shared[number], -number)) if max(shared) else node.step
+def _users(skeleton: Skeleton) -> list[int]:
+    """For each call the step with which it has most objects in common; the first of those that need it."""
+    steps: dict[str, list[int]] = defaultdict(list)
+    for number, step in enumerate(skeleton.steps):
+        for word in dict.fromkeys(step.arguments):
+            steps[word].append(number)
+    users: list[int] = []
+    for node in skeleton.nodes:
+        shared: dict[int, int] = {}
+        for word in {*node.guess[0], *node.guess[1]}:
+            for number in steps.get(word, ()):
+                shared[number] = shared.get(number, 0) + 1
+        users.append(min(shared, key=lambda number: (-shared[number], number)) if shared else node.step)
+    return users
 
 
-def _label(skeleton: Skeleton, number: int, names: Mapping[str, object]) -> str:
+def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]) -> str:
     """An action with the things that it concerns: those among its arguments, and where its values come from."""
+    if number >= len(skeleton.steps):
+        return "the goal"
     step = skeleton.steps[number]
     things = _things(step.arguments, names)
     text = " ".join([step.name, *things])
-    for node in skeleton.nodes:
-        if set(node.guess[1]) & set(step.arguments) and _user(skeleton, node) == number:
+    for node, user in zip(skeleton.nodes, users, strict=True):
+        if user == number and not set(node.guess[1]).isdisjoint(step.arguments):
             further = [thing for thing in _things(node.guess[0], names) if thing not in things]
             if further:
                 relation = node.stream.name.removeprefix(ADVISORY)
@@ -112,7 +128,7 @@ def _label(skeleton: Skeleton, number: int, names: Mapping[str, object]) -> str:
                 things += further
     if things or number + 1 >= len(skeleton.steps):
         return text
-    return f"{text}, to {_label(skeleton, number + 1, names)}"
+    return f"{text}, to {_label(skeleton, number + 1, users, names)}"
 
 
 def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:

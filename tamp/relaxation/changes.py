@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tamp.pddl.structs import And, Atom, Formula
+from tamp.pddl.structs import And, Atom, Formula, Or
 from tamp.problem import Problem
 from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
 from tamp.world.scaling import scale_part, scale_pose
 from tamp.world.scene import Body, Box, Cavity, Part, Scene, Surface
 
-SMALLER = ((0.75, "a quarter smaller", 2), (0.5, "half its size", 3))
+SMALLER = ((0.75, "a quarter smaller", 2), (0.5, "half its size", 3), (0.3, "a third of its size", 4))
 """Factors by which a body is scaled, in words, and how large a change that is."""
 
 LARGER = 1.5
@@ -200,10 +200,11 @@ def _larger(body: Body, place: Surface | Cavity) -> Body | None:
     return replace(body, parts=tuple(parts), surfaces=surfaces, cavities=cavities)
 
 
-def _atoms(formula: object) -> Iterator[Atom]:
+def _atoms(formula: Formula) -> Iterator[Atom]:
     if isinstance(formula, Atom):
         yield formula
-    for part in getattr(formula, "parts", ()):
-        yield from _atoms(part)
-    if hasattr(formula, "body"):
-        yield from _atoms(getattr(formula, "body"))  # noqa: B009
+    elif isinstance(formula, And | Or):
+        for part in formula.parts:
+            yield from _atoms(part)
+    else:
+        yield from _atoms(formula.body)

@@ -16,7 +16,10 @@ from tamp.solution import Solution
 from tamp.world.scene import Scene
 
 SLICE = 5.0
-"""Seconds of planning for one change."""
+"""Seconds of planning for one change at most,"""
+
+SHARE = 8
+"""and so many changes shall have their turn."""
 
 ENOUGH = 3
 """Changes that work, after which no more are tried."""
@@ -91,7 +94,9 @@ def why(
             changed = _changed(problem, change, reload)
             if changed is None:
                 continue
-            attempt = solve(changed, max_time=min(SLICE, deadline.left()), seed=solution.seed, progress=progress)
+            attempt = solve(
+                changed, max_time=min(SLICE, max_time / SHARE, deadline.left()), seed=solution.seed, progress=progress
+            )
             tried += 1
             if attempt.solved and attempt.plan:
                 seconds = attempt.seconds["total"]
