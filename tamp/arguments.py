@@ -80,6 +80,9 @@ class Arguments:
     """Carry the plan out in physics, as by tamp-execute; then 1 as well when the goal does not hold at the end."""
     grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
     """How the hand holds in physics: friction, or constraint (a fixed joint)."""
+    why: bool = False
+    """When there is no plan, look for small changes that make it solvable (a body gone, movable or smaller, a place
+    larger or nearer, a goal less); takes up to --time again."""
     json: bool = False
     """Print one JSON document instead of text."""
     quiet: bool = False

@@ -79,6 +79,7 @@ def assemble(
         statistics=result.statistics,
         effort=result.effort,
         explanation=result.explanation,
+        tallies=result.tallies,
         warnings=(*problem.warnings, *result.warnings),
         seconds={
             "total": seconds["total"], "search": result.effort.search_seconds, "timing": seconds["timing"], **by_stream

@@ -8,6 +8,7 @@ import io
 import shlex
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,6 +66,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.parallel import solve_parallel
     from tamp.plan_file import plan_text, summary_document, write_plan
     from tamp.problem import load_problem
+    from tamp.relaxation.why import why
     from tamp.report import headline, improvement, summary
     from tamp.streams.python_file import given_by_files
     from tamp.view.wishes import Wishes, fulfil
@@ -77,7 +79,8 @@ def _solve(arguments: Arguments, started: float) -> int:
         wishes.check()
     samplers, groundings = given_by_files(samplers)
     *domain, problem_name = arguments.files
-    problem = load_problem(
+    load = partial(
+        load_problem,
         problem_name,
         domain[0] if domain else None,
         streams=arguments.streams,
@@ -86,6 +89,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         registry=registry(),
         steering=arguments.steering,
     )
+    problem = load()
     shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
 
@@ -105,6 +109,12 @@ def _solve(arguments: Arguments, started: float) -> int:
         record=arguments.record or wishes.page,
     )
     shown.clear()
+    asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
+    because = None
+    if asked:
+        shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
+        because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
+        shown.clear()
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None
@@ -116,11 +126,13 @@ def _solve(arguments: Arguments, started: float) -> int:
         document["plan"] = None if written is None else str(written)
         if verdict is not None:
             document["verification"] = verdict.json()
+        if because is not None:
+            document["why"] = because.json()
         if executed is not None:
             document["execution"] = executed.json()
         say(json.dumps(document, indent=2))
     else:
-        shown.line(summary(solution))
+        shown.line(summary(solution) if because is None else because.text())
         _conclude(shown, arguments, written, verdict)
         if executed is not None:
             shown.line(f"\n{executed.text()}")

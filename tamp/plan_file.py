@@ -129,6 +129,16 @@ def summary_document(solution: Solution) -> dict[str, Any]:
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
         "explanation": list(solution.explanation),
+        "tried": [
+            {
+                "action": tally.action,
+                "stream": tally.stream,
+                "tries": tally.tries,
+                "successes": tally.successes,
+                "reasons": dict(tally.reasons.most_common()),
+            }
+            for tally in solution.tallies
+        ],
         "problem": solution.problem.name,
         "seed": solution.seed,
         "actions": [

@@ -15,6 +15,9 @@ from tamp.trajectories import Segment
 WIDTH = 110
 """Columns of the longest line that is not wrapped."""
 
+MOST = 8
+"""Lines about what failed."""
+
 PARTS = {
     "motion": ("plan-",),
     "ik": ("inverse-kinematics",),
@@ -53,7 +56,7 @@ def summary(solution: Solution) -> str:
             "",
             f"  {better}; lower bound of the cost {solution.bound:g}, gap {100 * (solution.gap or 0.0):.0f} %",
         ]
-    return "\n".join([*lines, "", *_effort(solution)])
+    return "\n".join([*lines, *_tried(solution), "", *_effort(solution)])
 
 
 def improvement(solution: Solution) -> str:
@@ -75,6 +78,22 @@ def _no_plan(solution: Solution, total: float) -> list[str]:
         mark = "." if solution.outcome is Outcome.INFEASIBLE else ":"
         return [f"{sentence}{mark} {solution.explanation[0]}"]
     return [f"{sentence}{':' if solution.explanation else '.'}", *(f"  {line}" for line in solution.explanation)]
+
+
+def _tried(solution: Solution) -> list[str]:
+    """What failed most, by action and stream, in columns."""
+    rows = [tally for tally in solution.tallies if tally.failures][:MOST]
+    if not rows:
+        return []
+    title = "what was tried for"
+    actions = max(len(title), *(len(tally.action) for tally in rows))
+    streams = max(len(tally.stream) for tally in rows)
+    lines = ["", f"  {title:{actions}}  {'by':{streams}}  {'worked':>15}   why not"]
+    for tally in rows:
+        worked = f"{tally.successes:,} of {tally.tries:,}"
+        reasons = ", ".join(f"{count:,} {reason}" for reason, count in tally.reasons.most_common(3))
+        lines.append(f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}")
+    return lines
 
 
 def _rows(solution: Solution) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from tamp.algorithms.solution import Effort, Outcome
 from tamp.algorithms.statistics import StreamStatistics
+from tamp.algorithms.tally import Tally
 from tamp.pddl.structs import Fact
 from tamp.problem import Problem
 from tamp.recording import Record
@@ -61,6 +62,7 @@ class Solution:
         values: The value of every name in the plan: poses, grasps, base configurations, reaches, motions.
         certified: The facts that streams certified and the plan rests on.
         explanation: Why there is no plan, a line a cause.
+        tallies: What was tried for which action, where there is no plan.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
         record: What was tried, when `solve` was asked to record it.
         improvements: The plans on the way to this one and itself, where the first was not enough.
@@ -78,6 +80,7 @@ class Solution:
     statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: Effort = field(default_factory=Effort)
     explanation: tuple[str, ...] = ()
+    tallies: tuple[Tally, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None

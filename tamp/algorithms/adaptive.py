@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tamp.algorithms.explanation import explain_infeasible
 from tamp.algorithms.incremental import Incremental
 from tamp.algorithms.run import Run
 from tamp.algorithms.skeleton import Skeleton
@@ -93,7 +92,7 @@ class Adaptive(Run):
         if found.plan is None:
             if self.deadline.passed:
                 raise OutOfTime
-            return self.result(Outcome.INFEASIBLE, explain_infeasible(self.problem, self.grounded, self.dead))
+            return self.hopeless()
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
+from tamp.algorithms.conflict import conflict
+from tamp.algorithms.missing import Missing
 from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Node, Skeleton
 from tamp.algorithms.solution import Attempt, StreamTask
 from tamp.algorithms.statistics import Experience, Record
 from tamp.algorithms.stream import Streams
+from tamp.algorithms.tally import Tally, in_the_way
+from tamp.clock import Deadline
 from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import unreachable
@@ -35,9 +39,21 @@ def explain_attempts(
 
 
 def explain_infeasible(
-    problem: StreamTask, grounded: Grounded, dead: Mapping[tuple[str, tuple[str, ...]], Rejection]
+    problem: StreamTask,
+    grounded: Grounded,
+    dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
+    missing: Missing,
+    deadline: Deadline,
 ) -> tuple[str, ...]:
-    """The goal facts that nothing can make true, and what is known about the objects in them."""
+    """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
+
+    Args:
+        problem: The task and its streams.
+        grounded: The optimistic task, unsolvable.
+        dead: The calls that ended without a value.
+        missing: Says what a fact lacks.
+        deadline: When to look no further.
+    """
     lines: list[str] = []
     blamed: set[tuple[str, tuple[str, ...]]] = set()
     for fact in unreachable(grounded):
@@ -49,21 +65,44 @@ def explain_infeasible(
             if set(_names(problem, key[1])) & set(words):
                 blamed.add(key)
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
-        causes = causes or [_never(problem, words)]
+        causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
     lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
-    return tuple(dict.fromkeys(lines)) or ("every way to the goal was searched, and none leads there",)
+    return tuple(dict.fromkeys((*lines, *(_together(grounded, deadline) if not lines or not blamed else ()))))
 
 
-def explain_failures(
-    problem: StreamTask, streams: Streams, experience: Experience, skeleton: Skeleton | None
-) -> tuple[str, ...]:
-    """The call that did not end, what failed most in the plan that was tried last, or else what never worked."""
+def _together(grounded: Grounded, deadline: Deadline) -> Iterator[str]:
+    """Each goal can be reached, as far as one knows without looking at the others."""
+    if unreachable(grounded):
+        return
+    facts = conflict(grounded, deadline)
+    texts = [grounded.meanings.get(fact[0]) or f"({' '.join(fact)})" for fact in facts]
+    if len(texts) == 1:
+        yield f"every way to {texts[0]} was searched, and none leads there"
+    elif texts:
+        both = "both hold" if len(texts) == 2 else "hold together"
+        yield f"{' and '.join(texts)} cannot {both} at the end: each way to one of them excludes the others"
+    else:
+        yield "every way to the goal was searched, and none leads there"
+
+
+def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool) -> tuple[str, ...]:
+    """The call that did not end, what never worked or else failed most, and what was in the way.
+
+    Args:
+        problem: The task and its streams.
+        streams: With what they were asked.
+        rows: What was tried for the actions of plans.
+        tried: Whether there was a plan to be tried.
+    """
     running = streams.running
     endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    rows = _failed(experience, skeleton) if skeleton is not None else _never_worked(problem, streams)
-    none = "no action plan was found yet" if skeleton is None else "no single step failed more than it worked"
-    return (*endless, *rows) or (none,)
+    lines = [row.text() for row in rows if row.never] or [row.text() for row in rows if row.failures > row.successes]
+    blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
+    lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
+    lines = lines if tried else _never_worked(problem, streams)
+    none = "no single step failed more than it worked" if tried else "no action plan was found yet"
+    return (*endless, *lines) or (none,)
 
 
 def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
@@ -106,10 +145,10 @@ def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Recor
     return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
 
 
-def _never(problem: StreamTask, words: tuple[str, ...]) -> str:
+def _kinds(problem: StreamTask, words: tuple[str, ...]) -> str:
     types = problem.task.objects
     kinds = [f"{word} is {' and '.join(types[word])}" for word in words if types.get(word)]
-    return f"no action makes it true ({', '.join(kinds)})" if kinds else "no action makes it true"
+    return f" ({', '.join(kinds)})" if kinds else ""
 
 
 def _names(problem: StreamTask, inputs: tuple[str, ...]) -> list[str]:

@@ -10,7 +10,6 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from tamp.algorithms.explanation import explain_infeasible
 from tamp.algorithms.optimistic import Optimism, imagine
 from tamp.algorithms.run import Run
 from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
@@ -69,7 +68,7 @@ class Incremental(Run):
                 if result is not None:
                     return result
                 if not fresh:
-                    return self.result(Outcome.INFEASIBLE, explain_infeasible(self.problem, self.grounded, self.dead))
+                    return self.hopeless()
                 if most is not None and self.binder.units >= most:
                     return self.result(Outcome.EXHAUSTED)
                 self.progress(self.effort)
@@ -121,6 +120,7 @@ class Incremental(Run):
                         self.found.setdefault(fact, instance)
                 for fact in self.streams.wild:
                     self.found.setdefault(fact, None)
+            self.given_up |= instance.exhausted and instance.last is not None and instance.last.given_up
             if instance.exhausted and not instance.results and instance.last is not None:
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh

@@ -11,14 +11,16 @@ from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
 from tamp.algorithms.costs import Costs
-from tamp.algorithms.explanation import explain_attempts, explain_failures
+from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.lifting import build_skeleton
+from tamp.algorithms.missing import Missing
 from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Objects, Streams
+from tamp.algorithms.tally import Tally, tallies
 from tamp.clock import Deadline
 from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
@@ -71,6 +73,7 @@ class Run:
         self.skeletons: dict[object, Skeleton] = {}
         self.latest: Skeleton | None = None
         self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
+        self.given_up = False
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
@@ -165,6 +168,7 @@ class Run:
             for instance in self.streams.instances(node.stream.name, inputs):
                 if not instance.exhausted:
                     continue
+                self.given_up |= instance.last is not None and instance.last.given_up
                 if not instance.results:
                     self.dead.setdefault((node.stream.name, inputs), instance.last or Rejection("has no value"))
                     self.refused.add(node.fact)
@@ -206,10 +210,23 @@ class Run:
         )
         return result
 
+    def hopeless(self) -> Result:
+        """The end of a run in which no plan is left: infeasible, unless a stream was given up before its end."""
+        outcome = Outcome.EXHAUSTED if self.given_up else Outcome.INFEASIBLE
+        facts = {*self.known, *self.real, *self.optimism.makers, *self.grounded.reachable, *self.grounded.initial}
+        types = {**self.objects.types, **self.optimism.types}
+        missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
+        return self.result(outcome, explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline))
+
+    def tallies(self) -> tuple[Tally, ...]:
+        """What was tried, by action and stream."""
+        return tallies(list(self.skeletons.values()), self.experience, self.problem.values)
+
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
         """What the run ends with; by default the explanation is what failed most."""
+        rows = () if outcome is Outcome.SOLVED else self.tallies()
         if explanation is None:
-            explanation = explain_failures(self.problem, self.streams, self.experience, self.latest)
+            explanation = explain_failures(self.problem, self.streams, rows, self.latest is not None)
         self.effort.draws = self.binder.units
         return Result(
             outcome=outcome,
@@ -217,6 +234,7 @@ class Run:
             statistics=self.streams.statistics,
             effort=self.effort,
             explanation=explanation,
+            tallies=rows,
             warnings=tuple(self.streams.warnings),
             memory=self.streams.memory,
             attempts=partial(explain_attempts, self.problem, list(self.skeletons.values()), self.experience, None),

@@ -9,6 +9,7 @@ from enum import Enum
 from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.algorithms.stream import BoundStream, Objects
+from tamp.algorithms.tally import Tally
 from tamp.pddl.structs import Fact, Task
 
 
@@ -99,6 +100,7 @@ class Result:
         certified: Static facts that streams certified and the plan rests on.
         objects: Names, types and values of everything in it.
         explanation: Why there is no plan, a line a cause.
+        tallies: What was tried for which action, where there is no plan.
         memory: What the streams have learned in the run, as they keep it.
         attempts: Says which skeletons were tried, to those who ask.
     """
@@ -110,6 +112,7 @@ class Result:
     statistics: dict[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: Effort = field(default_factory=Effort)
     explanation: tuple[str, ...] = ()
+    tallies: tuple[Tally, ...] = ()
     warnings: tuple[str, ...] = ()
     memory: Mapping[str, object] = field(default_factory=dict[str, object])
     attempts: Callable[[], tuple[Attempt, ...]] = _none

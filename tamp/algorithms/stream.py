@@ -200,7 +200,7 @@ class Streams:
             raise
         except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
-            value, names = Rejection(f"raised {type(error).__name__}"), ()
+            value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
             self._warn(f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up")
         finally:
             statistics.seconds += time.perf_counter() - started

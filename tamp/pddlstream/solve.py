@@ -122,7 +122,7 @@ def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Res
         return Random(int.from_bytes(digest, "little"))
 
     result = ALGORITHMS[algorithm](task, make_rng, deadline, _silent)
-    if result.outcome is not Outcome.INFEASIBLE or not task.streams:
+    if result.outcome not in (Outcome.INFEASIBLE, Outcome.EXHAUSTED) or not task.streams:
         return result
     # Two things no stream promises: facts besides its outputs, and an output that equals a value of the goal.
     second = Incremental(task, make_rng, deadline, _silent, pruned=False)

@@ -71,8 +71,11 @@ def draw(
             drawer.dismiss()
         result = drawer.next()
         if result is None:
-            return
+            break
         yield result
+    unruly = next((source for source in sources if source.account.out is not None or source.strikes >= STALE), None)
+    if unruly is not None:
+        yield Rejection(f"{unruly.account.name}: {unruly.wrong}", given_up=True)
 
 
 @dataclass
@@ -85,6 +88,7 @@ class _Source:
         clash: The first of the batch that was not.
         seen: All proposals, rounded.
         strikes: Misbehaviours.
+        wrong: The latest one.
     """
 
     generator: Generator
@@ -97,6 +101,7 @@ class _Source:
     clash: Pose | None = None
     seen: set[tuple[float, ...]] = field(default_factory=set[tuple[float, ...]])
     strikes: int = 0
+    wrong: str = ""
 
     def take_clash(self) -> Pose | None:
         """The pose that is kept for the end of the batch, once."""
@@ -206,6 +211,7 @@ class _Drawer:
     def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
         """Beside the trusted one it is asked no more; alone it has a few more tries."""
         refused[Rejection(f"{source.account.name}: {what}")] += 1
+        source.wrong = what
         if not self.alone:
             source.batch.clear()
             source.account.out = what

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def inverse_kinematics(
             reason = found
         if reason is not None:
             failures += 1
-            yield reason
+            yield reason if failures < PATIENCE else replace(reason, given_up=True)
 
 
 def _standing(context: Context, body: str, grasp: Grasp, base: Array, call: Call) -> Rejection | None:

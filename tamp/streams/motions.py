@@ -21,13 +21,23 @@ from tamp.world.pose import Array, Pose
 HARDEST = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one before."""
 
+LOOKS = 33
+"""Configurations on the straight way that are looked at to say what is in it."""
+
 
 @dataclass(frozen=True)
 class _Query:
-    """One motion problem: how to plan it in an arrangement at an effort, and its path as configurations (n, 10)."""
+    """One motion problem.
+
+    Attributes:
+        plan: How to plan it in an arrangement at an effort.
+        confs: Its path as configurations (n, 10).
+        ends: Start and goal as configurations (10,).
+    """
 
     plan: Callable[[Arrangement, int], Planned]
     confs: Callable[[Array], Array]
+    ends: tuple[Array, Array]
 
 
 def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[Motion | Rejection]:
@@ -44,7 +54,8 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
             steering=context.steering,
         )  # fmt: skip
 
-    query = _Query(plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]))
+    stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
+    query = _Query(plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands)
     for planned in _attempts(context, poses, held, query):
         if isinstance(planned, Rejection):
             yield planned
@@ -104,7 +115,8 @@ def _transits(
     def plan(arrangement: Arrangement, effort: int) -> Planned:
         return plan_arm(arrangement, stand, context.home, out, context.robot, call.rng, call.deadline, effort=effort)
 
-    query = _Query(plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]))
+    reached = context.conf(stand, context.home), context.conf(stand, out)
+    query = _Query(plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached)
     with_body = {**others, body: pose}
     for loaded in _attempts(context, others, grasp, query):
         if isinstance(loaded, Rejection):
@@ -140,7 +152,9 @@ def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, que
     relaxed = query.plan(context.fixed_only(held), effort)
     if relaxed.path is None:
         failure = relaxed.failure or Failure.EXHAUSTED
-        return Rejection(f"no motion even without the movable bodies: {failure.value}")
+        ahead = _straight_ahead(context, held, query)
+        where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
+        return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
     blockers = tuple(
@@ -151,6 +165,14 @@ def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, que
     if not blockers:
         return Rejection("no motion found")
     return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
+
+
+def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:
+    """The fixed bodies that the straight way runs into."""
+    start, goal = query.ends
+    arrangement = context.fixed_only(held)
+    hits = [arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)]
+    return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
 
 
 def _free(arrangement: Arrangement, confs: Array) -> bool:

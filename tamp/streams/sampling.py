@@ -16,7 +16,7 @@ from tamp.streams.resting import Face, fits, rest
 from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
-from tamp.world.scene import CONTACT_GAP, Box, Cavity, Part, Surface
+from tamp.world.scene import CONTACT_GAP, Box, Cavity, Hull, Part, Surface
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
@@ -27,8 +27,13 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
         carried = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
         hit = carried.hits(context.conf(_middle(context), context.home), padding=0.002)
         yield grasp if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
-    if not found:
-        yield Rejection(f"no grasp: every width is over the hand's {context.robot.opening * 100:.0f} cm")
+    if found:
+        yield Rejection("no further grasp was found", given_up=True)
+    else:
+        parts = context.scene.bodies[body].parts
+        simple = len(parts) == 1 and not isinstance(parts[0].shape, Hull)
+        opening = context.robot.opening * 100
+        yield Rejection(f"no grasp: every width is over the hand's {opening:.0f} cm", given_up=not simple)
 
 
 def sample_on(context: Context, body: str, surface: str, call: Call) -> Iterator[Pose | Rejection]:

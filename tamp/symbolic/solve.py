@@ -7,13 +7,15 @@ from dataclasses import dataclass, field
 
 from tamp.alarm import Alarm
 from tamp.algorithms.explanation import explain_infeasible
+from tamp.algorithms.missing import Missing
+from tamp.algorithms.optimistic import type_facts
 from tamp.algorithms.solution import Outcome, StreamTask
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
 from tamp.search.heuristics import ADMISSIBLE
 from tamp.search.instantiate import instantiate
-from tamp.search.operators import Operator
+from tamp.search.operators import Grounded, Operator
 from tamp.symbolic.problem import SymbolicProblem
 
 SEARCH = "greedy"
@@ -125,10 +127,17 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
         optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=explain_infeasible(StreamTask(task, (), {}), grounded, {}) if infeasible else (),
+        explanation=_why(problem, grounded, deadline) if infeasible else (),
         expanded=found.expanded,
         evaluated=found.evaluated,
         operators=len(grounded.operators),
         facts=len(grounded.reachable | grounded.initial),
         seconds={"total": done - started, "instantiation": ready - started, "search": done - ready},
     )
+
+
+def _why(problem: SymbolicProblem, grounded: Grounded, deadline: Deadline) -> tuple[str, ...]:
+    task = problem.task
+    facts = {*task.initial, *type_facts(task), *grounded.reachable, *grounded.initial}
+    missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
+    return explain_infeasible(StreamTask(task, (), {}), grounded, {}, missing, deadline)

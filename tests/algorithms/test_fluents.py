@@ -138,7 +138,7 @@ def test_motion_into_a_wall_is_given_up() -> None:
     result = solve("adaptive", problem, seconds=4.0)
     assert result.outcome in (Outcome.INFEASIBLE, Outcome.EXHAUSTED), (result.outcome, result.effort)
     text = " ".join(result.explanation)
-    assert "hits the wall" in text and "plan-way(a" in text
+    assert "hits the wall" in text and "pick a: plan-way" in text
 
 
 def test_advice_shows_where_the_other_bodies_are() -> None:
