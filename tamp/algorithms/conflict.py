@@ -19,9 +19,9 @@ def conflict(grounded: Grounded, deadline: Deadline) -> tuple[Fact, ...]:
     One goal after the other is left out; it stays out when the others are proven unsolvable without it. Goals that must
     not hold are given as ("not", ...). Within LIMIT and the time: what cannot be proven stays in.
     """
-    goal = grounded.goal
+    goal = _opened(grounded)
     kept = [*sorted(goal.positive), *sorted(("not", *fact) for fact in goal.negative)]
-    for fact in tuple(kept):
+    for fact in sorted(kept, key=lambda fact: fact[0] not in grounded.meanings):  # the parts say more than the whole
         rest = [other for other in kept if other != fact]
         if not rest or deadline.passed:
             break
@@ -29,6 +29,18 @@ def conflict(grounded: Grounded, deadline: Deadline) -> tuple[Fact, ...]:
         if found.reason is Reason.UNSOLVABLE:
             kept = rest
     return tuple(kept)
+
+
+def _opened(grounded: Grounded) -> Goal:
+    """The goal and what each rule for one of its auxiliary facts asks for, where those stand for conjunctions."""
+    goal = grounded.goal
+    for fact in sorted(goal.positive):
+        rules = [axiom for axiom in grounded.axioms if axiom.head == fact]
+        if fact[0] in grounded.meanings and rules:
+            positive = frozenset.intersection(*(rule.positive for rule in rules))
+            negative = frozenset.intersection(*(rule.negative for rule in rules))
+            goal = Goal(goal.positive | positive, goal.negative | negative, goal.static)
+    return goal
 
 
 def _goal(goal: Goal, facts: list[Fact]) -> Goal:

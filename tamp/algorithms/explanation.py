@@ -76,7 +76,7 @@ def _together(grounded: Grounded, deadline: Deadline) -> Iterator[str]:
     if unreachable(grounded):
         return
     facts = conflict(grounded, deadline)
-    texts = [grounded.meanings.get(fact[0]) or f"({' '.join(fact)})" for fact in facts]
+    texts = [grounded.meanings.get(fact[0]) or _written(fact) for fact in facts]
     if len(texts) == 1:
         yield f"every way to {texts[0]} was searched, and none leads there"
     elif texts:
@@ -143,6 +143,10 @@ def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Recor
     tries = record.failures + record.successes
     place = " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present)) if present else ""
     return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+
+
+def _written(fact: Fact) -> str:
+    return f"(not {_written(fact[1:])})" if fact[0] == "not" else f"({' '.join(fact)})"
 
 
 def _kinds(problem: StreamTask, words: tuple[str, ...]) -> str:
