@@ -80,6 +80,9 @@ class Arguments:
     """Carry the plan out in physics, as by tamp-execute; then 1 as well when the goal does not hold at the end."""
     grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
     """How the hand holds in physics: friction, or constraint (a fixed joint)."""
+    statistics: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Learn from run to run: how often each stream of the domain succeeds is read from this file, and added to it. A
+    plan then depends on the file as well as on the seed."""
     why: bool = False
     """When there is no plan, look for small changes that make it solvable (a body gone, movable or smaller, a place
     larger or nearer, a goal less); takes up to --time again."""
@@ -119,6 +122,8 @@ def parsed(arguments: list[str]) -> Arguments:
     shown = [name for name in ("view", "html", "png", "video", "record") if getattr(chosen, name)]
     if chosen.files[-1].endswith(".pddl") and shown:
         raise InputError(f"--{shown[0]} is for problems with a scene; one in PDDL has none")
+    if chosen.files[-1].endswith(".pddl") and (chosen.statistics or chosen.why):
+        raise InputError(f"--{'statistics' if chosen.statistics else 'why'} is for problems with a scene and streams")
     if chosen.files[-1].endswith(".pddl") and chosen.execute:
         raise InputError("--execute is for problems with a scene; a plan of PDDL alone has no motion")
     if chosen.grasp not in GRASPS:

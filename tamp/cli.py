@@ -8,6 +8,7 @@ import io
 import shlex
 import sys
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -68,6 +69,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.problem import load_problem
     from tamp.relaxation.why import why
     from tamp.report import headline, improvement, summary
+    from tamp.statistics_file import add_statistics, read_statistics
     from tamp.streams.python_file import given_by_files
     from tamp.view.wishes import Wishes, fulfil
 
@@ -90,6 +92,12 @@ def _solve(arguments: Arguments, started: float) -> int:
         steering=arguments.steering,
     )
     problem = load()
+    known = {}
+    domain_name = problem.stream_task.task.domain.name
+    if arguments.statistics is not None:
+        check_writable(arguments.statistics)
+        known = read_statistics(arguments.statistics, domain_name)
+        problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
     shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
 
@@ -109,6 +117,8 @@ def _solve(arguments: Arguments, started: float) -> int:
         record=arguments.record or wishes.page,
     )
     shown.clear()
+    if arguments.statistics is not None:
+        add_statistics(arguments.statistics, domain_name, known, solution.statistics)
     asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
     because = None
     if asked:

@@ -37,8 +37,8 @@ def _opened(grounded: Grounded) -> Goal:
     for fact in sorted(goal.positive):
         rules = [axiom for axiom in grounded.axioms if axiom.head == fact]
         if fact[0] in grounded.meanings and rules:
-            positive = frozenset.intersection(*(rule.positive for rule in rules))
-            negative = frozenset.intersection(*(rule.negative for rule in rules))
+            positive = {part for part in rules[0].positive if all(part in rule.positive for rule in rules)}
+            negative = {part for part in rules[0].negative if all(part in rule.negative for rule in rules)}
             goal = Goal(goal.positive | positive, goal.negative | negative, goal.static)
     return goal
 

@@ -14,10 +14,10 @@ from tamp.algorithms.costs import Costs
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
-from tamp.algorithms.optimistic import Optimism, assumable, imagine, relevant, type_facts, used_predicates
+from tamp.algorithms.optimistic import Named, Optimism, assumable, imagine, relevant, type_facts, used_predicates
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
-from tamp.algorithms.statistics import Experience
+from tamp.algorithms.statistics import SCALE, Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Objects, Streams
 from tamp.algorithms.tally import Tally, tallies
@@ -34,6 +34,9 @@ FEW = 8
 
 UNTRIED = 0.2
 """The price of resting on a test of values that are not drawn yet, in units of an action's cost."""
+
+WORST = 5.0
+"""Expected failures that earlier runs can charge for at most: another problem may be kinder."""
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
@@ -79,7 +82,7 @@ class Run:
         tests = {stream.name for stream, _ in self.assumed.values()}
         self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
         self.refused: set[Fact] = set()
-        self.names: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
+        self.names: dict[tuple[str, tuple[str, ...]], Named] = {}
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
         self.real: dict[Fact, None] = {}
         self.known = [*sorted(task.initial), *type_facts(task)]
@@ -136,13 +139,23 @@ class Run:
         return found.bound
 
     def doubts(self) -> dict[Fact, float]:
-        """A price for each test of placeholders not tried yet: a generator that certifies the same goes first."""
+        """A price for what is not tried yet.
+
+        For each test of placeholders, since a generator that certifies the same goes first; and for the calls of
+        streams that earlier runs know, by the failures to expect.
+        """
         known, makers = self.experience.facts, self.optimism.makers
-        return {
+        doubts = {
             fact: UNTRIED
             for fact, guess in makers.items()
             if guess.stream.is_test and guess.level > 1 and fact[0] not in self.assumed and fact not in known
         }
+        earlier = {name: SCALE * min(p.expected_failures, WORST) for name, p in self.problem.known.items()}
+        if earlier:
+            for fact, guess in makers.items():
+                if guess.stream.name in earlier and fact not in known:
+                    doubts[fact] = doubts.get(fact, 0.0) + earlier[guess.stream.name]
+        return doubts
 
     def _usual_cost(self) -> float:
         """The mean cost of the operators: prices are in units of it where actions cost more than one."""

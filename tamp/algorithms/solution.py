@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from tamp.algorithms.costs import BoundFunction
+from tamp.algorithms.posterior import Posterior
 from tamp.algorithms.statistics import StreamStatistics
 from tamp.algorithms.stream import BoundStream, Objects
 from tamp.algorithms.tally import Tally
@@ -33,6 +34,7 @@ class StreamTask:
         values: The objects' values, where they are more than their names.
         functions: Costs that Python computes.
         by_value: Whether equal values are one object.
+        known: What earlier runs say of streams, by name; those that fail often are avoided from the start.
     """
 
     task: Task
@@ -40,6 +42,7 @@ class StreamTask:
     values: Mapping[str, object]
     functions: tuple[BoundFunction, ...] = ()
     by_value: bool = False
+    known: Mapping[str, Posterior] = field(default_factory=dict[str, Posterior])
 
 
 @dataclass(frozen=True)

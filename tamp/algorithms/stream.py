@@ -262,4 +262,4 @@ class Streams:
 def ground(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
     """The facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
-    return tuple((atom.predicate, *(table.get(term, term) for term in atom.terms)) for atom in atoms)
+    return tuple([(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms])
