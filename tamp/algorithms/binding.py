@@ -123,9 +123,7 @@ class Binder:
         )
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
-        level = _Level(iter(()), conflict)
-        level.candidates = self._candidates(skeleton, index, instance, makers, level, tries, fresh)
-        return level
+        return _Level(self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict)
 
     def _candidates(
         self,
@@ -133,7 +131,7 @@ class Binder:
         index: int,
         instance: Instance,
         makers: dict[int, int],
-        level: _Level,
+        conflict: set[int],
         tries: int,
         fresh: bool,
     ) -> Iterator[tuple[str, ...]]:
@@ -177,7 +175,7 @@ class Binder:
             if offer(outputs):
                 yield outputs
         if not instance.results:
-            self._blame(node, instance, makers, level)
+            self._blame(node, instance, makers, conflict)
 
     def _note(self, node: Node, instance: Instance, success: bool) -> None:
         if success or instance.last is None:
@@ -190,14 +188,14 @@ class Binder:
                 return
         self._experience.note(node.fact, instance.last.reason)
 
-    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], level: _Level) -> None:
+    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]) -> None:
         """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
         if not node.stream.is_fluent:
             return
         blockers = instance.last.blockers if instance.last is not None else ()
         for (_, terms), fact in node.fluents:
             if not blockers or any(word in blockers for word in fact[1:]):
-                level.conflict |= {makers[term] for term in terms if isinstance(term, int)}
+                conflict |= {makers[term] for term in terms if isinstance(term, int)}
 
 
 def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from numbers import Real
 from typing import Any
 
@@ -201,7 +202,7 @@ class Streams:
         except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
             value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
-            self._warn(f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up")
+            _add_new(self.warnings, f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up")
         finally:
             statistics.seconds += time.perf_counter() - started
         statistics.calls += 1
@@ -227,7 +228,8 @@ class Streams:
         if instance.iterator is None:
             key = repr((instance.stream.name, instance.inputs, sorted(instance.fluents)))
             shown = [tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)]
-            call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, self._warn)
+            warn = partial(_add_new, self.warnings)  # not a method: a call that knows the streams would keep them alive
+            call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
                 instance.exhausted = True
@@ -254,12 +256,13 @@ class Streams:
             for i, part in enumerate(parts)
         )
 
-    def _warn(self, message: str) -> None:
-        if message not in self.warnings:
-            self.warnings.append(message)
-
 
 def ground(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
     """The facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
     return tuple([(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms])
+
+
+def _add_new(warnings: list[str], message: str) -> None:
+    if message not in warnings:
+        warnings.append(message)
