@@ -19,8 +19,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
 
 def call(command: Sequence[str | Path], cwd: Path) -> subprocess.CompletedProcess[str]:
-    alone = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    run = subprocess.run([str(word) for word in command], cwd=cwd, env=alone, capture_output=True, text=True, check=False)
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    run = subprocess.run([str(word) for word in command], cwd=cwd, env=env, capture_output=True, text=True, check=False)
     assert run.returncode == 0, f"{command}\n{run.stdout}\n{run.stderr}"
     return run
 

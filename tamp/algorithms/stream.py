@@ -202,7 +202,10 @@ class Streams:
         except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
             value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
-            _add_new(self.warnings, f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up")
+            _add_new(
+                self.warnings,
+                f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up",
+            )
         finally:
             statistics.seconds += time.perf_counter() - started
         statistics.calls += 1
