@@ -14,9 +14,14 @@ def test_a_run_leaves_nothing_to_the_collector_of_cycles() -> None:
     gc.collect()
     gc.disable()
     try:
-        before = sum(isinstance(thing, Streams | Binder) for thing in gc.get_objects())
+        before = _held()
         assert tamp.solve(problem, max_time=30.0, seed=0).plan
-        after = sum(isinstance(thing, Streams | Binder) for thing in gc.get_objects())
+        after = _held()
     finally:
         gc.enable()
-    assert after == before
+    assert after <= before
+
+
+def _held() -> int:
+    """How many of a run's parts there are. By type(): isinstance would ask objects of torch, which warn when asked."""
+    return sum(type(thing) in (Streams, Binder) for thing in gc.get_objects())
