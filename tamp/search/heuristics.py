@@ -56,7 +56,7 @@ def hadd(successors: Successors) -> Heuristic:
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
         exploration = relaxation.explore(closed, additive=True)
-        return Estimate(sum((exploration.costs[goal] for goal in exploration.goals), start=0.0))
+        return Estimate(sum(exploration.goal_costs, start=0.0))
 
     return estimate
 
@@ -67,7 +67,7 @@ def hmax(successors: Successors) -> Heuristic:
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
         exploration = relaxation.explore(closed, additive=False)
-        return Estimate(max((exploration.costs[goal] for goal in exploration.goals), default=0.0))
+        return Estimate(max(exploration.goal_costs, default=0.0))
 
     return estimate
 

@@ -27,10 +27,10 @@ class Landmarks:
         self._successors = successors
         initial = successors.closure(successors.initial)
         situation = relaxation.situation(initial)
-        before, effects, needed = situation.before, situation.effects, situation.needed
+        before, effects, needed = situation.before.lists(), situation.effects.lists(), situation.needed.lists()
         here = relaxation.holding(initial)
         sets: list[Mask] = [0] * len(needed)  # 0: not reached yet; every reached set contains the fact itself
-        for fact in (*here, *(number for _, number in situation.seeds)):
+        for fact in (*here, *situation.paid.tolist()):
             sets[fact] = 1 << fact
         start = set(here)
         waiting = dict.fromkeys(range(len(before)))
@@ -62,7 +62,7 @@ class Landmarks:
         self._goals = goals & useful
         self._reached: dict[State, Mask] = {}
         self._complements = self._all >> self._size
-        self._weights = self._weigh(situation.effects, situation.costs)
+        self._weights = self._weigh(effects, situation.costs.tolist())
         self._needs = self._first_needs(sets, before, effects)
         self._changes = self._find_changes()
 

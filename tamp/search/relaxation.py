@@ -10,45 +10,55 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
+from functools import cache
 
+from tamp.search.compiled import kernels
+from tamp.search.compiled.rows import Integers, Reals, Rows, extended, integers, raised, reals
 from tamp.search.successors import State, Successors, bits
 
+KEPT = 64
+"""So many situations are kept; one of a large task takes a megabyte, and making it again less time than exploring."""
 
-@dataclass(slots=True)
+
+@dataclass(frozen=True, slots=True)
 class Situation:
     """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
 
     Attributes:
         before: Preconditions of each relaxed operator.
-        counts: Their number.
         costs: Their costs.
         effects: Their effects: facts, complements of facts, paid guards.
         needed: For each fact, complement or guard, the relaxed operators that wait for it.
-        seeds: Guards that can be paid for, with the price.
+        paid: Guards that can be paid for.
+        prices: What they cost.
     """
 
-    before: list[list[int]]
-    counts: list[int]
-    costs: list[float]
-    effects: list[list[int]]
-    needed: list[list[int]]
-    seeds: list[tuple[float, int]]
+    before: Rows
+    costs: Reals
+    effects: Rows
+    needed: Rows
+    paid: Integers
+    prices: Reals
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Exploration:
     """The result: costs of facts, and for each the relaxed operator that reaches it best (-1: it holds, or is paid)."""
 
-    costs: list[float]
-    supporters: list[int]
+    costs: Reals
+    supporters: Integers
     situation: Situation
-    goals: list[int]
+    goals: Integers
+
+    @property
+    def goal_costs(self) -> list[float]:
+        """What each fact of the goal costs."""
+        return self.costs[self.goals].tolist()
 
     @property
     def dead(self) -> bool:
         """Whether the goal is out of reach even in the relaxation, so that the state is a dead end."""
-        return any(self.costs[goal] == math.inf for goal in self.goals)
+        return math.inf in self.goal_costs
 
 
 class Relaxation:
@@ -60,8 +70,7 @@ class Relaxation:
             Not admissible.
 
     Attributes:
-        owner: The operator that each relaxed operator belongs to, -1 for axioms.
-        before: The preconditions of each relaxed operator.
+        owners: The operator that each relaxed operator belongs to, -1 for axioms.
         of_operator: The relaxed operators of each operator.
     """
 
@@ -69,12 +78,12 @@ class Relaxation:
         self._successors = s = successors
         self._size = size = len(s.facts)
         step = 1.0 if steps and any(s.cost[i] == 0.0 for i in s.alive) else 0.0
-        self.owner: list[int] = []
-        self.before: list[list[int]] = []
+        self._owners: list[int] = []
+        self._before: list[list[int]] = []
         self._costs: list[float] = []
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
-        self.of_operator: dict[int, list[int]] = {}
+        self._listed: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.grounded.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
@@ -85,37 +94,39 @@ class Relaxation:
             negated |= s.mask(axiom.negative)
         self._negated = negated = negated & ~derived
         every = (1 << size) - 1
+        split = cache(_split)
         for i in s.alive:
             deleted = every & ~s.kept[i] & ~s.added[i] & negated
-            effects = [*bits(s.added[i]), *(size + b for b in bits(deleted))]
+            effects = [*split(s.added[i]), *(size + b for b in bits(deleted))]
             if effects or not s.conditional[i]:
-                self._add(i, s.before[i], s.absent[i], s.cost[i] + step, effects)
+                self._add(i, split(s.before[i]), s.absent[i], s.cost[i] + step, effects)
             for positive, negative, added, removed in s.conditional[i]:
                 effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
                 if effects:
-                    self._add(i, s.before[i] | positive, s.absent[i] | negative, s.cost[i] + step, effects)
+                    self._add(i, split(s.before[i] | positive), s.absent[i] | negative, s.cost[i] + step, effects)
         for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
-            self._add(-1, s.mask(axiom.positive), s.mask(axiom.negative), cost, [s.number[axiom.head]])
-        self._counts = list(map(len, self.before))
-        self._needed: list[list[int]] = [[] for _ in range(2 * size)]
-        for i, facts in enumerate(self.before):
-            for fact in facts:
-                self._needed[fact].append(i)
-        self._free = [i for i, count in enumerate(self._counts) if not count]
+            self._add(-1, split(s.mask(axiom.positive)), s.mask(axiom.negative), cost, [s.number[axiom.head]])
+        self.owners = integers(self._owners)
+        self.of_operator = Rows.of(self._listed)
+        before = Rows.of(self._before)
+        self._base = Situation(
+            before, reals(self._costs), Rows.of(self._effects), before.transposed(2 * size), integers(()), reals(())
+        )
         self._removal = self._removal_costs()
         self._goals = list(bits(s.goal))
         self._negative_goals = list(bits(s.goal_absent & ~derived))
+        self._goal_numbers = integers(self.goals)
         self._situations: dict[int, Situation] = {}
 
-    def _add(self, owner: int, before: int, absent: int, cost: float, effects: list[int]) -> None:
-        number = len(self.owner)
-        self.owner.append(owner)
-        self.before.append(list(bits(before)))
+    def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
+        number = len(self._owners)
+        self._owners.append(owner)
+        self._before.append(before)
         self._costs.append(cost)
         self._effects.append(effects)
         if owner >= 0:
-            self.of_operator.setdefault(owner, []).append(number)
+            self._listed[owner].append(number)
         for fact in bits(absent & self._negated):
             self._negative.setdefault(fact, []).append(number)
 
@@ -146,14 +157,15 @@ class Relaxation:
         key = self.key(state)
         known = self._situations.get(key)
         if known is None:
-            if len(self._situations) > 10_000:
+            if len(self._situations) >= KEPT:
                 self._situations.clear()
             known = self._situations[key] = self._situation(key)
         return known
 
     def _situation(self, state: State) -> Situation:
-        s, size = self._successors, self._size
-        costs = self._costs[:]
+        s, size, base = self._successors, self._size, self._base
+        dearer: list[int] = []
+        by: list[float] = []
         waiting: dict[tuple[int, float], list[int]] = {}
         for fact in bits(state):
             if fact in self._negative:
@@ -161,95 +173,52 @@ class Relaxation:
         for facts in s.triggered(state):
             removal = min(self._removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
-                for i in self.of_operator.get(operator, ()):
+                for i in self._listed[operator]:
                     if price <= removal and price < math.inf:
-                        costs[i] += price
+                        dearer.append(i)
+                        by.append(price)
                     else:
                         waiting.setdefault((facts, price), []).append(i)
+        costs = raised(base.costs, dearer, by)
         if not waiting:
-            return Situation(self.before, self._counts, costs, self._effects, self._needed, [])
-        before, counts, effects, needed = self.before[:], self._counts[:], self._effects[:], self._needed[:]
-        seeds: list[tuple[float, int]] = []
-        for (facts, price), operators in waiting.items():
-            number = len(needed)
-            needed.append(operators)
-            for i in operators:
-                counts[i] += 1
-                before[i] = [*before[i], number]
-            if price < math.inf:
-                seeds.append((price, number))
-            for fact in bits(facts):
-                needed[size + fact] = [*needed[size + fact], len(counts)]
-                before.append([size + fact])
-                counts.append(1)
-                costs.append(0.0)
-                effects.append([number])
-        return Situation(before, counts, costs, effects, needed, seeds)
+            return Situation(base.before, costs, base.effects, base.needed, base.paid, base.prices)
+        operators, first = len(base.before), len(base.needed)
+        waiters: list[int] = []
+        guards: list[int] = []
+        removers: list[int] = []
+        removed: list[int] = []
+        for guard, ((facts, _), waiting_here) in enumerate(waiting.items(), start=first):
+            waiters += waiting_here
+            guards += [guard] * len(waiting_here)
+            complements = [size + fact for fact in bits(facts)]
+            removers += complements
+            removed += [guard] * len(complements)
+        added = range(operators, operators + len(removers))
+        return Situation(
+            before=base.before.with_more([*waiters, *added], [*guards, *removers], operators + len(removers)),
+            costs=extended(costs, len(removers)),
+            effects=base.effects.with_more(added, removed, operators + len(removers)),
+            needed=base.needed.with_more([*guards, *removers], [*waiters, *added], first + len(waiting)),
+            paid=integers(guard for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf),
+            prices=reals([price for _, price in waiting if price < math.inf]),
+        )
 
     def explore(self, closed: State, *, additive: bool) -> Exploration:
         """Costs of all facts from a state: sums of the preconditions' costs (hadd) or their maximum (hmax).
+
+        Facts are taken in the order of their costs, until the goal is reached at the cost of all that is left.
 
         Args:
             closed: The state with its derived facts.
             additive: Sum, or maximum.
         """
-        situation = self.situation(closed)
-        size = self._size
-        costs = [math.inf] * len(situation.needed)
-        supporters = [-1] * len(costs)
-        counts, totals = situation.counts[:], situation.costs[:]
-        effects, needed = situation.effects, situation.needed
-        # Many facts cost the same: a bucket a cost, and a heap of the different costs.
-        here = list(bits(closed))
-        for fact in here:
-            costs[fact] = 0.0
-        for fact in self._negative_goals:
-            if not closed >> fact & 1:
-                costs[size + fact] = 0.0
-        buckets: dict[float, list[int]] = {0.0: here}
-        heap = [0.0]
-        goals = self._goals + [size + fact for fact in self._negative_goals]
-        for price, number in situation.seeds:
-            costs[number] = price
-            _push(buckets, heap, price, number)
-        for i in self._free:
-            if not counts[i]:
-                total = totals[i]
-                for effect in effects[i]:
-                    if total < costs[effect]:
-                        costs[effect] = total
-                        supporters[effect] = i
-                        _push(buckets, heap, total, effect)
-        while heap:
-            cost = heap[0]
-            bucket = buckets[cost]
-            for fact in bucket:  # it may grow meanwhile, by effects of operators without cost
-                if cost > costs[fact]:
-                    continue
-                for i in needed[fact]:
-                    counts[i] -= 1
-                    if additive:
-                        totals[i] += cost
-                    if not counts[i]:
-                        total = totals[i] if additive else totals[i] + cost
-                        for effect in effects[i]:
-                            if total < costs[effect]:
-                                costs[effect] = total
-                                supporters[effect] = i
-                                into = buckets.get(total)
-                                if into is None:
-                                    buckets[total] = [effect]
-                                    heappush(heap, total)
-                                else:
-                                    into.append(effect)
-            heappop(heap)
-            del buckets[cost]
-            for goal in goals:
-                if costs[goal] > cost:
-                    break
-            else:
-                break
-        return Exploration(costs, supporters, situation, goals)
+        it = self.situation(closed)
+        holding = self.holding(closed)
+        costs, supporters = kernels.explore(
+            it.before.starts, it.effects.starts, it.effects.values, it.needed.starts, it.needed.values, it.costs,
+            integers((*it.paid, *holding)), extended(it.prices, len(holding)), self._goal_numbers, additive,
+        )  # fmt: skip
+        return Exploration(costs, supporters, it, self._goal_numbers)
 
     def plan(self, exploration: Exploration) -> tuple[float, list[int]]:
         """The cost of a relaxed plan made of best supporters, guards' prices included, and its operators.
@@ -258,42 +227,13 @@ class Relaxation:
         its own, if that operator is cheaper than what the fact is needed for: the hand is free for the next body once
         this one is placed where it shall be, it need not be put back first.
         """
-        costs, supporters, situation = exploration.costs, exploration.supporters, exploration.situation
-        before, effects, owners = situation.before, situation.effects, self.owner
-        total = 0.0
-        chosen: dict[int, float] = {}
-        needed = dict.fromkeys(exploration.goals, math.inf)
-        provided: dict[int, float] = {}
-        queue = [(-costs[fact], fact) for fact in needed]
-        heapify(queue)
-        while queue:
-            cost, fact = heappop(queue)
-            i = supporters[fact]
-            if i < 0:
-                if fact >= 2 * self._size:
-                    total -= cost
-                continue
-            if fact in provided and provided[fact] <= needed[fact]:
-                continue
-            if i < len(owners) and owners[i] >= 0:
-                owner = owners[i]
-                chosen[owner] = max(chosen.get(owner, 0.0), situation.costs[i])
-                for effect in effects[i]:
-                    provided[effect] = min(provided.get(effect, math.inf), -cost)
-            bound = -cost - situation.costs[i]
-            for other in before[i]:
-                known = needed.get(other)
-                if known is None:
-                    needed[other] = bound
-                    heappush(queue, (-costs[other], other))
-                elif bound < known:
-                    needed[other] = bound
-        return total + sum(chosen[i] for i in sorted(chosen)), sorted(chosen)
+        it = exploration.situation
+        cost, plan = kernels.relaxed_plan(
+            exploration.costs, exploration.supporters, it.before.starts, it.before.values, it.effects.starts,
+            it.effects.values, it.costs, self.owners, len(self._listed), exploration.goals, 2 * self._size,
+        )  # fmt: skip
+        return cost, plan.tolist()
 
 
-def _push(buckets: dict[float, list[int]], heap: list[float], cost: float, fact: int) -> None:
-    if cost in buckets:
-        buckets[cost].append(fact)
-    else:
-        buckets[cost] = [fact]
-        heappush(heap, cost)
+def _split(mask: State) -> list[int]:
+    return list(bits(mask))
