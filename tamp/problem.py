@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import tamp.search.loops.compiled  # noqa: F401  # loads now what would else be loaded in planning time
 from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream

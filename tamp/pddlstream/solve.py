@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any, NamedTuple, cast
 
+import tamp.search.loops.compiled  # noqa: F401  # loads now what would else be loaded in planning time
 from tamp.alarm import Alarm
 from tamp.algorithms.incremental import Incremental
 from tamp.algorithms.registry import ALGORITHMS

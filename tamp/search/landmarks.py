@@ -7,6 +7,9 @@ graphs, 2010).
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 from tamp.search.relaxation import Relaxation
 from tamp.search.successors import State, Successors, bits
 
@@ -30,7 +33,7 @@ class Landmarks:
         before, effects, needed = situation.before.lists(), situation.effects.lists(), situation.needed.lists()
         here = relaxation.holding(initial)
         sets: list[Mask] = [0] * len(needed)  # 0: not reached yet; every reached set contains the fact itself
-        for fact in (*here, *situation.paid.tolist()):
+        for fact in (*here, *situation.paid):
             sets[fact] = 1 << fact
         start = set(here)
         waiting = dict.fromkeys(range(len(before)))
@@ -62,7 +65,7 @@ class Landmarks:
         self._goals = goals & useful
         self._reached: dict[State, Mask] = {}
         self._complements = self._all >> self._size
-        self._weights = self._weigh(effects, situation.costs.tolist())
+        self._weights = self._weigh(effects, situation.costs)
         self._needs = self._first_needs(sets, before, effects)
         self._changes = self._find_changes()
 
@@ -98,12 +101,12 @@ class Landmarks:
     def _holding(self, closed: State) -> Mask:
         return (closed & self._all) | (~closed & self._complements) << self._size
 
-    def _weigh(self, effects: list[list[int]], costs: list[float]) -> dict[int, float]:
+    def _weigh(self, effects: list[list[int]], costs: Sequence[float]) -> dict[int, float]:
         weights: dict[int, float] = {}
         for i, facts in enumerate(effects):
             for fact in facts:
                 if self._all >> fact & 1:
-                    weights[fact] = min(weights.get(fact, costs[i]), costs[i])
+                    weights[fact] = min(weights.get(fact, math.inf), float(costs[i]))
         return {fact: weights.get(fact, 0.0) for fact in self.landmarks}
 
     def _first_needs(self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]) -> dict[int, Mask]:

@@ -7,10 +7,11 @@ operators: all of them get cheaper when one is in a cut, since one application m
 
 from __future__ import annotations
 
-from tamp.search.compiled import kernels
-from tamp.search.compiled.rows import extended, integers
 from tamp.search.relaxation import KEPT, Relaxation, Situation
 from tamp.search.successors import State
+
+CUTS = 10
+"""So many cuts an estimate takes for granted, in telling what it will cost."""
 
 
 class LandmarkCut:
@@ -25,27 +26,23 @@ class LandmarkCut:
 
     def __init__(self, relaxation: Relaxation, situation: Situation) -> None:
         self._relaxation = relaxation
-        self._true = true = len(situation.needed)
+        self.situation = it = situation
+        self._true = true = it.facts
         self._goal = goal = true + 1
-        free, goals, last = situation.before.empty(), relaxation.goals or [true], len(situation.before)
-        self._before = situation.before.with_more(
-            [*free, *[last] * len(goals)], [*[true] * len(free), *goals], last + 1
-        )
-        self._effects = situation.effects.with_more([last], [goal], last + 1)
-        self._needed = self._before.transposed(goal + 1)
-        self._adders = self._effects.transposed(goal + 1)
-        self._costs = extended(situation.costs, 1)
-        self._paid = situation.paid.tolist()
+        loops, last, goals = it.loops, it.operators, relaxation.goals or [true]
+        integers = loops.integers
+        at, what = [*relaxation.free, *[last] * len(goals)], [*[true] * len(relaxation.free), *goals]
+        before = loops.appended(it.before, integers(at), integers(what), last + 1)
+        effects = loops.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
+        self._rows = before, effects, loops.transposed(before, goal + 1), loops.transposed(effects, goal + 1)
+        self._costs = loops.raised(it.costs, integers(()), loops.reals(()), 1)
+        self._owners, self._groups = integers(relaxation.owners), loops.rows(relaxation.of_operator)
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts; infinite in a dead end."""
-        here = integers((*self._relaxation.holding(closed), self._true, *self._paid))
-        rows = (self._before, self._effects, self._needed, self._adders)
-        groups = self._relaxation.of_operator
-        return kernels.landmark_cut(
-            *(array for lists in rows for array in (lists.starts, lists.values)),
-            self._costs, here, self._relaxation.owners, groups.starts, groups.values, self._goal,
-        )  # fmt: skip
+        loops = self.situation.loops
+        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
+        return loops.landmark_cut(*self._rows, self._costs, here, self._owners, self._groups, self._goal)
 
 
 class LandmarkCuts:
@@ -57,10 +54,10 @@ class LandmarkCuts:
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts."""
-        key = self._relaxation.key(closed)
+        situation, key = self._relaxation.situation(closed, CUTS), self._relaxation.key(closed)
         known = self._known.get(key)
-        if known is None:
+        if known is None or known.situation.loops is not situation.loops:
             if len(self._known) >= KEPT:
                 self._known.clear()
-            known = self._known[key] = LandmarkCut(self._relaxation, self._relaxation.situation(closed))
+            known = self._known[key] = LandmarkCut(self._relaxation, situation)
         return known.value(closed)

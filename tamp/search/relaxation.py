@@ -12,8 +12,8 @@ import math
 from dataclasses import dataclass
 from functools import cache
 
-from tamp.search.compiled import kernels
-from tamp.search.compiled.rows import Integers, Reals, Rows, extended, integers, raised, reals
+from tamp.search.loops.rows import Integers, Reals, Rows
+from tamp.search.loops.tiers import Loops, choose
 from tamp.search.successors import State, Successors, bits
 
 KEPT = 64
@@ -25,6 +25,7 @@ class Situation:
     """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
 
     Attributes:
+        loops: Those that its lists are made for.
         before: Preconditions of each relaxed operator.
         costs: Their costs.
         effects: Their effects: facts, complements of facts, paid guards.
@@ -33,12 +34,23 @@ class Situation:
         prices: What they cost.
     """
 
+    loops: Loops
     before: Rows
     costs: Reals
     effects: Rows
     needed: Rows
-    paid: Integers
-    prices: Reals
+    paid: tuple[int, ...] = ()
+    prices: tuple[float, ...] = ()
+
+    @property
+    def operators(self) -> int:
+        """How many relaxed operators there are."""
+        return len(self.before.starts) - 1
+
+    @property
+    def facts(self) -> int:
+        """How many facts, complements and guards there are."""
+        return len(self.needed.starts) - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +60,12 @@ class Exploration:
     costs: Reals
     supporters: Integers
     situation: Situation
-    goals: Integers
+    goals: list[int]
 
     @property
     def goal_costs(self) -> list[float]:
         """What each fact of the goal costs."""
-        return self.costs[self.goals].tolist()
+        return [float(self.costs[goal]) for goal in self.goals]
 
     @property
     def dead(self) -> bool:
@@ -72,18 +84,20 @@ class Relaxation:
     Attributes:
         owners: The operator that each relaxed operator belongs to, -1 for axioms.
         of_operator: The relaxed operators of each operator.
+        free: The relaxed operators without preconditions.
+        goals: The relaxed facts that the goal asks for.
     """
 
     def __init__(self, successors: Successors, *, steps: bool) -> None:
         self._successors = s = successors
         self._size = size = len(s.facts)
         step = 1.0 if steps and any(s.cost[i] == 0.0 for i in s.alive) else 0.0
-        self._owners: list[int] = []
+        self.owners: list[int] = []
         self._before: list[list[int]] = []
         self._costs: list[float] = []
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
-        self._listed: list[list[int]] = [[] for _ in s.operators]
+        self.of_operator: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.grounded.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
@@ -107,26 +121,30 @@ class Relaxation:
         for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
             self._add(-1, split(s.mask(axiom.positive)), s.mask(axiom.negative), cost, [s.number[axiom.head]])
-        self.owners = integers(self._owners)
-        self.of_operator = Rows.of(self._listed)
-        before = Rows.of(self._before)
-        self._base = Situation(
-            before, reals(self._costs), Rows.of(self._effects), before.transposed(2 * size), integers(()), reals(())
-        )
+        self.free = [i for i, facts in enumerate(self._before) if not facts]
         self._removal = self._removal_costs()
-        self._goals = list(bits(s.goal))
         self._negative_goals = list(bits(s.goal_absent & ~derived))
-        self._goal_numbers = integers(self.goals)
+        self.goals = [*bits(s.goal), *(size + fact for fact in self._negative_goals)]
+        self._entries = sum(map(len, self._before)) + len(self._before) + size
+        self._prepare(choose(0))
+
+    def _prepare(self, loops: Loops) -> None:
+        """Make the lists that the loops take, of the states that trigger no guards and violate nothing."""
+        before = loops.rows(self._before)
+        effects, needed = loops.rows(self._effects), loops.transposed(before, 2 * self._size)
+        self._base = Situation(loops, before, loops.reals(self._costs), effects, needed)
         self._situations: dict[int, Situation] = {}
+        self._ends = loops.integers(self.goals)
+        self._owned = loops.integers(self.owners)
 
     def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
-        number = len(self._owners)
-        self._owners.append(owner)
+        number = len(self.owners)
+        self.owners.append(owner)
         self._before.append(before)
         self._costs.append(cost)
         self._effects.append(effects)
         if owner >= 0:
-            self._listed[owner].append(number)
+            self.of_operator[owner].append(number)
         for fact in bits(absent & self._negated):
             self._negative.setdefault(fact, []).append(number)
 
@@ -139,11 +157,6 @@ class Relaxation:
                     costs[effect - self._size] = min(costs[effect - self._size], self._costs[i])
         return costs
 
-    @property
-    def goals(self) -> list[int]:
-        """The relaxed facts that the goal asks for."""
-        return self._goals + [self._size + fact for fact in self._negative_goals]
-
     def holding(self, closed: State) -> list[int]:
         """The relaxed facts that hold in a state with its derived facts: facts, and complements that the goal names."""
         return [*bits(closed), *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1)]
@@ -152,8 +165,11 @@ class Relaxation:
         """What states with the same situation have in common."""
         return state & self._negated
 
-    def situation(self, state: State) -> Situation:
-        """The relaxed task as seen from a state."""
+    def situation(self, state: State, effort: int = 1) -> Situation:
+        """The relaxed task as seen from a state, to be gone through about so many times."""
+        loops = choose(effort * self._entries)
+        if loops is not self._base.loops:
+            self._prepare(loops)
         key = self.key(state)
         known = self._situations.get(key)
         if known is None:
@@ -173,34 +189,37 @@ class Relaxation:
         for facts in s.triggered(state):
             removal = min(self._removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
-                for i in self._listed[operator]:
+                for i in self.of_operator[operator]:
                     if price <= removal and price < math.inf:
                         dearer.append(i)
                         by.append(price)
                     else:
                         waiting.setdefault((facts, price), []).append(i)
-        costs = raised(base.costs, dearer, by)
-        if not waiting:
-            return Situation(base.before, costs, base.effects, base.needed, base.paid, base.prices)
-        operators, first = len(base.before), len(base.needed)
+        if not waiting and not dearer:
+            return base
+        operators, first = base.operators, base.facts
         waiters: list[int] = []
         guards: list[int] = []
         removers: list[int] = []
         removed: list[int] = []
-        for guard, ((facts, _), waiting_here) in enumerate(waiting.items(), start=first):
-            waiters += waiting_here
-            guards += [guard] * len(waiting_here)
+        for guard, ((facts, _), those) in enumerate(waiting.items(), start=first):
+            waiters += those
+            guards += [guard] * len(those)
             complements = [size + fact for fact in bits(facts)]
             removers += complements
             removed += [guard] * len(complements)
-        added = range(operators, operators + len(removers))
+        loops, last = base.loops, operators + len(removers)
+        added = loops.integers(range(operators, last))
+        behind, sources = loops.integers([*waiters, *added]), loops.integers([*guards, *removers])
+        paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
         return Situation(
-            before=base.before.with_more([*waiters, *added], [*guards, *removers], operators + len(removers)),
-            costs=extended(costs, len(removers)),
-            effects=base.effects.with_more(added, removed, operators + len(removers)),
-            needed=base.needed.with_more([*guards, *removers], [*waiters, *added], first + len(waiting)),
-            paid=integers(guard for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf),
-            prices=reals([price for _, price in waiting if price < math.inf]),
+            loops,
+            before=loops.appended(base.before, behind, sources, last),
+            costs=loops.raised(base.costs, loops.integers(dearer), loops.reals(by), len(removers)),
+            effects=loops.appended(base.effects, added, loops.integers(removed), last),
+            needed=loops.appended(base.needed, sources, behind, first + len(waiting)),
+            paid=tuple(guard for guard, _ in paid),
+            prices=tuple(price for _, price in paid),
         )
 
     def explore(self, closed: State, *, additive: bool) -> Exploration:
@@ -213,12 +232,12 @@ class Relaxation:
             additive: Sum, or maximum.
         """
         it = self.situation(closed)
-        holding = self.holding(closed)
-        costs, supporters = kernels.explore(
-            it.before.starts, it.effects.starts, it.effects.values, it.needed.starts, it.needed.values, it.costs,
-            integers((*it.paid, *holding)), extended(it.prices, len(holding)), self._goal_numbers, additive,
-        )  # fmt: skip
-        return Exploration(costs, supporters, it, self._goal_numbers)
+        holding, loops = self.holding(closed), it.loops
+        here, prices = loops.integers((*it.paid, *holding)), loops.reals((*it.prices, *[0.0] * len(holding)))
+        costs, supporters = loops.explore(
+            it.before, it.effects, it.needed, it.costs, here, prices, self._ends, additive
+        )
+        return Exploration(costs, supporters, it, self.goals)
 
     def plan(self, exploration: Exploration) -> tuple[float, list[int]]:
         """The cost of a relaxed plan made of best supporters, guards' prices included, and its operators.
@@ -228,11 +247,11 @@ class Relaxation:
         this one is placed where it shall be, it need not be put back first.
         """
         it = exploration.situation
-        cost, plan = kernels.relaxed_plan(
-            exploration.costs, exploration.supporters, it.before.starts, it.before.values, it.effects.starts,
-            it.effects.values, it.costs, self.owners, len(self._listed), exploration.goals, 2 * self._size,
+        cost, plan = it.loops.relaxed_plan(
+            exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self._owned,
+            len(self.of_operator), self._ends, 2 * self._size,
         )  # fmt: skip
-        return cost, plan.tolist()
+        return cost, list(map(int, plan))
 
 
 def _split(mask: State) -> list[int]:

@@ -1,0 +1,1 @@
+"""The inner loops of the heuristics, run as plain Python or compiled."""
