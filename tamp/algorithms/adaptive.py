@@ -14,6 +14,7 @@ from tamp.algorithms.run import Run
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
 from tamp.clock import Deadline, OutOfTime
+from tamp.collector import seldom_collecting
 
 FIRST_TRIES = 4
 """Draws a visit of a stream call in a skeleton's first round, one more in each later one: a bad grasp shall not be
@@ -61,6 +62,7 @@ class Adaptive(Run):
 
     bound: tuple[Skeleton, dict[int, str]] | None = None
 
+    @seldom_collecting()
     def solve(self) -> Result:
         """Rounds of search and binding until a plan is bound, nothing is left, or the time is up."""
         patience, dry = PATIENCE, 0

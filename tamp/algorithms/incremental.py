@@ -15,6 +15,7 @@ from tamp.algorithms.run import Run
 from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
 from tamp.algorithms.stream import Instance
 from tamp.clock import Deadline, OutOfTime
+from tamp.collector import seldom_collecting
 from tamp.pddl.structs import Fact
 from tamp.search.instantiate import instantiate
 from tamp.search.operators import Grounded
@@ -55,6 +56,7 @@ class Incremental(Run):
         super().__init__(problem, make_rng, deadline, progress, pruned=pruned)
         self.streams.ahead = True
 
+    @seldom_collecting()
     def solve(self, most: int | None = None) -> Result:
         """Sample a level, search and bind what is left, until a plan is found or nothing is new.
 
