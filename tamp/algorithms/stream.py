@@ -154,6 +154,7 @@ class Streams:
         self._make_rng = make_rng
         self._deadline = deadline
         self._instances: dict[tuple[str, tuple[str, ...], frozenset[Fact]], Instance] = {}
+        self._of_call: dict[tuple[str, tuple[str, ...]], list[Instance]] = {}
 
     def remember(self, earlier: Streams) -> None:
         """Go on with what another part of the same run has learned, and add to its warnings."""
@@ -165,11 +166,12 @@ class Streams:
         instance = self._instances.get(key)
         if instance is None:
             instance = self._instances[key] = Instance(self.streams[name], inputs, fluents)
+            self._of_call.setdefault((name, inputs), []).append(instance)
         return instance
 
     def instances(self, name: str, inputs: tuple[str, ...]) -> list[Instance]:
         """All instances of a stream for these inputs, whatever fluents they were shown."""
-        return [made for (stream, given, _), made in self._instances.items() if (stream, given) == (name, inputs)]
+        return self._of_call.get((name, inputs), [])
 
     def called(self) -> list[Instance]:
         """All instances that were called so far, in the order in which they were first looked at."""

@@ -272,11 +272,12 @@ class Successors:
         for i in self.alive:
             for fact in self.operators[i].positive:
                 uses[fact] = uses.get(fact, 0) + 1
+        order = {fact: (count, fact) for fact, count in uses.items()}
         watched: dict[int, list[int]] = {}
         always: list[int] = []
         for i in self.alive:
             if self.operators[i].positive:
-                rarest = min(self.operators[i].positive, key=lambda fact: (uses[fact], fact))
+                rarest = min(self.operators[i].positive, key=order.__getitem__)
                 watched.setdefault(self.number[rarest], []).append(i)
             else:
                 always.append(i)
