@@ -49,7 +49,7 @@ class Example:
     scales: tuple[float, ...]
 
 
-class Dataset(Sequence[Example]):
+class Dataset:
     """A sequence of examples, made when they are asked for.
 
     Args:
@@ -87,7 +87,7 @@ class Dataset(Sequence[Example]):
     def __iter__(self) -> Iterator[Example]:
         return (self[index] for index in range(len(self)))
 
-    def __getitem__(self, index: int) -> Example:  # type: ignore[override]
+    def __getitem__(self, index: int) -> Example:
         a = self.arrays
         rows = np.flatnonzero(a["body"][index] >= 0)
         names = tuple(self._names[a["body"][index, row]] for row in rows)

@@ -111,18 +111,16 @@ def _sampled(rail: Rail, rates: Array) -> Timed:
     """The nodes at their times, and more samples on the straight parts; the acceleration is constant between nodes."""
     gaps = np.diff(rail.stations)
     spans = 2.0 * gaps / (rates[:-1] + rates[1:])
-    times, positions = [np.zeros(1)], [rail.positions[:1]]
-    for i, span in enumerate(spans):
-        count = max(1, int(np.ceil(span / TICK))) if rail.straight[i] else 1
-        elapsed = np.arange(1, count + 1) / count * span
-        travelled = (rates[i] + 0.5 * (rates[i + 1] - rates[i]) / span * elapsed) * elapsed / gaps[i]
-        travelled[-1] = 1.0
-        start, end = rail.positions[i], rail.positions[i + 1]
-        rows = start + travelled[:, None] * (end - start)
-        rows[-1] = end
-        times.append(times[-1][-1] + elapsed)
-        positions.append(rows)
-    return Timed(np.concatenate(times), np.concatenate(positions))
+    counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
+    i = np.repeat(np.arange(len(spans)), counts)  # the interval of each sample
+    ends = np.cumsum(counts)
+    shares = (np.arange(len(i)) - (ends - counts)[i] + 1) / counts[i]
+    starts = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
+    elapsed = shares * spans[i]
+    travelled = (rates[i] + 0.5 * (rates[i + 1] - rates[i]) * shares) * elapsed / gaps[i]
+    positions = rail.positions[i] + travelled[:, None] * (rail.positions[i + 1] - rail.positions[i])
+    positions[ends - 1] = rail.positions[1:]
+    return Timed(np.concatenate([[0.0], starts[i] + elapsed]), np.concatenate([rail.positions[:1], positions]))
 
 
 def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
