@@ -22,6 +22,9 @@ STYLES = ("-", "--", ":")
 PANEL = (4.6, 3.6)
 """Inches of one problem's picture."""
 
+LEGEND = 1.9
+"""Inches more for the legend."""
+
 PER_ROW = 3
 
 
@@ -102,13 +105,9 @@ class _Sheet:
             for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
                 labels.setdefault(label, handle)
         if labels:
-            self._figure.legend(
-                list(labels.values()),
-                list(labels),
-                loc="outside lower center",
-                ncols=min(6, len(labels)),
-                frameon=False,
-            )
+            width, height = self._figure.get_size_inches()
+            self._figure.set_size_inches(width + LEGEND, height)
+            self._figure.legend(list(labels.values()), list(labels), loc="outside right center", frameon=False)
         self._figure.savefig(path, dpi=150)
         return path
 
