@@ -29,6 +29,16 @@ PATIENCE = 1000
 SECOND_OPINION = 2
 """Draws that it gets for each of those failures."""
 
+TRAILS = 10
+"""Rounds after which it is asked as well, doubled each time, where rounds draw little and operators are many: streams
+that give one value and end have each plan of a tree tried in turn, while calling all of them is cheap."""
+
+LITTLE = 20
+"""Draws a round that are little; it gets ten times as many."""
+
+MANY = 1000
+"""Operators that are many."""
+
 DRY = 50
 """Rounds without anything left to draw after which everything is exhausted: prices have moved all that they can."""
 
@@ -65,7 +75,7 @@ class Adaptive(Run):
     @seldom_collecting()
     def solve(self) -> Result:
         """Rounds of search and binding until a plan is bound, nothing is left, or the time is up."""
-        patience, dry = PATIENCE, 0
+        patience, dry, trails = PATIENCE, 0, TRAILS
         try:
             while True:
                 before = self.binder.units
@@ -75,13 +85,17 @@ class Adaptive(Run):
                 dry = dry + 1 if self.binder.units == before else 0
                 if dry >= DRY:
                     return self.result(Outcome.EXHAUSTED)
+                draws = 0
                 if self._stuck(patience):
+                    draws, patience = SECOND_OPINION * patience, 2 * patience
+                elif dry == 0 and self._wanders(trails):
+                    draws, trails = 10 * LITTLE * trails, 2 * trails
+                if draws:
                     second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
                     second.streams.remember(self.streams)
-                    result = second.solve(SECOND_OPINION * patience)
+                    result = second.solve(draws)
                     if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED):
                         return result
-                    patience *= 2
                 self.progress(self.effort)
         except OutOfTime:
             return self.result(Outcome.TIMEOUT)
@@ -94,7 +108,7 @@ class Adaptive(Run):
         if found.plan is None:
             if self.deadline.passed:
                 raise OutOfTime
-            return self.hopeless()
+            return None if self.deepen() else self.hopeless()
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
@@ -109,6 +123,11 @@ class Adaptive(Run):
         if self.bury(skeleton) or absorbed:
             self.optimism, self.grounded = self.imagined()
         return None
+
+    def _wanders(self, rounds: int) -> bool:
+        """Whether so many rounds went from plan to plan in a large task and drew little."""
+        few = self.binder.units < LITTLE * rounds
+        return self.effort.searches >= rounds and few and len(self.grounded.operators) >= MANY
 
     def _stuck(self, patience: int) -> bool:
         """Whether even the cheapest plan rests on something that failed that often without a success."""

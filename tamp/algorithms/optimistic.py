@@ -7,11 +7,19 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from tamp.algorithms.fact_index import FactIndex, unify
 from tamp.algorithms.stream import BoundStream, ground
 from tamp.pddl.structs import And, Atom, Exists, Fact, Forall, Formula, Not, Or, Task
 
 MARK = "#"
 """Placeholders begin with it: "#p3" stands for any pose that its stream may yield."""
+
+
+LEVELS = 8
+"""Depth of guesses that rest on guesses, at first."""
+
+ENOUGH = 2000
+"""Guesses at first; twenty objects in the cupboard take 1,800."""
 
 
 @dataclass(eq=False, slots=True)  # not frozen: there are thousands, made three times faster
@@ -57,11 +65,13 @@ class Optimism:
         types: Placeholder to its types.
         assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
             one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
+        complete: Whether nothing was left out for being deep or one too many: what is not here cannot become true.
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
+    complete: bool = True
 
     def maker(self, fact: Fact) -> Guess | None:
         """The call that certifies a fact; that of an assumed one is made up when it is asked for."""
@@ -83,32 +93,36 @@ def imagine(
     facts: Iterable[Fact],
     *,
     dead: frozenset[tuple[str, tuple[str, ...]]] = frozenset(),
-    levels: int = 8,
-    limit: int = 50_000,
+    levels: int = LEVELS,
+    enough: int = ENOUGH,
     names: dict[tuple[str, tuple[str, ...]], Named] | None = None,
 ) -> Optimism:
     """Instantiate streams from known facts and from each other's promises, to a fixpoint or `levels` deep.
+
+    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there are no more of the
+    level that was reached then, nor of deeper ones, but for tests, which feed nothing.
 
     Args:
         streams: Those worth instantiating (see `relevant`).
         facts: Known static facts, types as unary facts among them.
         dead: Calls (stream, inputs) that are known to yield nothing.
         levels: Greatest depth of guesses resting on guesses.
-        limit: Greatest number of guesses.
+        enough: Number of guesses from which on they become shallower. The first level is always complete.
         names: The placeholders of calls imagined before, and the facts about them, kept and added to: what was learned
             is kept under their names, so a name must always mean the same.
     """
     optimism = Optimism()
-    index = _Index()
+    index = FactIndex()
     named: dict[tuple[str, tuple[str, ...]], Named] = {} if names is None else names
     counts = Counter(name.rstrip("0123456789") for call in named.values() for name in call.outputs)
     seen: set[tuple[str, tuple[str, ...]]] = set(dead)
     level_of: dict[Fact, int] = {}
     queue: list[Fact] = []
     for fact in facts:
-        if index.add(fact):
+        if fact not in level_of:
             level_of[fact] = 0
             queue.append(fact)
+    total, growing = 0, levels
     by_predicate: dict[str, list[tuple[BoundStream, int]]] = defaultdict(list)
     for stream in streams:
         for position, atom in enumerate(stream.declaration.domain):
@@ -127,8 +141,13 @@ def imagine(
         for fact in domain:
             if level_of[fact] >= level:
                 level = level_of[fact] + 1
-        if level > levels or len(seen) > limit:
+        nonlocal growing, total
+        if level > (levels if stream.is_test else growing):
+            optimism.complete = False
             return
+        total += 1
+        if total >= enough:
+            growing = max(1, min(growing, level - 1))
         if call is None:
             outputs: list[str] = []
             for name in declaration.outputs:
@@ -142,7 +161,7 @@ def imagine(
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
         made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
         for fact in call.certified:
-            if index.add(fact):
+            if fact not in level_of:
                 optimism.makers[fact] = made
                 level_of[fact] = level
                 queue.append(fact)
@@ -154,9 +173,13 @@ def imagine(
     while position < len(queue):
         fact = queue[position]
         position += 1
+        index.add(fact)  # now and not before: so a call is found with the last of its facts, and levels come in order
         for stream, place in by_predicate.get(fact[0], ()):
+            if level_of[fact] >= (levels if stream.is_test else growing):
+                optimism.complete = False
+                continue
             domain = stream.declaration.domain
-            binding = _unify(domain[place], fact, {})
+            binding = unify(domain[place], fact, {})
             if binding is not None:
                 rest = (*domain[:place], *domain[place + 1 :])
                 for complete in list(index.join(rest, binding)):
@@ -241,58 +264,3 @@ def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
                 stack.append((body, sign != in_rule, in_rule))
             case Exists(_, body) | Forall(_, body):
                 stack.append((body, sign, in_rule))
-
-
-class _Index:
-    """Facts by predicate, and by predicate, position and object."""
-
-    def __init__(self) -> None:
-        self._all: set[Fact] = set()
-        self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
-        self._by_object: dict[tuple[str, int, str], list[Fact]] = defaultdict(list)
-
-    def add(self, fact: Fact) -> bool:
-        """Whether the fact is new."""
-        if fact in self._all:
-            return False
-        self._all.add(fact)
-        self._by_predicate[fact[0]].append(fact)
-        for position in range(1, len(fact)):
-            self._by_object[(fact[0], position, fact[position])].append(fact)
-        return True
-
-    def join(self, atoms: Sequence[Atom], binding: dict[str, str]) -> Iterator[dict[str, str]]:
-        """All extensions of the binding under which every atom is a known fact."""
-        if not atoms:
-            yield binding
-            return
-        candidates = [self._candidates(atom, binding) for atom in atoms]
-        first = min(range(len(atoms)), key=lambda i: len(candidates[i]))
-        rest = (*atoms[:first], *atoms[first + 1 :])
-        for fact in list(candidates[first]):
-            extended = _unify(atoms[first], fact, binding)
-            if extended is not None:
-                yield from self.join(rest, extended)
-
-    def _candidates(self, atom: Atom, binding: Mapping[str, str]) -> Sequence[Fact]:
-        best: Sequence[Fact] = self._by_predicate.get(atom.predicate, ())
-        for position, term in enumerate(atom.terms, start=1):
-            name = binding.get(term) if term.startswith("?") else term
-            if name is not None:
-                found = self._by_object.get((atom.predicate, position, name), ())
-                if len(found) < len(best):
-                    best = found
-        return best
-
-
-def _unify(atom: Atom, fact: Fact, binding: dict[str, str]) -> dict[str, str] | None:
-    if len(fact) != len(atom.terms) + 1 or fact[0] != atom.predicate:
-        return None
-    extended = dict(binding)
-    for term, name in zip(atom.terms, fact[1:], strict=True):
-        if term[0] != "?":
-            if term != name:
-                return None
-        elif extended.setdefault(term, name) != name:
-            return None
-    return extended

@@ -14,7 +14,17 @@ from tamp.algorithms.costs import Costs
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
-from tamp.algorithms.optimistic import Named, Optimism, assumable, imagine, relevant, type_facts, used_predicates
+from tamp.algorithms.optimistic import (
+    ENOUGH,
+    LEVELS,
+    Named,
+    Optimism,
+    assumable,
+    imagine,
+    relevant,
+    type_facts,
+    used_predicates,
+)
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
 from tamp.algorithms.statistics import SCALE, Experience
@@ -37,6 +47,9 @@ UNTRIED = 0.2
 
 WORST = 5.0
 """Expected failures that earlier runs can charge for at most: another problem may be kinder."""
+
+DEEPEST = 8
+"""How many times the first depth and number of guesses are imagined at most, when there is no plan with fewer."""
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
@@ -77,6 +90,7 @@ class Run:
         self.latest: Skeleton | None = None
         self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
         self.given_up = False
+        self.depth = 1
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
@@ -92,7 +106,12 @@ class Run:
         """The optimistic task without the calls that are known to be dead."""
         started = time.perf_counter()
         optimism = imagine(
-            self.useful, [*self.known, *self.real], dead=frozenset((*self.dead, *self.settled)), names=self.names
+            self.useful,
+            [*self.known, *self.real],
+            dead=frozenset((*self.dead, *self.settled)),
+            levels=LEVELS * self.depth,
+            enough=ENOUGH * self.depth,
+            names=self.names,
         )
         optimism.assumed = self.assumed
         grounded = instantiate(
@@ -104,6 +123,15 @@ class Run:
         )
         self.effort.search_seconds += time.perf_counter() - started
         return optimism, grounded
+
+    def deepen(self) -> bool:
+        """Imagine more where guesses were left out; whether there was anything to add, and not too much already."""
+        if self.optimism.complete or self.depth >= DEEPEST:
+            self.given_up |= not self.optimism.complete
+            return False
+        self.depth *= 2
+        self.optimism, self.grounded = self.imagined()
+        return True
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.

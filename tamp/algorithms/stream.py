@@ -23,6 +23,9 @@ ends when nothing more is to come; a test returns a bool or a Rejection."""
 ADVISORY = "sample-"
 """Streams of this name's beginning only take advice from their fluents: what they certify holds in any state."""
 
+MOST_WARNINGS = 100
+"""Different warnings that are kept: nobody reads more, and a function may fail for each of its inputs."""
+
 
 @dataclass(frozen=True)
 class BoundStream:
@@ -269,5 +272,5 @@ def ground(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) 
 
 
 def _add_new(warnings: list[str], message: str) -> None:
-    if message not in warnings:
+    if len(warnings) < MOST_WARNINGS and message not in warnings:
         warnings.append(message)

@@ -94,6 +94,7 @@ class _Instantiation:
         self._needed: dict[Fact, None] = {}
         self._waiting: list[Fact] = []
         self._heads: dict[str, dict[Fact, list[tuple[int, Row]]]] = {}
+        self._bodies: dict[str, list[list[list[Callable[[Row], Fact]]]]] = {}
 
     def grounded(self) -> Grounded:
         """Run the fixpoint and build everything from what it reached."""
@@ -235,32 +236,31 @@ class _Instantiation:
         predicate = fact[0]
         if predicate not in self._heads:
             heads = self._heads[predicate] = dict[Fact, list[tuple[int, Row]]]()
+            bodies = self._bodies[predicate] = []
             for i, (definition, rule) in enumerate(self._definitions[predicate]):
                 known = {name: k for k, name in enumerate(rule.variables)}
                 head = filler((predicate, *definition.head.terms), known)
                 for row in sorted(rule.rows):
                     heads.setdefault(head(row), []).append((i, row))
-                for atom in self._vocabulary.sort(definition.literals).refuted:
+                kinds = self._vocabulary.sort(definition.literals)
+                static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
+                parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
+                bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
+                for atom in kinds.refuted:
                     self._negation.prepare(atom.predicate, map(filler(atom.terms, known), sorted(rule.rows)))
         axioms: list[Axiom] = []
         if fact in self._vocabulary.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
+        rows = self._vocabulary.relations.rows
         for i, row in self._heads[predicate].get(fact, ()):
-            definition, rule = self._definitions[predicate][i]
-            known = {name: k for k, name in enumerate(rule.variables)}
-            kinds = self._vocabulary.sort(definition.literals)
-
-            def fill(atoms: Iterable[Atom], known: dict[str, int] = known, row: tuple[str, ...] = row) -> list[Fact]:
-                return [filler((atom.predicate, *atom.terms), known)(row) for atom in atoms]
-
-            needs = Needs(fill((*kinds.positive, *kinds.derived)))
-            rows = self._vocabulary.relations.rows
-            needs.negative += [f for f in fill(kinds.negative) if f[1:] in rows(f[0])]
-            for refuted in fill(kinds.refuted):
-                needs.add(self._negation.refute(refuted, guards=False))
-            static = frozenset(f for f in fill(kinds.static) if not f[0].startswith("type "))
+            positive, negative, refuted, static = self._bodies[predicate][i]
+            needs = Needs([fill(row) for fill in positive])
+            needs.negative += [f for f in (fill(row) for fill in negative) if f[1:] in rows(f[0])]
+            for fill in refuted:
+                needs.add(self._negation.refute(fill(row), guards=False))
             if not needs.impossible:
-                axioms.append(Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), static))
+                given = frozenset([fill(row) for fill in static])
+                axioms.append(Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given))
         return axioms
 
 

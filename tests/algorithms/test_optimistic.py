@@ -60,8 +60,16 @@ def test_depth_is_limited(chain: tuple[Sequence[BoundStream], list[Fact]], level
     assert len(guesses(imagine(*chain, levels=levels))) == count
 
 
-def test_number_is_limited(chain: tuple[Sequence[BoundStream], list[Fact]]) -> None:
-    assert len(guesses(imagine(*chain, limit=3))) == 3
+@pytest.mark.parametrize(("enough", "names"), [(1, ["to-second"] * 2), (3, ["to-second"] * 2 + ["to-third"])])
+def test_with_enough_guesses_no_deeper_ones_are_made(
+    chain: tuple[Sequence[BoundStream], list[Fact]], enough: int, names: list[str]
+) -> None:
+    """The first level is complete, the one that is reached then is not, and tests feed nothing: they may come after."""
+    optimism = imagine(*chain, enough=enough)
+    assert [g.stream.name for g in guesses(optimism) if not g.stream.is_test] == names
+    assert not optimism.complete
+    assert imagine(*chain).complete
+    assert not imagine(*chain, levels=2).complete
 
 
 def test_fixpoint(chain: tuple[Sequence[BoundStream], list[Fact]]) -> None:
