@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.paper.clouds import cloud
+from grounding.paper.kernels import centre_boxes, describe_boxes
 from grounding.paper.turns import quaternions, rotations
 from grounding.situation import Placed, Situation
 from tamp.world.pose import Array
@@ -75,7 +76,8 @@ class BoxFeatures:
         others = situation.others if surroundings else ()
         corners = np.array([situation.region.box, body.form.corners, *(other.form.corners for other in others)])
         matrices = np.array([support.matrix, body.matrix, *(other.matrix for other in others)])
-        centres = _moved(matrices, corners.mean(axis=1))
+        centres = np.empty((len(matrices), 3))
+        centre_boxes(matrices, corners, centres)
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
         return Observation(features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2)
@@ -128,10 +130,9 @@ class CloudFeatures:
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
     """BB, shape (n, 19), of positions (n, 3), quaternions (n, 4) and own boxes, low and high corner (n, 2, 3)."""
-    half = (corners[:, 1] - corners[:, 0]) / 2
-    reach = (np.abs(rotations(turns)) @ half[:, :, None])[:, :, 0]
-    flat = corners.reshape(-1, 6)
-    return np.concatenate([centres, centres - reach, centres + reach, turns, flat], axis=1, dtype=centres.dtype)
+    features = np.empty((len(centres), BB), centres.dtype)
+    describe_boxes(centres, turns, corners, features)
+    return features
 
 
 def completed(seen: Observation, positions: Array, turns: Array) -> Array:

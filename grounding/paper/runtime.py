@@ -10,6 +10,7 @@ from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
 from grounding.paper.features import BB, CODE, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.paper.kernels import normalize
 from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.errors import InputError
@@ -156,7 +157,8 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
     arguments = seen.arguments.reshape(1, -1).astype(np.float32)
     known = arguments.shape[1]
     inputs[:, :known] = arguments
-    inputs[:, known:-NOISE] = network.context(arguments, seen.others.astype(np.float32))
+    if network.scene:
+        inputs[:, known:-NOISE] = network.context(arguments, seen.others.astype(np.float32))
     inputs[:, -NOISE:] = noise
     pose = network(inputs)
     return pose[:, :3], pose[:, 3:]
@@ -178,8 +180,9 @@ def judged(network: Network, seen: Observation, argument: Array) -> Array:
 
 def unit(turns: Array) -> Array:
     """Quaternions of norm 1, shape (n, 4); no rotation for one that is zero."""
-    norm = np.linalg.norm(turns, axis=1, keepdims=True)
-    return np.where(norm > 1e-8, turns / np.maximum(norm, 1e-8), [0.0, 0.0, 0.0, 1.0])
+    units = np.empty((len(turns), 4))
+    normalize(turns, units)
+    return units
 
 
 def _check_scene(network: Network, size: int) -> None:

@@ -160,11 +160,11 @@ class Run:
         return found
 
     def lower_bound(self, limit: int) -> float:
-        """What no plan of the optimistic task costs less than, whatever its values; `limit` states are expanded."""
+        """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
         started = time.perf_counter()
         found = search(self.grounded, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
         self.effort.search_seconds += time.perf_counter() - started
-        return found.bound
+        return found.bound if self.optimism.complete else 0.0
 
     def doubts(self) -> dict[Fact, float]:
         """A price for what is not tried yet.
