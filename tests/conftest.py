@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # of torch: two workers with two threads each wait for one another
+
 import signal
 from pathlib import Path
 
