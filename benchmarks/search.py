@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from random import Random
 
 from benchmarks import common
@@ -124,11 +125,11 @@ def scale() -> None:
         task, facts, objects = cupboard(count, tests=False)
         repeats = 5 if count <= 8 else 2
         grounded = instantiate(task, facts, objects, assumed=TESTS)
-        ready = measure(lambda: instantiate(task, facts, objects, assumed=TESTS), repeats)  # noqa: B023
+        ready = measure(partial(instantiate, task, facts, objects, assumed=TESTS), repeats)
         for name in ("wastar", "greedy"):
             for kind, price in (("none", None), ("every fact", effort)):
                 result = search(grounded, search=name, price=price)
-                solved = measure(lambda: search(grounded, search=name, price=price), repeats)  # noqa: B023
+                solved = measure(partial(search, grounded, search=name, price=price), repeats)
                 row = {
                     "bodies": count,
                     "operators": len(grounded.operators),

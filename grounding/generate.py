@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -70,12 +69,12 @@ def kinds_of(relation: str, count: int) -> list[str]:
     """The type of each of `count` scenes: their shares hold in every run of 40, positives and negatives in turn."""
     shares = KINDS[relation]
     sides = [[kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)]
-    owed: Counter[str] = Counter()
+    owed = dict.fromkeys(shares, 0.0)
     chosen: list[str] = []
     for number in range(count):
         side = sides[number % 2]
         for kind in side:
-            owed[kind] += 2 * shares[kind]  # type: ignore[assignment]
+            owed[kind] += 2 * shares[kind]
         kind = max(side, key=lambda kind: (round(owed[kind], 9), -side.index(kind)))
         owed[kind] -= 1
         chosen.append(kind)

@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import tamp.search.loops.compiled  # noqa: F401  # loads now what would else be loaded in planning time
 from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
@@ -18,6 +17,7 @@ from tamp.initial import initial_state
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import StreamFile, Task
+from tamp.search.loops.tiers import load as load_compiled_loops
 from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, maker, mix, parse_choice
 from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation
@@ -30,6 +30,8 @@ from tamp.world.overlaps import check_overlaps
 from tamp.world.robot import ROBOTS
 from tamp.world.scene import Scene
 from tamp.world.yaml_nodes import MAX_BYTES, read_yaml
+
+load_compiled_loops()
 
 METRIC = "minimize total-cost"
 """The metric that a problem may name."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.paper.clouds import cloud
-from grounding.paper.kernels import centre_boxes, describe_boxes
+from grounding.paper.kernels import describe_boxes, move
 from grounding.paper.turns import quaternions, rotations
 from grounding.situation import Placed, Situation
 from tamp.world.pose import Array
@@ -76,8 +76,7 @@ class BoxFeatures:
         others = situation.others if surroundings else ()
         corners = np.array([situation.region.box, body.form.corners, *(other.form.corners for other in others)])
         matrices = np.array([support.matrix, body.matrix, *(other.matrix for other in others)])
-        centres = np.empty((len(matrices), 3))
-        centre_boxes(matrices, corners, centres)
+        centres = _moved(matrices, (corners[:, 0] + corners[:, 1]) / 2)
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
         return Observation(features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2)
@@ -131,7 +130,7 @@ class CloudFeatures:
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
     """BB, shape (n, 19), of positions (n, 3), quaternions (n, 4) and own boxes, low and high corner (n, 2, 3)."""
     features = np.empty((len(centres), BB), centres.dtype)
-    describe_boxes(centres, turns, corners, features)
+    describe_boxes(centres, turns, rotations(turns), corners, features)
     return features
 
 
@@ -158,4 +157,6 @@ def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
 
 def _moved(matrices: Array, points: Array) -> Array:
     """One point of each frame, in the outer frame; shape (n, 3)."""
-    return (matrices[:, :3, :3] @ np.broadcast_to(points, (len(matrices), 3))[:, :, None])[:, :, 0] + matrices[:, :3, 3]
+    moved = np.empty((len(matrices), 3))
+    move(matrices, points.reshape(-1, 3), moved)
+    return moved

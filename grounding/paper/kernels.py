@@ -8,31 +8,22 @@ from numba import njit
 
 
 @njit(cache=True)
-def centre_boxes(matrices, corners, centres):
-    """The middles of boxes with low and high corners (n, 2, 3), posed by (n, 4, 4), into `centres` (n, 3)."""
+def move(matrices, points, moved):
+    """Points (n, 3) of frames posed by (n, 4, 4), in the outer frame, into `moved` (n, 3). One point serves all."""
     for n in range(len(matrices)):
-        m, c = matrices[n], corners[n]
+        m, point = matrices[n], points[min(n, len(points) - 1)]
         for r in range(3):
-            value = m[r, 3]
-            for k in range(3):
-                value += m[r, k] * (c[0, k] + c[1, k]) / 2
-            centres[n, r] = value
+            moved[n, r] = m[r, 0] * point[0] + m[r, 1] * point[1] + m[r, 2] * point[2] + m[r, 3]
 
 
 @njit(cache=True)
-def describe_boxes(centres, turns, corners, features):
-    """BB of `features.box_features` into `features` (n, 19)."""
+def describe_boxes(centres, turns, rotations, corners, features):
+    """BB of `features.box_features` into `features` (n, 19); quaternions (n, 4) and the matrices (n, 3, 3) of them."""
     for n in range(len(centres)):
-        x, y, z, w = turns[n]
-        rows = (
-            (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
-        )
         for r in range(3):
             reach = 0.0
             for k in range(3):
-                reach += abs(rows[r][k]) * (corners[n, 1, k] - corners[n, 0, k]) / 2
+                reach += abs(rotations[n, r, k]) * (corners[n, 1, k] - corners[n, 0, k]) / 2
             features[n, r] = centres[n, r]
             features[n, 3 + r] = centres[n, r] - reach
             features[n, 6 + r] = centres[n, r] + reach

@@ -35,7 +35,7 @@ def quaternions(matrices: Array) -> Array:
 
 
 @njit(cache=True)
-def _rotate(turns, matrices):  # type: ignore[no-untyped-def]
+def _rotate(turns, matrices):
     for n in range(len(turns)):
         x, y, z, w = turns[n]
         matrices[n, 0, 0] = 1 - 2 * (y * y + z * z)
@@ -47,7 +47,7 @@ def _rotate(turns, matrices):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _turn(matrices, turns):  # type: ignore[no-untyped-def]
+def _turn(matrices, turns):
     for n in range(len(matrices)):
         r, q = matrices[n], turns[n]
         trace = r[0, 0] + r[1, 1] + r[2, 2]

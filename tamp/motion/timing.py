@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -62,7 +63,7 @@ def prefetch() -> threading.Thread:
     """Import what `time_path` needs in the background, so that it is there when the plan is."""
 
     def load() -> None:
-        import tamp.motion.parametrization  # noqa: F401
+        importlib.import_module("tamp.motion.parametrization")
 
     thread = threading.Thread(target=load, name="import toppra", daemon=True)
     thread.start()

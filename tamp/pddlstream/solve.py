@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any, NamedTuple, cast
 
-import tamp.search.loops.compiled  # noqa: F401  # loads now what would else be loaded in planning time
 from tamp.alarm import Alarm
 from tamp.algorithms.incremental import Incremental
 from tamp.algorithms.registry import ALGORITHMS
@@ -18,6 +17,9 @@ from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
 from tamp.pddlstream.problem import PDDLProblem, bind
+from tamp.search.loops.tiers import load as load_compiled_loops
+
+load_compiled_loops()
 
 CLOSER_LOOK = 500
 """Draws after which a plan that no stream promises is given up, when none of them brought facts besides its outputs."""

@@ -36,13 +36,14 @@ class LandmarkCut:
         effects = loops.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
         self._rows = before, effects, loops.transposed(before, goal + 1), loops.transposed(effects, goal + 1)
         self._costs = loops.raised(it.costs, integers(()), loops.reals(()), 1)
-        self._owners, self._groups = integers(relaxation.owners), loops.rows(relaxation.of_operator)
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts; infinite in a dead end."""
         loops = self.situation.loops
         here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
-        return loops.landmark_cut(*self._rows, self._costs, here, self._owners, self._groups, self._goal)
+        return loops.landmark_cut(
+            *self._rows, self._costs, here, self._relaxation.owned, self._relaxation.groups, self._goal
+        )
 
 
 class LandmarkCuts:

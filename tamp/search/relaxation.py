@@ -84,6 +84,8 @@ class Relaxation:
     Attributes:
         owners: The operator that each relaxed operator belongs to, -1 for axioms.
         of_operator: The relaxed operators of each operator.
+        owned: The owners, as the loops take them.
+        groups: of_operator, as the loops take them.
         free: The relaxed operators without preconditions.
         goals: The relaxed facts that the goal asks for.
     """
@@ -135,7 +137,7 @@ class Relaxation:
         self._base = Situation(loops, before, loops.reals(self._costs), effects, needed)
         self._situations: dict[int, Situation] = {}
         self._ends = loops.integers(self.goals)
-        self._owned = loops.integers(self.owners)
+        self.owned, self.groups = loops.integers(self.owners), loops.rows(self.of_operator)
 
     def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
         number = len(self.owners)
@@ -248,7 +250,7 @@ class Relaxation:
         """
         it = exploration.situation
         cost, plan = it.loops.relaxed_plan(
-            exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self._owned,
+            exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owned,
             len(self.of_operator), self._ends, 2 * self._size,
         )  # fmt: skip
         return cost, list(map(int, plan))

@@ -132,7 +132,7 @@ def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
 
 
 @numba.njit(cache=True)
-def _fill(screen, perspective, depth, ids, weights):  # type: ignore[no-untyped-def]
+def _fill(screen, perspective, depth, ids, weights):
     """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the eye are left out."""
     rows, columns = depth.shape
     for n in range(screen.shape[0]):
@@ -171,9 +171,7 @@ def _fill(screen, perspective, depth, ids, weights):  # type: ignore[no-untyped-
 
 
 @numba.njit(cache=True)
-def _shade(  # type: ignore[no-untyped-def]
-    ids, weights, corners, normals, colours, eye, sun, background, frame, scale, offset, shadows, pixels
-):
+def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame, scale, offset, shadows, pixels):
     """Colours of pixels from the triangles that they see: some light from everywhere, some from above, the sun's."""
     rows, columns = ids.shape
     last = shadows.shape[0] - 1

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -87,3 +92,30 @@ def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.Monkey
     monkeypatch.undo()
     monkeypatch.setattr(tiers, "_METER", tiers._Meter())
     assert tiers.choose(1) is LOOPS
+
+
+def test_only_what_numba_has_all_of_and_newer_than_its_source_counts_as_compiled(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    (tmp_path / "__pycache__").mkdir()
+    for module, _ in tiers.CACHED:
+        source = tmp_path / Path(str(module.__file__)).name
+        source.write_text("")
+        monkeypatch.setattr(module, "__file__", str(source))
+    for module, names in tiers.CACHED:
+        for name in names:
+            assert not tiers.compiled_before()
+            (tmp_path / "__pycache__" / f"{Path(str(module.__file__)).stem}.{name}-7.py311.nbi").write_text("")
+    assert tiers.compiled_before()
+    later = time.time() + 10.0
+    os.utime(tmp_path / "rows.py", (later, later))
+    assert not tiers.compiled_before()
+
+
+def test_what_was_compiled_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside the sources, where numba puts it unless a variable or a read-only folder has it put it elsewhere."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    code = "from tamp.search.loops import tiers; tiers.load(); print(tiers.compiled_before())"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "True"

@@ -5,15 +5,24 @@ numba takes longer to load than a small task to solve. Both give the same number
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from tamp.search.loops import kernels, rows
 from tamp.search.loops.rows import Integers, Reals, Rows
 
 ENOUGH = 2_000_000
 """Entries that plain Python goes through before the compiled loops are loaded: about as long as loading takes."""
+
+
+CACHED = (
+    (kernels, ("explore", "relaxed_plan", "landmark_cut")),
+    (rows, ("transposed", "appended", "raised")),
+)
+"""The functions that numba keeps on disk, by module."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +66,33 @@ class _Meter:
 _METER = _Meter()
 
 
+def load() -> Loops:
+    """The compiled loops, loaded now, and compiled where that has not been done: not in anyone's planning time."""
+    from tamp.search.loops.compiled import LOOPS
+
+    return LOOPS
+
+
+def prepare() -> None:
+    """Load the compiled loops where they have yet to be compiled: that takes longer than many a budget."""
+    if not compiled_before():
+        load()
+
+
+def compiled_before() -> bool:
+    """Whether numba's cache beside the sources has all loops, none older than its source."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return False
+    for module, names in CACHED:
+        source = Path(str(module.__file__))
+        for name in names:
+            indexes = (source.parent / "__pycache__").glob(f"{source.stem}.{name}-*.nbi")
+            if all(index.stat().st_mtime < source.stat().st_mtime for index in indexes):
+                return False
+    return True
+
+
 def choose(entries: int) -> Loops:
     """The loops for a piece of work that goes through so many entries."""
     _METER.entries += entries
-    if _METER.entries > ENOUGH or "tamp.search.loops.compiled" in sys.modules:
-        from tamp.search.loops.compiled import LOOPS
-
-        return LOOPS
-    return PLAIN
+    return load() if _METER.entries > ENOUGH or "tamp.search.loops.compiled" in sys.modules else PLAIN
