@@ -26,7 +26,7 @@ from tamp.streams.values import Grasp
 from tamp.trajectories import Segment
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
-from tamp.world.scene import Scene
+from tamp.world.scene import Box, Scene
 
 RATE = 240
 """Steps a second of the simulation."""
@@ -246,7 +246,10 @@ def _mobile(robot: Robot) -> str:
     """The arm's URDF on a base that slides along x and y and turns."""
     text = re.sub(r"package://", f"{robot.urdf.parent}/", robot.urdf.read_text())
     foot = robot.T_base_arm
-    box, at = robot.links[0].parts[0].shape.size, robot.links[0].parts[0].pose.position  # type: ignore[union-attr]
+    chassis = robot.links[0].parts[0]
+    if not isinstance(chassis.shape, Box):
+        raise TypeError(f"the base is a {type(chassis.shape).__name__}, not a box")
+    box, at = chassis.shape.size, chassis.pose.position
     inertial = '<inertial><mass value="{}"/><inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
     limit = '<limit lower="-100" upper="100" effort="100000" velocity="10"/>'
     links = f"""
