@@ -42,7 +42,7 @@ class LandmarkCut:
         loops = self.situation.loops
         here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
         return loops.landmark_cut(
-            *self._rows, self._costs, here, self._relaxation.owned, self._relaxation.groups, self._goal
+            *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
         )
 
 

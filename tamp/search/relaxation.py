@@ -83,9 +83,7 @@ class Relaxation:
 
     Attributes:
         owners: The operator that each relaxed operator belongs to, -1 for axioms.
-        of_operator: The relaxed operators of each operator.
-        owned: The owners, as the loops take them.
-        groups: of_operator, as the loops take them.
+        groups: The relaxed operators of each operator.
         free: The relaxed operators without preconditions.
         goals: The relaxed facts that the goal asks for.
     """
@@ -94,12 +92,12 @@ class Relaxation:
         self._successors = s = successors
         self._size = size = len(s.facts)
         step = 1.0 if steps and any(s.cost[i] == 0.0 for i in s.alive) else 0.0
-        self.owners: list[int] = []
+        self._owners: list[int] = []
         self._before: list[list[int]] = []
         self._costs: list[float] = []
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
-        self.of_operator: list[list[int]] = [[] for _ in s.operators]
+        self._of_operator: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.grounded.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
@@ -137,16 +135,16 @@ class Relaxation:
         self._base = Situation(loops, before, loops.reals(self._costs), effects, needed)
         self._situations: dict[int, Situation] = {}
         self._ends = loops.integers(self.goals)
-        self.owned, self.groups = loops.integers(self.owners), loops.rows(self.of_operator)
+        self.owners, self.groups = loops.integers(self._owners), loops.rows(self._of_operator)
 
     def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
-        number = len(self.owners)
-        self.owners.append(owner)
+        number = len(self._owners)
+        self._owners.append(owner)
         self._before.append(before)
         self._costs.append(cost)
         self._effects.append(effects)
         if owner >= 0:
-            self.of_operator[owner].append(number)
+            self._of_operator[owner].append(number)
         for fact in bits(absent & self._negated):
             self._negative.setdefault(fact, []).append(number)
 
@@ -191,7 +189,7 @@ class Relaxation:
         for facts in s.triggered(state):
             removal = min(self._removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
-                for i in self.of_operator[operator]:
+                for i in self._of_operator[operator]:
                     if price <= removal and price < math.inf:
                         dearer.append(i)
                         by.append(price)
@@ -250,8 +248,8 @@ class Relaxation:
         """
         it = exploration.situation
         cost, plan = it.loops.relaxed_plan(
-            exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owned,
-            len(self.of_operator), self._ends, 2 * self._size,
+            exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owners,
+            len(self._of_operator), self._ends, 2 * self._size,
         )  # fmt: skip
         return cost, list(map(int, plan))
 
