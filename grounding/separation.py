@@ -73,9 +73,13 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     return out
 
 
-@njit(cache=True)
+@njit(
+    "void(float64[:,::1], float64[:,::1], float64[:,:,::1], float64[:,:,::1], int64[::1], float64[:,:,::1],"
+    "float64[:,:,:], float64[:,::1], float64[:,::1], float64[:,::1])",
+    cache=True,
+)
 def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
-    """`separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
+    """Compiled at import: `separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
     points = np.empty_like(own)
     for n in range(len(poses)):
         pose = poses[n]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from grounding.form import Form, form_of
 from tamp.errors import InputError
 from tamp.world.bounds import bounds
-from tamp.world.pose import Array
-from tamp.world.scene import Body, Cavity, Scene, Surface
+from tamp.world.pose import Array, Pose
+from tamp.world.scene import Body, Cavity, Part, Scene, Surface
 
 SURROUNDINGS = 1.0
 """Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section IV-B), metres."""
@@ -88,9 +88,16 @@ def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
         said = ", ".join(arguments)
         raise InputError(f"a learned grounding takes a body, and a surface or container: not ({said})")
     support = scene.bodies[place.body]
-    placed = {name: Placed(form_of(item.parts), item.pose.matrix) for name, item in scene.bodies.items()}
-    others = [item for name, item in placed.items() if name not in (body.name, support.name)]
-    return near(placed[support.name], region_of(support, place), placed[body.name], others)
+    others = [
+        _placed(item.parts, item.pose) for item in scene.bodies.values() if item is not body and item is not support
+    ]
+    return near(_placed(support.parts, support.pose), region_of(support, place), _placed(body.parts, body.pose), others)
+
+
+@lru_cache(maxsize=4096)
+def _placed(parts: tuple[Part, ...], pose: Pose) -> Placed:
+    """Bodies mostly stay where they are from one situation to the next."""
+    return Placed(form_of(parts), pose.matrix)
 
 
 def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
@@ -103,14 +110,18 @@ def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]
 
 def region_of(support: Body, place: Surface | Cavity) -> Region:
     """A surface or a cavity of a body as a region."""
-    low, high = bounds(support.parts, place.pose.inverse())  # T_region_support: the box along the region's axes
+    return _region(support.parts, len(support.cavities) == 1 and not support.surfaces, place)
+
+
+@lru_cache(maxsize=512)
+def _region(parts: tuple[Part, ...], alone: bool, place: Surface | Cavity) -> Region:
+    low, high = bounds(parts, place.pose.inverse())  # T_region_support: the box along the region's axes
     half = np.array(place.size[:2]) / 2
     if isinstance(place, Surface):
         corners = np.array([[-half[0], -half[1], min(float(low[2]), 0.0)], [half[0], half[1], 0.0]])
         height = place.clearance
     else:
         height = place.size[2]
-        alone = len(support.cavities) == 1 and not support.surfaces
         corners = np.stack([low, high]) if alone else np.array([[-half[0], -half[1], 0.0], [*half, height]])
     return Region(
         isinstance(place, Cavity),

@@ -34,6 +34,7 @@ def measured_success(model: Model, library: Library, relation: str, scenes: int)
 def measured_times(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
     """Medians over test scenes of the milliseconds for a batch, of proposals and of judgements, in one thread.
 
+    Each scene's body was asked for once before. Situations are made before the clock starts.
     A model that classifies nothing has None.
     """
     data, rng = library.scenes(relation, "test"), np.random.default_rng(0)
@@ -50,20 +51,21 @@ def measured_times(model: Model, library: Library, relation: str, scenes: int) -
     return found
 
 
-WARM = 3
-"""Calls that are not counted: compiled code is loaded in the first one."""
+PASSES = 5
+"""How often each scene is asked; its fastest counts, since other programs only ever add time."""
 
 
 def _median(data: Dataset, scenes: int, asked: Callable[[Any], Any]) -> float:
-    for row in range(min(WARM, len(data))):
-        asked(data[row].situation)
-    seconds: list[float] = []
-    for row in range(min(scenes, len(data))):
-        situation = data[row].situation
-        started = time.perf_counter()
+    situations = [data[row].situation for row in range(min(scenes, len(data)))]
+    for situation in situations:  # what is worked out once for a shape (how it can rest: some 5 ms) is not counted
         asked(situation)
-        seconds.append(time.perf_counter() - started)
-    return 1e3 * float(np.median(seconds))
+    seconds = np.empty((PASSES, len(situations)))
+    for passed in seconds:
+        for row, situation in enumerate(situations):
+            started = time.perf_counter()
+            asked(situation)
+            passed[row] = time.perf_counter() - started
+    return 1e3 * float(np.median(seconds.min(axis=0)))
 
 
 MEASURES: dict[str, Callable[[Model, Library, str, int], dict[str, Any]]] = {

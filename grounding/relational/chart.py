@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grounding.relational.kernels import fall_short
 from grounding.relational.measures import Measures, View, turns, upright
 from tamp.world.pose import Array
 from tamp.world.scene import CONTACT_GAP
@@ -136,13 +137,11 @@ class Chart:
 
     def shortfall(self, measured: Measures) -> Array:
         """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""
-        gaps = [
-            measured.sides.min(axis=1) - self.sides,
-            measured.balance.min(axis=1) - self.balance,
-            measured.ceiling - self.ceiling,
-            measured.nearest - self.apart,
-        ]
-        return np.maximum(-np.stack(gaps) - SLACK, 0.0).sum(axis=0)
+        missing = np.empty(len(measured.poses))
+        bounds = (self.sides, self.balance, self.ceiling, self.apart)
+        sizes = (measured.low, measured.high, measured.centre, measured.nearest, measured.view.region.size)
+        fall_short(*sizes, bounds, SLACK, missing)
+        return missing
 
     def _share(self, measured: Measures) -> Array:
         half = measured.view.region.size[:2] / 2

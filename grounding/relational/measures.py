@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from grounding.form import Form
 from grounding.separation import Obstacles, separations
-from grounding.situation import Placed, Situation
+from grounding.situation import Placed, Region, Situation
 from tamp.world.pose import Array
 
 REACH = 0.4
@@ -36,7 +36,7 @@ class View:
         self.faces = resting(self.form.unit)
         half, height = self.region.size[:2] / 2, min(float(self.region.size[2]), 1.0)
         self._room = np.array([[-half[0], -half[1], 0.0], [half[0], half[1], height]])
-        self.obstacles = Obstacles([*self._near(situation.others), *self._walls(situation.support)])
+        self.obstacles = Obstacles([*self._near(situation.others), *_walls(situation.support.form, situation.region)])
 
     @cached_property
     def size(self) -> Array:
@@ -70,12 +70,14 @@ class View:
             Placed(other.form, matrix) for other, matrix, is_near in zip(others, matrices, near, strict=True) if is_near
         ]
 
-    def _walls(self, support: Placed) -> list[Placed]:
-        matrix = self.T_region_world @ support.matrix
-        boxes = support.form.piece_boxes
-        tops = boxes.mean(axis=1) @ matrix[2, :3] + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2 + matrix[2, 3]
-        rise = tops > WALL
-        return [Placed(support.form.pieces[index], matrix) for index in np.flatnonzero(rise)]
+
+@lru_cache(maxsize=256)
+def _walls(support: Form, region: Region) -> tuple[Placed, ...]:
+    """The support's parts that rise above the region's plane, in the region's frame."""
+    matrix = inverse(region.matrix)
+    boxes = support.piece_boxes
+    tops = boxes.mean(axis=1) @ matrix[2, :3] + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2 + matrix[2, 3]
+    return tuple(Placed(support.pieces[index], matrix) for index in np.flatnonzero(tops > WALL))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.random import Generator as Random
@@ -57,8 +58,9 @@ class Transfer:
 
     def choose(self, view: View, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
         """Faces (n,) and coordinates (n, 7) taken from demonstrations."""
-        apart = self.sizes - view.size
-        chosen = _draw(-SIMILAR * np.einsum("nk,nk->n", apart, apart), count, rng)
+        weights = _weights(self, tuple(view.size.tolist()))
+        chosen = np.searchsorted(weights, rng.random(count) * weights[-1], side="right")
+        chosen = np.minimum(chosen, len(weights) - 1)
         steady = np.flatnonzero(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()))
         apart = self.faces[chosen][:, None] - view.faces.descriptors[steady]  # (n, f, 4)
         likely = -ALIKE * np.einsum("nfk,nfk->nf", apart, apart)
@@ -71,6 +73,9 @@ class Transfer:
         return faces, coordinates
 
 
-def _draw(logits: Array, count: int, rng: Random) -> NDArray[np.intp]:
-    weights = np.cumsum(np.exp(logits - logits.max()))
-    return np.minimum(np.searchsorted(weights, rng.random(count) * weights[-1], side="right"), len(logits) - 1)
+@lru_cache(maxsize=256)
+def _weights(transfer: Transfer, size: tuple[float, float, float]) -> Array:
+    """The demonstrations' weights for a body of these logarithms of extents, summed up, shape (n,)."""
+    apart = transfer.sizes - np.array(size)
+    logits = -SIMILAR * np.einsum("nk,nk->n", apart, apart)
+    return np.cumsum(np.exp(logits - logits.max()))
