@@ -79,7 +79,7 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     cache=True,
 )
 def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
-    """Compiled at import: `separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
+    """`separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
     points = np.empty_like(own)
     for n in range(len(poses)):
         pose = poses[n]
