@@ -102,12 +102,23 @@ class Alarm:
             signal.setitimer(signal.ITIMER_REAL, SOON, self._again)
             return
         if self._swallowed:
-            sys.settrace(_look_away)
-            while frame is not None and not frame.f_code.co_filename.endswith(self._caller):
-                frame.f_trace = self._insist
-                frame = frame.f_back
+            called = self._called(frame)
+            if called:
+                sys.settrace(_look_away)
+            for inner in called:
+                inner.f_trace = self._insist
         self._swallowed = True
         raise OutOfTime
+
+    def _called(self, frame: FrameType | None) -> list[FrameType]:
+        """The frames of the function that may never return; none when it is not in one that the ring comes."""
+        inner: list[FrameType] = []
+        while frame is not None:
+            if frame.f_code.co_filename.endswith(self._caller):
+                return inner
+            inner.append(frame)
+            frame = frame.f_back
+        return []
 
     def _insist(self, frame: FrameType, event: str, argument: object) -> Any:
         """Raise in the handler, too, that catches everything; Python then forgets this trace function by itself."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tamp.algorithms.incremental import Incremental
+from tamp.algorithms.incremental import DRY, Incremental
 from tamp.algorithms.run import Run
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Outcome, Progress, Result, StreamTask
@@ -39,8 +39,8 @@ LITTLE = 20
 MANY = 1000
 """Operators that are many."""
 
-DRY = 50
-"""Rounds without anything left to draw after which everything is exhausted: prices have moved all that they can."""
+DEEPER = 20
+"""Rounds after which guesses that were kept shallow go one level deeper, doubled each time."""
 
 
 def solve_adaptive(
@@ -75,7 +75,7 @@ class Adaptive(Run):
     @seldom_collecting()
     def solve(self) -> Result:
         """Rounds of search and binding until a plan is bound, nothing is left, or the time is up."""
-        patience, dry, trails = PATIENCE, 0, TRAILS
+        patience, dry, trails, deeper = PATIENCE, 0, TRAILS, DEEPER
         try:
             while True:
                 before = self.binder.units
@@ -83,8 +83,11 @@ class Adaptive(Run):
                 if result is not None:
                     return result
                 dry = dry + 1 if self.binder.units == before else 0
-                if dry >= DRY:
-                    return self.result(Outcome.EXHAUSTED)
+                if dry >= DRY or (self.shallow is not None and self.effort.searches >= deeper):
+                    deepened, deeper = self.deepen(), 2 * deeper
+                    if dry >= DRY and not deepened:
+                        return self.result(Outcome.EXHAUSTED)
+                    dry = 0 if deepened else dry
                 draws = 0
                 if self._stuck(patience):
                     draws, patience = SECOND_OPINION * patience, 2 * patience

@@ -186,6 +186,10 @@ class Binder:
             if present:
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
                 return
+        elif node.stream.is_fluent and instance.exhausted and not instance.results:
+            present = frozenset(fact for _, fact in node.fluents)
+            if present:  # nobody says what of the state is to blame
+                self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)
 
     def _blame(self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]) -> None:

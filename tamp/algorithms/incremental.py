@@ -26,6 +26,9 @@ PER_LEVEL = 2
 ROUNDS = 4
 """Plans whose fluent streams are tried before the next level."""
 
+DRY = 50
+"""Rounds without anything left to draw after which prices have moved all that they can."""
+
 TRIES, BUDGET = 4, 200
 """Draws a visit, and in all, when the fluent streams of a plan are bound."""
 
@@ -81,6 +84,7 @@ class Incremental(Run):
 
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
+        dry = 0
         while rounds is None or rounds > 0:
             self.optimism, self.grounded = self.imagined()
             found = self.search()
@@ -95,7 +99,9 @@ class Incremental(Run):
             if values is not None:
                 return self.solved(skeleton, values)
             if not self.bury(skeleton):
-                if self.binder.units == before:
+                dry = dry + 1 if self.binder.units == before else 0
+                if dry >= DRY:  # there are plans, whose streams fail in the states that these lead through
+                    self.given_up = True
                     return None
                 rounds = None if rounds is None else rounds - 1
         return None

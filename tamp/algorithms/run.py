@@ -91,6 +91,7 @@ class Run:
         self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
         self.given_up = False
         self.depth = 1
+        self.shallow: int | None = None
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
@@ -103,33 +104,63 @@ class Run:
         self.optimism, self.grounded = self.imagined()
 
     def imagined(self) -> tuple[Optimism, Grounded]:
-        """The optimistic task without the calls that are known to be dead."""
+        """The optimistic task without the calls that are known to be dead.
+
+        Where guesses have to be left out, those that are not deeper than a first plan asks for are all that is kept.
+        """
         started = time.perf_counter()
+        optimism = self._guesses()
+        grounded = self._instantiated(optimism)
+        while self._shallower() and not grounded.goal.positive <= grounded.reachable | grounded.initial:
+            self.shallow = (self.shallow or 0) + 1
+            optimism = self._guesses()
+            grounded = self._instantiated(optimism)
+        self.effort.search_seconds += time.perf_counter() - started
+        return optimism, grounded
+
+    def _guesses(self) -> Optimism:
+        """As many as may be; the lowest level alone, when those were too many for the first time."""
+        optimism = Optimism(complete=False)
+        if self.shallow is None:
+            optimism = self._imagined(None)
+            self.shallow = None if optimism.complete else 1
+        return self._imagined(self.shallow) if self.shallow is not None else optimism
+
+    def _imagined(self, growing: int | None) -> Optimism:
         optimism = imagine(
             self.useful,
             [*self.known, *self.real],
             dead=frozenset((*self.dead, *self.settled)),
             levels=LEVELS * self.depth,
+            growing=growing,
             enough=ENOUGH * self.depth,
             names=self.names,
         )
         optimism.assumed = self.assumed
-        grounded = instantiate(
+        return optimism
+
+    def _instantiated(self, optimism: Optimism) -> Grounded:
+        return instantiate(
             self.task,
             [*self.real, *optimism.makers],
             {**self.objects.types, **optimism.types},
             assumed=frozenset(self.assumed),
             refused=frozenset(self.refused),
         )
-        self.effort.search_seconds += time.perf_counter() - started
-        return optimism, grounded
+
+    def _shallower(self) -> bool:
+        """Whether guesses are kept shallower than they might be."""
+        return self.shallow is not None and self.shallow < LEVELS * self.depth
 
     def deepen(self) -> bool:
         """Imagine more where guesses were left out; whether there was anything to add, and not too much already."""
-        if self.optimism.complete or self.depth >= DEEPEST:
+        if not self.optimism.complete and self._shallower():
+            self.shallow = (self.shallow or 0) + 1
+        elif self.optimism.complete or self.depth >= DEEPEST:
             self.given_up |= not self.optimism.complete
             return False
-        self.depth *= 2
+        else:
+            self.depth *= 2
         self.optimism, self.grounded = self.imagined()
         return True
 

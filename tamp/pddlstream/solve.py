@@ -97,6 +97,7 @@ def solve(
         with alarm:
             result = _run(task, algorithm, seed, deadline)
     except (OutOfTime, KeyboardInterrupt) as end:
+        alarm.disarm()
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
     finally:
