@@ -94,7 +94,7 @@ def imagine(
     *,
     dead: frozenset[tuple[str, tuple[str, ...]]] = frozenset(),
     levels: int = LEVELS,
-    growing: int | None = None,
+    deepest: int | None = None,
     enough: int = ENOUGH,
     names: dict[tuple[str, tuple[str, ...]], Named] | None = None,
 ) -> Optimism:
@@ -108,7 +108,7 @@ def imagine(
         facts: Known static facts, types as unary facts among them.
         dead: Calls (stream, inputs) that are known to yield nothing.
         levels: Greatest depth of guesses resting on guesses.
-        growing: The same for those with outputs, which others rest on; by default as many.
+        deepest: The same for those with outputs, which others rest on; by default as many.
         enough: Number of guesses from which on they become shallower. The first level is always complete.
         names: The placeholders of calls imagined before, and the facts about them, kept and added to: what was learned
             is kept under their names, so a name must always mean the same.
@@ -124,7 +124,7 @@ def imagine(
         if fact not in level_of:
             level_of[fact] = 0
             queue.append(fact)
-    total, growing = 0, levels if growing is None else min(growing, levels)
+    total, growing = 0, levels if deepest is None else min(deepest, levels)
     by_predicate: dict[str, list[tuple[BoundStream, int]]] = defaultdict(list)
     for stream in streams:
         for position, atom in enumerate(stream.declaration.domain):

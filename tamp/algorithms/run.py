@@ -126,13 +126,13 @@ class Run:
             self.shallow = None if optimism.complete else 1
         return self._imagined(self.shallow) if self.shallow is not None else optimism
 
-    def _imagined(self, growing: int | None) -> Optimism:
+    def _imagined(self, deepest: int | None) -> Optimism:
         optimism = imagine(
             self.useful,
             [*self.known, *self.real],
             dead=frozenset((*self.dead, *self.settled)),
             levels=LEVELS * self.depth,
-            growing=growing,
+            deepest=deepest,
             enough=ENOUGH * self.depth,
             names=self.names,
         )

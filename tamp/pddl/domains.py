@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tamp.pddl.declarations import check_requirements, parse_functions, parse_objects, parse_predicates, parse_types
 from tamp.pddl.effects import TOTAL_COST, Effects, parse_effects
 from tamp.pddl.formulas import parse_formula, scope_of
 from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error
-from tamp.pddl.rules import parse_rule, rule_head
+from tamp.pddl.rules import parse_rule, redefinition, rule_head
 from tamp.pddl.sections import Section, items_of, keyword_values, read_sections
 from tamp.pddl.stratification import strata
 from tamp.pddl.structs import Action, And, Domain, Predicate
@@ -22,9 +22,15 @@ SECTIONS = (
 ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
 
-def parse_domain(
-    text: str, file: str | Path | None = None, undeclared: Mapping[str, Predicate] | None = None
-) -> Domain:
+@dataclass(frozen=True)
+class Undeclared:
+    """Predicates and functions that may be used although the domain does not declare them."""
+
+    predicates: Mapping[str, Predicate]
+    functions: Mapping[str, Predicate]
+
+
+def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclared | None = None) -> Domain:
     """Read a PDDL domain.
 
     Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
@@ -32,7 +38,7 @@ def parse_domain(
     Args:
         text: The domain.
         file: For messages: where the text comes from.
-        undeclared: Predicates that may be used although the domain does not declare them.
+        undeclared: What else may be used. When it is given, a derived predicate has as many arguments as its rules say.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -45,7 +51,9 @@ def parse_domain(
     predicates = parse_predicates(items_of(sections, ":predicates"), types)
     functions = parse_functions(items_of(sections, ":functions"), types)
     known = (types, predicates, functions)
-    predicates |= {n: p for n, p in (undeclared or {}).items() if not any(n in names for names in known)}
+    if undeclared is not None:
+        predicates |= {n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)}
+        functions |= {n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)}
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
@@ -53,11 +61,14 @@ def parse_domain(
     counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
-    names = Domain(
-        name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents, declared.notes
-    )
-
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
+    notes = declared.notes
+    if undeclared is not None:
+        redefined = dict(entry for rule in rules for entry in redefinition(rule, predicates))
+        notes += tuple(note for _, note in redefined.values())
+        predicates |= {name: predicate for name, (predicate, _) in redefined.items()}
+    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents, notes)
+
     derived_names = {rule_head(section, names) for section in rules}
     derived = tuple(parse_rule(section, names) for section in rules)
     strata(derived)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tamp.pddl.domains import Undeclared as Undeclared
 from tamp.pddl.domains import parse_domain as parse_domain
 from tamp.pddl.streams import output_types as output_types
 from tamp.pddl.streams import parse_streams as parse_streams

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from tamp.pddl.formulas import parse_formula, scope_of
-from tamp.pddl.nodes import Group, Node, as_group, as_symbol, error, show
+from tamp.pddl.nodes import Group, Node, as_group, as_symbol, error, show, warning
 from tamp.pddl.sections import Section, keyword_values
-from tamp.pddl.structs import Atom, Derived, Domain, Parameter
+from tamp.pddl.structs import Atom, Derived, Domain, Parameter, Predicate
 from tamp.pddl.typed import parameters, typed_list
 
 AXIOM_KEYWORDS = (":parameters", ":context", ":implies")
@@ -23,6 +24,18 @@ def rule_head(section: Section, names: Domain) -> str:
         choices = names.predicates
         raise error(symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices)
     return symbol.text
+
+
+def redefinition(section: Section, predicates: Mapping[str, Predicate]) -> Iterator[tuple[str, tuple[Predicate, str]]]:
+    """The predicate as a rule's head has it, with a warning, where it is declared with another number of arguments."""
+    head, _ = _parts(section)
+    listed = [entry.name.text for entry in typed_list(head.items[1:], "a variable")]
+    declared = predicates.get(head.head or "")
+    if declared is not None and len(declared.parameters) != len(listed):
+        note = warning(
+            head, f"'{declared.name}' is declared with {len(declared.parameters)}, defined with {len(listed)}"
+        )
+        yield declared.name, (replace(declared, parameters=tuple(map(Parameter, listed))), f"{note} arguments")
 
 
 def parse_rule(section: Section, names: Domain) -> Derived:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from tamp.algorithms.stream import value_key
-from tamp.errors import InputError
-from tamp.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter
+from tamp.errors import InputError, closest
+from tamp.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter, Predicate
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
@@ -40,14 +40,33 @@ class Names:
         return name
 
 
-def initial_facts(
-    init: Sequence[Any], domain: Domain, names: Names
-) -> tuple[frozenset[Fact], dict[Fact, float], dict[str, tuple[str, ...]]]:
-    """The facts of a list of tuples, the costs given with "=", and the types given as facts.
+class Initial(NamedTuple):
+    """Initial facts, the costs given with "=", the types given as facts, and warnings of what nothing asks for."""
+
+    facts: frozenset[Fact]
+    costs: dict[Fact, float]
+    types: dict[str, tuple[str, ...]]
+    warnings: tuple[str, ...]
+
+
+def initial_functions(init: Sequence[Any]) -> dict[str, Predicate]:
+    """The functions whose values are initial facts: PDDLStream's domains leave some undeclared."""
+    functions: dict[str, Predicate] = {}
+    for item in init:
+        head, arguments = _parts(item, "an initial fact")
+        if head == "=" and arguments:
+            name, terms = _parts(arguments[0], "a function")
+            functions[name] = Predicate(name, tuple(Parameter(f"?x{i}") for i in range(len(terms))))
+    return functions
+
+
+def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
+    """The initial facts of a list of tuples.
 
     Raises:
-        InputError: An unknown predicate, or the wrong number of arguments.
+        InputError: A predicate that looks misspelt, or the wrong number of arguments.
     """
+    unused: dict[str, None] = {}
     facts: set[Fact] = set()
     costs: dict[Fact, float] = {}
     types: dict[str, tuple[str, ...]] = {}
@@ -57,6 +76,9 @@ def initial_facts(
             if len(arguments) != 2:
                 raise InputError(f"expected ('=', (FUNCTION, ...), NUMBER), found {item!r}")
             function, terms = _parts(arguments[0], "a function")
+            if _unknown(function, domain.functions):
+                unused.setdefault(function)
+                continue
             _check(function, len(terms), domain, domain.functions, "function", item)
             costs[function, *(names.of(term) for term in terms)] = float(arguments[1])
         elif head in domain.types and head not in domain.predicates:
@@ -64,10 +86,15 @@ def initial_facts(
             types[name] = (*types.get(name, ()), head)
         elif head in domain.derived_predicates:
             raise InputError(f"'{head}' is derived: its rules say where it holds, {item!r} cannot be an initial fact")
+        elif _unknown(head, domain.predicates):
+            unused.setdefault(head)
         else:
             _check(head, len(arguments), domain, domain.predicates, "predicate", item)
             facts.add((head, *(names.of(argument) for argument in arguments)))
-    return frozenset(facts), costs, types
+    warnings = tuple(
+        f"neither the domain nor a stream knows '{name}', of which there are initial facts" for name in unused
+    )
+    return Initial(frozenset(facts), costs, types, warnings)
 
 
 def goal_formula(goal: Any, domain: Domain, names: Names) -> Formula:
@@ -138,6 +165,11 @@ def _parts(item: Any, what: str) -> tuple[str, tuple[Any, ...]]:
         raise InputError(f"expected {what} such as ('On', 'mug', 'table'), found {item!r}")
     head, *rest = item
     return str(head).lower(), tuple(rest)
+
+
+def _unknown(name: str, known: Mapping[str, Any]) -> bool:
+    """Whether it is none of them, nor looks like one of them misspelt."""
+    return name not in known and closest(name, known) is None
 
 
 def _check(name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,16 +11,16 @@ from typing import Any, NamedTuple
 from tamp.algorithms.costs import BoundFunction
 from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
-from tamp.errors import InputError
+from tamp.errors import InputError, closest
 from tamp.pddl.complement import complement_name, negated_tests, with_complements
 from tamp.pddl.formulas import RESERVED
 from tamp.pddl.lint import lint
 from tamp.pddl.nodes import Group, Node, Symbol, warning
-from tamp.pddl.parser import output_types, parse_domain, parse_streams
+from tamp.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
 from tamp.pddl.sexpr import read
 from tamp.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
 from tamp.pddlstream.adapters import stream_function
-from tamp.pddlstream.facts import Names, goal_formula, initial_facts
+from tamp.pddlstream.facts import Names, goal_formula, initial_facts, initial_functions
 from tamp.rejection import Rejection
 from tamp.wild import Wild
 
@@ -57,16 +58,18 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     for text, file in sources:
         for name, size, _ in _heads(read(text, file)):
             undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
-    domain = parse_domain(domain_text, domain_file, undeclared)
+    functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
+    computed = _used(initial_functions(problem.init), domain_text)
+    domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed))
     files = [parse_streams(text, domain, file) for text, file in sources]
     streams = _joined(files)
-    names = Names(_constants(problem.constant_map, domain))
-    facts, costs, types = initial_facts(problem.init, domain, names)
+    constants, spare = _constants(problem.constant_map, domain)
+    names = Names(constants)
+    facts, costs, types, unused = initial_facts(problem.init, domain, names)
     goal = goal_formula(problem.goal, domain, names)
     warnings = [*_undeclared(sources, domain), *streams.notes, *lint(domain, streams, goal, facts)]
-    functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
-    _check_map(functions, [one for group in used.values() for one in group])
+    warnings += [*unused, *spare, *_check_map(functions, [one for group in used.values() for one in group])]
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
     bound += [_bound(rule, domain, _always) for rule in streams.rules]
@@ -138,7 +141,14 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
     )
 
 
-def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> None:
+def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]:
+    """Those that a domain's text calls."""
+    lower = text.lower()
+    return {name: one for name, one in functions.items() if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)}
+
+
+def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> Iterator[str]:
+    """A warning of each function that no stream is called, unless it is a misspelt one: that is an error."""
     for one in declared:
         if one.name not in functions:
             place = one.place
@@ -153,17 +163,23 @@ def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Functio
     known = [one.name for one in declared]
     for name in functions:
         if name not in known:
-            raise InputError(f"the stream map has '{name}', which no stream is called", found=name, choices=known)
+            message = f"the stream map has '{name}', which no stream is called"
+            if closest(name, known) is not None:
+                raise InputError(message, found=name, choices=known)
+            yield message
 
 
-def _constants(given: Mapping[str, Any], domain: Domain) -> dict[str, Any]:
-    """The domain's constants with their values, by default their names."""
+def _constants(given: Mapping[str, Any], domain: Domain) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """The domain's constants with their values, by default their names; and warnings of others."""
     lower = {name.lower(): value for name, value in given.items()}
+    warnings: list[str] = []
     for name in lower:
         if name not in domain.constants:
-            choices = domain.constants
-            raise InputError(f"'{name}' is no constant of the domain", file=domain.file, found=name, choices=choices)
-    return {name: lower.get(name, name) for name in domain.constants}
+            message = f"'{name}' is no constant of the domain"
+            if closest(name, domain.constants) is not None:
+                raise InputError(message, file=domain.file, found=name, choices=domain.constants)
+            warnings.append(message)
+    return {name: lower.get(name, name) for name in domain.constants}, tuple(warnings)
 
 
 def _text(source: str | Path) -> tuple[str, Path | None]:
