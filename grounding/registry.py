@@ -128,7 +128,7 @@ def shipped_model(relation: str, name: str) -> Model:
 
 def load_grounding(path: Path, model: str | None = None) -> Grounding:
     """`load_model` for the planner."""
-    return Grounding(load_model(path, model))
+    return _grounding(load_model(path, model))
 
 
 def file_grounding(relation: str, path: Path) -> Grounding:
@@ -145,7 +145,14 @@ def file_grounding(relation: str, path: Path) -> Grounding:
 
 def shipped_grounding(relation: str, name: str) -> Grounding:
     """`shipped_model` for the planner."""
-    return Grounding(shipped_model(relation, name))
+    return _grounding(shipped_model(relation, name))
+
+
+def _grounding(model: Model) -> Grounding:
+    from grounding.paper.moving import Moving
+    from grounding.paper.runtime import PaperModel
+
+    return Moving(model) if isinstance(model, PaperModel) else Grounding(model)
 
 
 def shipped_weights(relation: str, name: str) -> Path:

@@ -1,0 +1,51 @@
+"""The paper's networks in the planner: what they propose for a body that is far away."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from grounding.form import form_of
+from grounding.paper.moving import Moving, laid
+from grounding.random_poses import random_turn
+from grounding.registry import shipped_grounding
+from tamp.problem import load_problem
+from tamp.streams.resting import rest, resting_of
+from tamp.world.pose import Pose
+
+SCENE = load_problem("four_objects").scene
+
+
+@pytest.mark.parametrize("name", ["cracker_box", "mustard", "mug", "bowl"])
+def test_a_laid_body_stands_on_a_face_where_it_was(name: str) -> None:
+    body, rng = SCENE.bodies[name], np.random.default_rng(0)
+    form = form_of(body.parts)
+    middle = form.corners.mean(axis=0)
+    for _ in range(20):
+        pose = random_turn(rng)
+        pose[:3, 3] = rng.uniform(-1.0, 1.0, 3)
+        found = laid(form, pose)
+        assert found[:3, :3] @ found[:3, :3].T == pytest.approx(np.eye(3), abs=1e-9)
+        assert np.linalg.det(found[:3, :3]) == pytest.approx(1.0)
+        assert max(face.rotation[2] @ found[2, :3] for face in form.faces) == pytest.approx(1.0)
+        nearest = max(form.faces, key=lambda face: float(face.rotation[2] @ pose[2, :3]))
+        assert nearest.rotation[2] @ found[2, :3] == pytest.approx(1.0)
+        low, lower = ((form.vertices @ one[2, :3] + one[2, 3]).min() for one in (pose, found))
+        assert lower == pytest.approx(low)
+        assert (found[:3, :3] @ middle + found[:3, 3])[:2] == pytest.approx((pose[:3, :3] @ middle + pose[:3, 3])[:2])
+        assert laid(form, found) == pytest.approx(found)
+
+
+def test_a_body_from_across_the_room_finds_many_places() -> None:
+    grounding = shipped_grounding("on", "mlp-bb")
+    assert isinstance(grounding, Moving)
+    surface = SCENE.surfaces["cupboard_top"]
+    T_world_region = SCENE.world_pose(surface)
+    poses = grounding.propose(SCENE, ("mug", "cupboard_top"), 60, np.random.default_rng(0))
+    rested = [rest(resting_of(SCENE.bodies["mug"]), pose, surface, T_world_region) for pose in poses]
+    places = np.array([pose.position[:2] for pose in rested if isinstance(pose, Pose)])
+    assert len(poses) == 60
+    assert len(places) >= 15
+    assert np.ptp(places, axis=0).min() > 0.1
+    again = grounding.propose(SCENE, ("mug", "cupboard_top"), 60, np.random.default_rng(0))
+    assert again == poses
