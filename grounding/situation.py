@@ -76,8 +76,13 @@ class Situation:
         return self.support.matrix @ self.region.matrix
 
 
-def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
+def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None) -> Situation:
     """What a scene shows about (body, surface or cavity), the planner's order of a relation's arguments.
+
+    Args:
+        scene: The scene.
+        arguments: Names.
+        at: T_world_body where the body is to be seen, shape (4, 4); by default where it is.
 
     Raises:
         InputError: They are something else.
@@ -91,7 +96,8 @@ def situation_of(scene: Scene, arguments: Sequence[str]) -> Situation:
     others = [
         _placed(item.parts, item.pose) for item in scene.bodies.values() if item is not body and item is not support
     ]
-    return near(_placed(support.parts, support.pose), region_of(support, place), _placed(body.parts, body.pose), others)
+    seen = _placed(body.parts, body.pose) if at is None else Placed(form_of(body.parts), at)
+    return near(_placed(support.parts, support.pose), region_of(support, place), seen, others)
 
 
 @lru_cache(maxsize=4096)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.random import Generator as Random
@@ -11,7 +10,7 @@ from numpy.random import Generator as Random
 from grounding.form import Form
 from grounding.random_poses import afloat
 from grounding.runtime import Grounding
-from grounding.situation import Placed, situation_of
+from grounding.situation import situation_of
 from tamp.world.pose import Array, Pose
 from tamp.world.scene import Scene
 
@@ -30,13 +29,12 @@ class Moving(Grounding):
 
     def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
         """`count` world poses of body `arguments[0]` on or in `arguments[1]`, in no order."""
-        situation = situation_of(scene, arguments)
-        form = situation.body.form
+        support = situation_of(scene, arguments).support
         poses: list[Pose] = []
         while len(poses) < count:
-            start = Placed(form, afloat(situation.support, rng))
-            proposed = self.model.propose(replace(situation, body=start), min(TOGETHER, count - len(poses)), rng)
-            poses += [Pose.from_matrix(laid(form, pose)) for pose in proposed]
+            situation = situation_of(scene, arguments, afloat(support, rng))
+            proposed = self.model.propose(situation, min(TOGETHER, count - len(poses)), rng)
+            poses += [Pose.from_matrix(laid(situation.body.form, pose)) for pose in proposed]
         return poses
 
 
