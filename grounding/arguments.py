@@ -12,7 +12,7 @@ from typing import Annotated
 import tyro
 
 from grounding.registry import RELATIONS
-from tamp.arguments import sentence
+from tamp.arguments import sentence, unread
 from tamp.errors import InputError
 
 
@@ -165,6 +165,8 @@ def parsed(arguments: list[str]) -> Arguments:
         if not end.code:  # --help
             raise
         raise InputError(sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help") from None
+    except BrokenPipeError:
+        raise unread() from None
     _check(chosen)
     return chosen
 

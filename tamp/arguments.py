@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import io
 import math
+import os
+import sys
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
@@ -112,6 +114,8 @@ def parsed(arguments: list[str]) -> Arguments:
         if not end.code:  # --help
             raise
         raise InputError(sentence(complaint.getvalue()), remedy="See tamp-solve --help") from None
+    except BrokenPipeError:
+        raise unread() from None
     if not 1 <= len(chosen.files) <= 2:
         raise InputError(
             f"expected [DOMAIN] PROBLEM, found {len(chosen.files)} files",
@@ -139,6 +143,12 @@ def parsed(arguments: list[str]) -> Arguments:
     if abs(chosen.seed) >= 2**64:
         raise InputError("--seed: the number must be below 2**64")
     return chosen
+
+
+def unread() -> SystemExit:
+    """The end of a command whose help nobody reads to its end (`--help | head`); Python must not flush the rest."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return SystemExit(0)
 
 
 def sentence(box: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.machinery
 import json
+import os
 import re
 import shutil
 import signal
@@ -273,3 +274,13 @@ def test_help_is_readable(name: str, tmp_path: Path) -> None:
     assert "Exit status: 0" in done.stdout and "--json" in done.stdout
     assert "{None}" not in done.stdout and "--no-" not in done.stdout
     assert max(len(line) for line in done.stdout.splitlines()) <= 120
+
+
+@pytest.mark.parametrize("name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-view", "tamp-bench"])
+def test_help_that_nobody_reads_is_no_error(name: str) -> None:
+    ours, theirs = os.pipe()
+    os.close(ours)
+    with os.fdopen(theirs, "w") as closed:
+        program = Path(sys.executable).with_name(name)
+        ended = subprocess.run([program, "--help"], stdout=closed, stderr=subprocess.PIPE, timeout=100, check=False)
+    assert (ended.returncode, ended.stderr) == (0, b"")

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import tyro
 
-from tamp.arguments import sentence
+from tamp.arguments import sentence, unread
 from tamp.errors import InputError
 
 
@@ -112,6 +112,8 @@ def parsed(arguments: list[str]) -> Command:
             raise
         remedy = f"See tamp-bench {arguments[0]} --help"
         raise InputError(sentence(complaint.getvalue()), remedy=remedy) from None
+    except BrokenPipeError:
+        raise unread() from None
     if isinstance(chosen, Run | Fig8):
         _check(chosen)
     return chosen
