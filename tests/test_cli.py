@@ -276,7 +276,9 @@ def test_help_is_readable(name: str, tmp_path: Path) -> None:
     assert max(len(line) for line in done.stdout.splitlines()) <= 120
 
 
-@pytest.mark.parametrize("name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-view", "tamp-bench"])
+@pytest.mark.parametrize(
+    "name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-view", "tamp-bench"]
+)
 def test_help_that_nobody_reads_is_no_error(name: str) -> None:
     ours, theirs = os.pipe()
     os.close(ours)

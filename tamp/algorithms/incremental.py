@@ -17,7 +17,6 @@ from tamp.algorithms.stream import Instance
 from tamp.clock import Deadline, OutOfTime
 from tamp.collector import seldom_collecting
 from tamp.pddl.structs import Fact
-from tamp.search.instantiate import instantiate
 from tamp.search.operators import Grounded
 
 PER_LEVEL = 2
@@ -137,14 +136,10 @@ class Incremental(Run):
         """The task over real facts, only the fluent streams' outputs are placeholders."""
         started = time.perf_counter()
         fluent = [stream for stream in self.useful if stream.is_fluent]
-        optimism = imagine(fluent, [*self.known, *self.found], levels=1)
+        optimism = imagine(fluent, [*self.known, *self.found], levels=1, names=self.names)
         optimism.assumed = self.assumed
-        grounded = instantiate(
-            self.task,
-            [*self.found, *optimism.makers],
-            {**self.objects.types, **optimism.types},
-            assumed=frozenset(self.assumed),
-            refused=frozenset(self.refused),
-        )
+        facts = [*self.found, *optimism.makers]
+        types = {**self.objects.types, **optimism.types}
+        grounded = self.instantiator.instantiate(facts, types, frozenset(self.refused))
         self.effort.search_seconds += time.perf_counter() - started
         return optimism, grounded

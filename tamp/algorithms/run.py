@@ -36,7 +36,7 @@ from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
-from tamp.search.instantiate import instantiate
+from tamp.search.instantiate import Instantiator
 from tamp.search.operators import Grounded
 
 FEW = 8
@@ -101,6 +101,7 @@ class Run:
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
         self.real: dict[Fact, None] = {}
         self.known = [*sorted(task.initial), *type_facts(task)]
+        self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.grounded = self.imagined()
 
     def imagined(self) -> tuple[Optimism, Grounded]:
@@ -140,13 +141,9 @@ class Run:
         return optimism
 
     def _instantiated(self, optimism: Optimism) -> Grounded:
-        return instantiate(
-            self.task,
-            [*self.real, *optimism.makers],
-            {**self.objects.types, **optimism.types},
-            assumed=frozenset(self.assumed),
-            refused=frozenset(self.refused),
-        )
+        facts = [*self.real, *optimism.makers]
+        types = {**self.objects.types, **optimism.types}
+        return self.instantiator.instantiate(facts, types, frozenset(self.refused))
 
     def _shallower(self) -> bool:
         """Whether guesses are kept shallower than they might be."""

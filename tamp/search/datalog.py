@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import itemgetter
 from typing import Any
@@ -218,17 +218,21 @@ class Rule:
     rows: dict[Row, None] = field(default_factory=lambda: {})
 
 
-def fixpoint(relations: Relations, rules: Sequence[Rule], changing: frozenset[str]) -> None:
+def fixpoint(relations: Relations, rules: Sequence[Rule], delta: Mapping[str, list[Row]] | None = None) -> None:
     """Apply the rules until nothing new follows; relations and rules' rows are extended in place.
 
-    Semi-naive: after the first round a rule is joined from the new rows of each of its `changing` predicates only.
+    Semi-naive: a rule is joined from the new rows of each predicate in its body only.
+
+    Args:
+        relations: What is known.
+        rules: What follows from what.
+        delta: What became known since the last fixpoint of these rules; None for the first one.
     """
-    delta: dict[str, list[Row]] | None = None
     while delta is None or delta:
         derived: dict[str, dict[Row, None]] = {}
         for rule in rules:
             new: list[Row] = []
-            for row in _triggered(relations, rule, delta, changing):
+            for row in _triggered(relations, rule, delta):
                 if row not in rule.rows:
                     rule.rows[row] = None
                     new.append(row)
@@ -237,21 +241,16 @@ def fixpoint(relations: Relations, rules: Sequence[Rule], changing: frozenset[st
             known = {variable: i for i, variable in enumerate(rule.variables)}
             for head in rule.heads:
                 derived.setdefault(head.predicate, {}).update(dict.fromkeys(map(filler(head.terms, known), new)))
-        delta = {}
-        for predicate, rows in derived.items():
-            added = relations.add(predicate, rows)
-            if added:
-                delta[predicate] = added
+        added = {predicate: relations.add(predicate, rows) for predicate, rows in derived.items()}
+        delta = {predicate: rows for predicate, rows in added.items() if rows}
 
 
-def _triggered(
-    relations: Relations, rule: Rule, delta: dict[str, list[Row]] | None, changing: frozenset[str]
-) -> Iterable[Row]:
+def _triggered(relations: Relations, rule: Rule, delta: Mapping[str, list[Row]] | None) -> Iterable[Row]:
     if delta is None:
         yield from join(relations, rule.body, (), [()], rule.variables)
         return
     for position, atom in enumerate(rule.body.positive):
-        if atom.predicate not in changing or atom.predicate not in delta:
+        if atom.predicate not in delta:
             continue
         fresh = Relations()
         fresh.add(atom.predicate, delta[atom.predicate])

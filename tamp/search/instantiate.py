@@ -9,7 +9,7 @@ that only what is reachable in the delete relaxation is instantiated (Helmert, C
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tamp.errors import InputError
 from tamp.pddl.structs import Action, Atom, Fact, Task
@@ -41,31 +41,53 @@ def instantiate(
     assumed: frozenset[str] = frozenset(),
     refused: frozenset[Fact] = frozenset(),
 ) -> Grounded:
-    """Instantiate a task.
+    """Instantiate a task once; see `Instantiator`."""
+    return Instantiator(task, assumed).instantiate(facts, objects or {}, refused)
+
+
+class Instantiator:
+    """Instantiates a task again and again while static facts and objects come along: only what is new is joined.
 
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
-        facts: Static facts besides those of the initial state: certified by streams, really or optimistically.
-        objects: Further objects with their types, placeholders among them.
         assumed: Static predicates of tests that are taken to hold, without listing their facts, where they would lift
             a guard.
-        refused: Facts of those that are known not to hold.
-
-    Raises:
-        InputError: A derived fact depends on its own negation, or an action's cost is not known.
     """
-    return _Instantiation(task, facts, objects or {}, assumed, refused).grounded()
+
+    def __init__(self, task: Task, assumed: frozenset[str] = frozenset()) -> None:
+        self._task, self._assumed = task, assumed
+        self._facts: frozenset[Fact] = frozenset()
+        self._run: _Instantiation | None = None
+
+    def instantiate(
+        self,
+        facts: Iterable[Fact] = (),
+        objects: Mapping[str, Types] | None = None,
+        refused: frozenset[Fact] = frozenset(),
+    ) -> Grounded:
+        """The task over these facts. It begins anew where one of the last time is missing, or an absence has ended.
+
+        Args:
+            facts: Static facts besides those of the initial state: certified by streams, really or optimistically.
+            objects: Further objects with their types, placeholders among them.
+            refused: Facts of the assumed predicates that are known not to hold.
+
+        Raises:
+            InputError: A derived fact depends on its own negation, or an action's cost is not known.
+        """
+        known = frozenset(facts)
+        new = known - self._facts
+        kept = self._run is not None and self._facts <= known
+        if self._run is None or not kept or any(fact[0] in self._run.absences for fact in new):
+            self._run, new = _Instantiation(self._task, self._assumed), known
+        self._facts = known
+        return self._run.grounded(new, objects or {}, refused)
 
 
 class _Instantiation:
-    def __init__(
-        self,
-        task: Task,
-        facts: Iterable[Fact],
-        objects: Mapping[str, Types],
-        assumed: frozenset[str],
-        refused: frozenset[Fact],
-    ) -> None:
+    """Attributes: absences: the static predicates that some condition wants not to hold."""
+
+    def __init__(self, task: Task, assumed: frozenset[str]) -> None:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
@@ -77,9 +99,8 @@ class _Instantiation:
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
         (self._goal_literals,) = goals
-        self._vocabulary = vocabulary = Vocabulary(task, normalizer, facts, objects, assumed, refused)
-        recursive = vocabulary.recursive()
-        self._negation = Negation(vocabulary, recursive)
+        self._vocabulary = vocabulary = Vocabulary(task, normalizer, assumed)
+        self._recursive = vocabulary.recursive()
         self._variants = [_Variant(*variant, _action_rule(vocabulary, *variant[1:])) for variant in split]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
@@ -88,32 +109,44 @@ class _Instantiation:
                 (d, Rule(d.literals.names, vocabulary.body(d.literals), (d.head,)))
                 for d in normalizer.definitions[name]
             ]
-            for name in normalizer.reached(roots, recursive)
+            for name in normalizer.reached(roots, self._recursive)
         }
+        self._rules = [variant.rule for variant in self._variants]
+        self._rules += [rule for variant in self._variants for rule in _effect_rules(vocabulary, variant)]
+        self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
+        self.absences = frozenset(atom.predicate for rule in self._rules for atom in rule.body.negative)
+        self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
+        self._joined = False
+
+    def grounded(self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]) -> Grounded:
+        """Run the fixpoint from what is new, and build everything from what it reached."""
+        vocabulary = self._vocabulary
+        vocabulary.refused = refused
+        delta = vocabulary.add(facts, objects)
+        fixpoint(vocabulary.relations, self._rules, delta if self._joined else None)
+        self._joined = True
+        self._negation = Negation(vocabulary, self._recursive)
         self._axioms: dict[Axiom, None] = {}
         self._needed: dict[Fact, None] = {}
         self._waiting: list[Fact] = []
         self._heads: dict[str, dict[Fact, list[tuple[int, Row]]]] = {}
         self._bodies: dict[str, list[list[list[Callable[[Row], Fact]]]]] = {}
-
-    def grounded(self) -> Grounded:
-        """Run the fixpoint and build everything from what it reached."""
-        rules = [variant.rule for variant in self._variants]
-        rules += [rule for variant in self._variants for rule in _effect_rules(self._vocabulary, variant)]
-        rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
-        fixpoint(self._vocabulary.relations, rules, self._vocabulary.changing)
-        operators = [operator for variant in self._variants for operator in self._operators(variant)]
+        operators = [
+            operator
+            for variant, made in zip(self._variants, self._made, strict=True)
+            for operator in self._operators(variant, made)
+        ]
         operators.sort(key=lambda o: (o.name, o.arguments))
         goal = self._goal()
         self._derive()
-        relations = self._vocabulary.relations
         heads = {axiom.head for axiom in self._axioms}
-        reachable = {(p, *row) for p in sorted(self._vocabulary.fluent) for row in relations.rows(p)} | heads
-        initial = frozenset(f for f in self._task.initial if f[0] in self._vocabulary.fluent)
+        reachable = {(p, *row) for p in sorted(vocabulary.fluent) for row in vocabulary.relations.rows(p)} | heads
+        initial = frozenset(f for f in self._task.initial if f[0] in vocabulary.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
         return Grounded(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
 
-    def _operators(self, variant: _Variant) -> list[Operator]:
+    def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
+        """The operators of all bindings; `made` keeps those that nothing which may come along can change."""
         action, rule = variant.action, variant.rule
         rows = sorted(rule.rows)
         if not rows:
@@ -136,8 +169,17 @@ class _Instantiation:
         effects = Effects(variant.effects, rule.variables, rows, self._vocabulary, self._negation, self._need)
         cost = action.cost
         price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
+        simple = not (kinds.negative or kinds.refuted) and all(effect.simple for effect in variant.effects)
+        deletes = sum(not effect.adds for effect in variant.effects)
         operators: list[Operator] = []
         for row in rows:
+            kept = made.get(row)
+            if kept is not None:
+                for fill in derived:
+                    self._need(fill(row))
+                spent = self._cost(price(row)) if price else kept.cost
+                operators.append(kept if spent == kept.cost else replace(kept, cost=spent))
+                continue
             before = frozenset([fill(row) for fill in positive])
             needs = Needs()
             for predicate, fill in negative:
@@ -172,6 +214,8 @@ class _Instantiation:
                     conditional,
                 )
             )
+            if simple and len(deleted) == deletes:
+                made[row] = operators[-1]
         return operators
 
     def _cost(self, fact: Fact) -> float:

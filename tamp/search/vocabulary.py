@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from tamp.pddl.structs import Atom, Fact, Task
-from tamp.search.datalog import Body, Relations
+from tamp.search.datalog import Body, Relations, Row
 from tamp.search.normal import Definition, Literals, Normalizer, Types, type_relation
 
 
@@ -39,46 +39,49 @@ class Vocabulary:
         given: Facts of derived predicates that were given nevertheless.
     """
 
-    def __init__(
-        self,
-        task: Task,
-        normalizer: Normalizer,
-        facts: Iterable[Fact],
-        objects: Mapping[str, Types],
-        assumed: frozenset[str] = frozenset(),
-        refused: frozenset[Fact] = frozenset(),
-    ) -> None:
+    def __init__(self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()) -> None:
         self._task = task
         self._normalizer = normalizer
         self.assumed = assumed
-        self.refused = refused
+        self.refused: frozenset[Fact] = frozenset()
         self.fluent = frozenset(effect.atom.predicate for action in task.domain.actions for effect in action.effects)
         self.relations = Relations()
         self.certain = task.initial
         self.given: set[Fact] = set()
-        self._objects = {**task.domain.constants, **task.objects, **objects}
-        self._types: set[str] = set()
-        rows: dict[str, set[tuple[str, ...]]] = {}
-        for fact in task.initial:
-            rows.setdefault(fact[0], set()).add(fact[1:])
+        self._objects: dict[str, Types] = {}
+        self._types: dict[str, Types] = {}
+        self._add(task.initial)
+        self.add((), {**task.domain.constants, **task.objects})
+
+    def add(self, facts: Iterable[Fact], objects: Mapping[str, Types]) -> dict[str, list[Row]]:
+        """Take over static facts (others are left out) and objects; returns what is new, by predicate."""
+        new = self._add(fact for fact in facts if fact[0] not in self.fluent)
+        fresh = {name: types for name, types in objects.items() if name not in self._objects}
+        self._objects |= fresh
+        for relation, types in self._types.items():
+            rows = self.relations.add(relation, self._fitting(types, fresh))
+            if rows:
+                new[relation] = rows
+        return new
+
+    def _add(self, facts: Iterable[Fact]) -> dict[str, list[Row]]:
+        rows: dict[str, set[Row]] = {}
         for fact in facts:
-            if fact[0] not in self.fluent:
-                rows.setdefault(fact[0], set()).add(fact[1:])
+            rows.setdefault(fact[0], set()).add(fact[1:])
+        new: dict[str, list[Row]] = {}
         for predicate in sorted(rows):
-            self.relations.add(predicate, sorted(rows[predicate]))
-            if predicate in normalizer.definitions:
+            added = self.relations.add(predicate, sorted(rows[predicate]))
+            if added:
+                new[predicate] = added
+            if predicate in self._normalizer.definitions:
                 self.given |= {(predicate, *row) for row in rows[predicate]}
+        return new
 
     def may_hold(self, fact: Fact) -> bool:
         """Whether a static fact is known, or of a predicate that is assumed to hold and not refused."""
         if fact[1:] in self.relations.rows(fact[0]):
             return True
         return fact[0] in self.assumed and fact not in self.refused
-
-    @property
-    def changing(self) -> frozenset[str]:
-        """Fluent, derived and auxiliary predicates."""
-        return self.fluent | self._normalizer.definitions.keys()
 
     def recursive(self) -> frozenset[str]:
         """Derived predicates that depend on themselves."""
@@ -143,10 +146,13 @@ class Vocabulary:
         """The atom that says that the variable has one of the types; its relation is made when first asked for."""
         name = type_relation(types)
         if name not in self._types:
-            fits = {own: self._task.domain.fits(own, types) for own in set(self._objects.values())}
-            self.relations.add(name, [(o,) for o in sorted(self._objects) if fits[self._objects[o]]])
-            self._types.add(name)
+            self.relations.add(name, self._fitting(types, self._objects))
+            self._types[name] = types
         return Atom(name, (variable,))
+
+    def _fitting(self, types: Types, objects: Mapping[str, Types]) -> list[Row]:
+        fits = {own: self._task.domain.fits(own, types) for own in set(objects.values())}
+        return [(name,) for name in sorted(objects) if fits[objects[name]]]
 
     def definitions(self, predicate: str) -> list[Definition]:
         """The rules of a derived or auxiliary predicate."""
