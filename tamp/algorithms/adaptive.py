@@ -117,7 +117,7 @@ class Adaptive(Run):
         tries = FIRST_TRIES + skeleton.rounds
         budget = max(ROUND_BUDGET, len(skeleton.nodes)) * (1 + skeleton.rounds)
         values = self.binder.bind(skeleton, tries, budget)
-        if values is not None:
+        if values is not None and self.stands(skeleton, values):
             self.bound = skeleton, values
             return self.solved(skeleton, values)
         skeleton.rounds += 1

@@ -95,7 +95,7 @@ class Incremental(Run):
             self.latest = skeleton
             before = self.binder.units
             values = self.binder.bind(skeleton, TRIES, BUDGET)
-            if values is not None:
+            if values is not None and self.stands(skeleton, values):
                 return self.solved(skeleton, values)
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0

@@ -36,8 +36,9 @@ from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
-from tamp.search.instantiate import Instantiator
+from tamp.search.instantiate import Instantiator, instantiate
 from tamp.search.operators import Grounded
+from tamp.search.trace import replayed
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
@@ -263,6 +264,24 @@ class Run:
         before = len(self.real)
         self.real.update(self.streams.wild)
         return len(self.real) > before
+
+    def stands(self, skeleton: Skeleton, values: dict[int, str]) -> bool:
+        """Whether the bound plan holds with what streams found besides, too: a condition may want that to be absent.
+
+        If not, the values are forgotten, and what gave them has failed once more.
+        """
+        if not self.streams.wild:
+            return True
+        certified = {substitute(fact, values) for fact in skeleton.certified}
+        grounded = instantiate(self.task, sorted(certified | self.streams.wild.keys()), self.objects.types)
+        bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
+        if replayed(grounded, bound):
+            return True
+        skeleton.memory.clear()
+        for node in skeleton.nodes:
+            if node.outputs:
+                self.experience.note(node.fact, "what was found besides forbids the plan")
+        return False
 
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""

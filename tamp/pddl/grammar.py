@@ -8,7 +8,7 @@ ONLY_GROUPS = frozenset(
     ("and", "or", "not", "exists", "forall", "when", "imply", ":derived", ":predicates", ":init", ":goal")
 )
 MANY_GROUPS = frozenset(("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric"))
-KEYWORDED = frozenset((":action", ":stream", ":rule"))
+KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 """Sections with a name and `:keyword value` pairs."""
 
 

@@ -12,7 +12,7 @@ from tamp.pddl.sections import Section, keyword_values, read_sections
 from tamp.pddl.structs import Atom, Domain, Function, Parameter, Stream, StreamFile
 from tamp.pddl.typed import refuse_duplicates
 
-SECTIONS = (":stream", ":function", ":predicate", ":rule", ":optimizer")
+SECTIONS = (":stream", ":wild-stream", ":function", ":predicate", ":rule", ":optimizer")
 STREAM_KEYWORDS = (":inputs", ":domain", ":fluents", ":outputs", ":certified")
 
 
@@ -24,7 +24,8 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None) -> 
     """
     name, sections = read_sections(text, "stream", SECTIONS, file)
     by_keyword = {keyword: [s for s in sections if s.keyword.text == keyword] for keyword in SECTIONS}
-    streams = [_stream(section, domain) for section in by_keyword[":stream"]]
+    streamed = [section for section in sections if section.keyword.text in (":stream", ":wild-stream")]
+    streams = [_stream(section, domain) for section in streamed]
     rules = [_rule(number, section, domain) for number, section in enumerate(by_keyword[":rule"], start=1)]
     notes = [note for s in by_keyword[":optimizer"] for note in check_optimizer(s, [*streams, *rules], domain)]
     result = StreamFile(
@@ -36,7 +37,7 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None) -> 
         tuple(rules),
         tuple(notes),
     )
-    refuse_duplicates((as_symbol(section.items[0], "a name") for section in by_keyword[":stream"]), "stream")
+    refuse_duplicates((as_symbol(section.items[0], "a name") for section in streamed), "stream")
     for keyword in (":function", ":predicate"):
         heads = (as_group(section.items[0], f"a {keyword[1:]}").items[0] for section in by_keyword[keyword])
         refuse_duplicates((as_symbol(head, "a name") for head in heads), keyword[1:])

@@ -199,7 +199,7 @@ def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
         head = node.head
         if head == "define":
             yield from _heads(node.items[2:])
-        elif head in (":stream", ":rule", ":predicate", ":function", ":optimizer"):
+        elif head in (":stream", ":wild-stream", ":rule", ":predicate", ":function", ":optimizer"):
             items = list(node.items[1:])
             if head == ":function" and items and isinstance(items[0], Group):
                 items = items[1:]

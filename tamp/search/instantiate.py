@@ -101,7 +101,7 @@ class _Instantiation:
         (self._goal_literals,) = goals
         self._vocabulary = vocabulary = Vocabulary(task, normalizer, assumed)
         self._recursive = vocabulary.recursive()
-        self._variants = [_Variant(*variant, _action_rule(vocabulary, *variant[1:])) for variant in split]
+        self._variants = [_Variant(*variant, _action_rule(vocabulary, *variant)) for variant in split]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
         self._definitions: dict[str, list[tuple[Definition, Rule]]] = {
@@ -308,9 +308,18 @@ class _Instantiation:
         return axioms
 
 
-def _action_rule(vocabulary: Vocabulary, literals: Literals, effects: tuple[LiftedEffect, ...]) -> Rule:
+def _action_rule(vocabulary: Vocabulary, action: Action, literals: Literals, effects: tuple[LiftedEffect, ...]) -> Rule:
+    """A parameter that neither conditions nor effects nor the cost mention takes one value: others change nothing."""
     heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
-    return Rule(literals.names, vocabulary.body(literals), heads)
+    conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
+    mentioned = {term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms}
+    mentioned |= {term for one in conditions for left, right, _ in one.equalities for term in (left, right)}
+    mentioned |= {term for effect in effects for term in effect.atom.terms}
+    mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
+    free = {name: types for name, types in literals.variables if name not in mentioned}
+    body = vocabulary.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
+    any_ = tuple(vocabulary.any_atom(name, types) for name, types in free.items())
+    return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
 
 
 def _effect_rules(vocabulary: Vocabulary, variant: _Variant) -> list[Rule]:

@@ -150,6 +150,15 @@ class Vocabulary:
             self._types[name] = types
         return Atom(name, (variable,))
 
+    def any_atom(self, variable: str, types: Types) -> Atom:
+        """The same of one object only, which the task itself has: for a variable that makes no difference."""
+        fitting = self._fitting(types, {**self._task.domain.constants, **self._task.objects})
+        if not fitting:
+            return self.type_atom(variable, types)
+        name = f"{type_relation(types)} any"
+        self.relations.add(name, fitting[:1])
+        return Atom(name, (variable,))
+
     def _fitting(self, types: Types, objects: Mapping[str, Types]) -> list[Row]:
         fits = {own: self._task.domain.fits(own, types) for own in set(objects.values())}
         return [(name,) for name in sorted(objects) if fits[objects[name]]]

@@ -9,7 +9,7 @@ import pytest
 
 from tamp.algorithms.registry import ALGORITHMS
 from tamp.errors import InputError
-from tamp.pddlstream import PDDLProblem, from_fn, from_gen_fn, from_test, solve
+from tamp.pddlstream import PDDLProblem, WildOutput, from_fn, from_gen_fn, from_test, solve
 
 SHELF = """
 (define (domain shelf)
@@ -108,3 +108,32 @@ def test_loose_declarations_are_taken_as_they_are_meant() -> None:
 
 def even(number: int) -> bool:
     return number % 2 == 0
+
+
+WALL = """
+(define (domain wall)
+  (:predicates (Brick ?b) (Standing ?b) (Gone ?b) (Way ?b ?t) (Hits ?t ?b) (Tool ?x) (Firm))
+  (:action remove :parameters (?b ?t ?tool)
+    :precondition (and (Way ?b ?t) (Standing ?b) (Firm) (forall (?other) (imply (Hits ?t ?other) (Gone ?other))))
+    :effect (and (Gone ?b) (not (Standing ?b)))))
+"""
+WAYS = """
+(define (stream wall)
+  (:wild-stream way :inputs (?b) :domain (Brick ?b) :outputs (?t) :certified (Way ?b ?t))
+  (:stream firm :fluents (Standing) :certified (Firm)))
+"""
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_wild_streams_tests_of_the_state_and_parameters_that_nothing_mentions(algorithm: str) -> None:
+    """A brick's way hits the one to its right; the tool makes no difference."""
+
+    def way(brick: int) -> Iterator[WildOutput]:
+        right = [("Hits", ("way", brick), brick + 1)] if brick < 3 else []
+        yield WildOutput([(("way", brick),)], right)
+
+    functions = {"way": way, "firm": from_test(lambda fluents: len(fluents) > 0)}
+    init = [(name, brick) for brick in range(4) for name in ("Brick", "Standing")] + [("Tool", "drill")]
+    goal = ("and", *(("Gone", brick) for brick in range(4)))
+    solution = solve(PDDLProblem(WALL, {}, WAYS, functions, init, goal), algorithm, max_time=20.0)
+    assert [action.args[0] for action in solution.plan or []] == [3, 2, 1, 0]
