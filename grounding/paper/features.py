@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,7 @@ class CloudFeatures:
 
     def __init__(self, encoder: Encoder) -> None:
         self._encode = encoder
+        self._known: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
     def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
         """See Features."""
@@ -121,6 +123,12 @@ class CloudFeatures:
         return features
 
     def _features(self, item: Placed) -> Array:
+        """Worked out once while a body stays where it is."""
+        if item not in self._known:
+            self._known[item] = self._described(item)
+        return self._known[item]
+
+    def _described(self, item: Placed) -> Array:
         points = cloud(item.form)
         centroid, rotation = points.mean(axis=0), item.matrix[:3, :3]
         code = self._encode((points - centroid) @ rotation.T)
