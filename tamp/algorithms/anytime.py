@@ -89,7 +89,7 @@ def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
     skeleton = run.skeleton(plan)
     values = run.binder.bind(skeleton, FIRST_TRIES + skeleton.rounds, ROUND_BUDGET * (1 + skeleton.rounds))
     skeleton.rounds += 1
-    return None if values is None else (run.solved(skeleton, values), (skeleton, values))
+    return _found(run, skeleton, values)
 
 
 def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None:
@@ -100,5 +100,10 @@ def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None
         for number, node in enumerate(skeleton.nodes)
         if not node.stream.is_test and first <= node.step < first + WINDOW
     }
-    values = run.binder.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None
-    return None if values is None else (run.solved(skeleton, values), (skeleton, values))
+    return _found(run, skeleton, run.binder.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None)
+
+
+def _found(run: Adaptive, skeleton: Skeleton, values: dict[int, str] | None) -> _Found | None:
+    if values is None or not run.stands(skeleton, values):
+        return None
+    return run.solved(skeleton, values), (skeleton, values)
