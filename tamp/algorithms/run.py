@@ -11,6 +11,7 @@ from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
 from tamp.algorithms.costs import Costs
+from tamp.algorithms.doubts import doubts
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
@@ -27,7 +28,8 @@ from tamp.algorithms.optimistic import (
 )
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
-from tamp.algorithms.statistics import SCALE, Experience
+from tamp.algorithms.standing import stands
+from tamp.algorithms.statistics import Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Objects, Streams
 from tamp.algorithms.tally import Tally, tallies
@@ -36,18 +38,12 @@ from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
-from tamp.search.instantiate import Instantiator, instantiate
+from tamp.search.instantiate import Instantiator
 from tamp.search.operators import Grounded
-from tamp.search.trace import replayed
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
 
-UNTRIED = 0.2
-"""The price of resting on a test of values that are not drawn yet, in units of an action's cost."""
-
-WORST = 5.0
-"""Expected failures that earlier runs can charge for at most: another problem may be kinder."""
 
 DEEPEST = 8
 """How many times the first depth and number of guesses are imagined at most, when there is no plan with fewer."""
@@ -171,7 +167,7 @@ class Run:
         """
         started = time.perf_counter()
         grounded, prices = with_nogoods(self.grounded, self.experience)
-        prices |= self.doubts() | self.experience.prices()
+        prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
@@ -194,25 +190,6 @@ class Run:
         found = search(self.grounded, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
         self.effort.search_seconds += time.perf_counter() - started
         return found.bound if self.optimism.complete else 0.0
-
-    def doubts(self) -> dict[Fact, float]:
-        """A price for what is not tried yet.
-
-        For each test of placeholders, since a generator that certifies the same goes first; and for the calls of
-        streams that earlier runs know, by the failures to expect.
-        """
-        known, makers = self.experience.facts, self.optimism.makers
-        doubts = {
-            fact: UNTRIED
-            for fact, guess in makers.items()
-            if guess.stream.is_test and guess.level > 1 and fact[0] not in self.assumed and fact not in known
-        }
-        earlier = {name: SCALE * min(p.expected_failures, WORST) for name, p in self.problem.known.items()}
-        if earlier:
-            for fact, guess in makers.items():
-                if guess.stream.name in earlier and fact not in known:
-                    doubts[fact] = doubts.get(fact, 0.0) + earlier[guess.stream.name]
-        return doubts
 
     def _usual_cost(self) -> float:
         """The mean cost of the operators: prices are in units of it where actions cost more than one."""
@@ -266,22 +243,10 @@ class Run:
         return len(self.real) > before
 
     def stands(self, skeleton: Skeleton, values: dict[int, str]) -> bool:
-        """Whether the bound plan holds with what streams found besides, too: a condition may want that to be absent.
-
-        If not, the values are forgotten, and what gave them has failed once more.
-        """
-        if not self.streams.wild:
-            return True
-        certified = {substitute(fact, values) for fact in skeleton.certified}
-        grounded = instantiate(self.task, sorted(certified | self.streams.wild.keys()), self.objects.types)
-        bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
-        if replayed(grounded, bound):
-            return True
-        skeleton.memory.clear()
-        for node in skeleton.nodes:
-            if node.outputs:
-                self.experience.note(node.fact, "what was found besides forbids the plan")
-        return False
+        """Whether the bound plan holds with what streams found besides; if not, what gave the values has failed."""
+        return not self.streams.wild or stands(
+            self.task, self.objects.types, skeleton, values, self.streams.wild, self.experience
+        )
 
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""
