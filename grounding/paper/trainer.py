@@ -252,7 +252,8 @@ class Trainer:
         remedy = f"Train from the beginning: delete {path}"
         try:
             with safe_open(path, "pt") as file:
-                found, tensors = file.metadata() or {}, {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+                found = file.metadata() or {}
+                tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
         except (SafetensorError, OSError, ValueError) as error:
             raise InputError(f"the state is damaged: {error}", file=path, remedy=remedy) from None
         if found.get("run") != self._run():

@@ -11,7 +11,10 @@ from tamp.pddl.structs import Fact
 
 
 def build_skeleton(
-    steps: Sequence[Step], goal: tuple[frozenset[Fact], frozenset[Fact]], maker: Callable[[Fact], Guess | None]
+    steps: Sequence[Step],
+    goal: tuple[frozenset[Fact], frozenset[Fact]],
+    maker: Callable[[Fact], Guess | None],
+    promise: Callable[[str], Fact],
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
@@ -22,8 +25,9 @@ def build_skeleton(
         steps: The plan.
         goal: The final state, and the static facts that support the goal in it.
         maker: Who certifies an optimistic fact; None for known ones.
+        promise: What the call that gives a placeholder certifies of it.
     """
-    builder = _Builder(maker)
+    builder = _Builder(maker, promise)
     for number, step in enumerate(steps):
         builder.take(number, step)
     builder.finish(len(steps), *goal)
@@ -33,8 +37,8 @@ def build_skeleton(
 class _Builder:
     """Walks through the plan, keeping for each fluent fact of the state which variables stand in it."""
 
-    def __init__(self, maker: Callable[[Fact], Guess | None]) -> None:
-        self._maker = maker
+    def __init__(self, maker: Callable[[Fact], Guess | None], promise: Callable[[str], Fact]) -> None:
+        self._maker, self._promise = maker, promise
         self._parent: list[int] = []
         self._producer: dict[int, Node] = {}
         self._nodes: list[Node] = []
@@ -97,9 +101,9 @@ class _Builder:
             for fact in sorted(usage.present):
                 self._adopt(fact, around)
             self._require(usage.fact, around, number)
-        for argument in step.arguments:
+        for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK) and argument not in local:
-                raise ValueError(f"no stream gives {argument} of {step.name}")
+                self._require(self._promise(argument), local, number)
         self._actions.append((step.name, self._lift(step.arguments, local)))
         self._certify(step.static, local)
         for fact in step.added:

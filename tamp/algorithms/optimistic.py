@@ -87,6 +87,10 @@ class Optimism:
         made = self.makers[fact] = Guess(stream, inputs, (), domain, certified, 0)
         return made
 
+    def promise(self, placeholder: str) -> Fact:
+        """A fact that the call which gives a placeholder certifies of it."""
+        return next(fact for fact, guess in self.makers.items() if placeholder in guess.outputs and placeholder in fact)
+
 
 def imagine(
     streams: Sequence[BoundStream],

@@ -201,7 +201,7 @@ class Run:
         signature = tuple((operator.name, operator.arguments) for operator in plan.operators)
         if signature not in self.skeletons:
             steps, goal = to_steps(self.grounded, plan)
-            self.skeletons[signature] = build_skeleton(steps, goal, self.optimism.maker)
+            self.skeletons[signature] = build_skeleton(steps, goal, self.optimism.maker, self.optimism.promise)
             self.effort.skeletons = len(self.skeletons)
         return self.skeletons[signature]
 

@@ -29,7 +29,7 @@ def _certified(checker: Sampled, path: Array) -> bool:
 def test_nothing_in_the_way_is_a_straight_line() -> None:
     checker = Sampled(lambda _: False)
     planned = _plan(checker)
-    assert planned and np.array_equal(planned.path, [START, GOAL])  # type: ignore[arg-type]
+    assert planned.path is not None and np.array_equal(planned.path, [START, GOAL])
     assert planned.checks == checker.edges == 1
 
 
@@ -77,7 +77,8 @@ def test_goals_in_collision_are_left_out() -> None:
 
 def test_the_seed_decides() -> None:
     first, second = _plan(Sampled(wall_with_gap), seed=3), _plan(Sampled(wall_with_gap), seed=3)
-    assert np.array_equal(first.path, second.path) and first.checks == second.checks  # type: ignore[arg-type]
+    assert first.path is not None and second.path is not None
+    assert np.array_equal(first.path, second.path) and first.checks == second.checks
 
 
 def test_the_deadline_is_kept() -> None:

@@ -85,4 +85,5 @@ def test_unknown_steering_is_refused_with_the_choices() -> None:
 @pytest.mark.parametrize("steering", ["se2", "reeds-shepp"])
 def test_the_seed_decides(steering: str) -> None:
     first, second = (_plan(Sampled(round_table, 0.05), seed=4, steering=steering) for _ in range(2))
-    assert np.array_equal(first.path, second.path) and first.checks == second.checks  # type: ignore[arg-type]
+    assert first.path is not None and second.path is not None
+    assert np.array_equal(first.path, second.path) and first.checks == second.checks

@@ -53,11 +53,11 @@ def test_a_goal_that_is_shut_in_does_not_hide_another() -> None:
 
 def test_the_seed_decides_in_one_process_whatever_ran_before() -> None:
     runs = [_search(seed) for seed in (1, 2, 1, 2, 1)]
-    paths = [path for path, _ in runs]
-    assert all(path is not None for path in paths)
-    assert all(np.array_equal(paths[0], paths[i]) and runs[0][1] == runs[i][1] for i in (2, 4))  # type: ignore[arg-type]
-    assert np.array_equal(paths[1], paths[3])  # type: ignore[arg-type]
-    assert not np.array_equal(paths[0], paths[1])  # type: ignore[arg-type]
+    paths = [path for path, _ in runs if path is not None]
+    assert len(paths) == len(runs)
+    assert all(np.array_equal(paths[0], paths[i]) and runs[0][1] == runs[i][1] for i in (2, 4))
+    assert np.array_equal(paths[1], paths[3])
+    assert not np.array_equal(paths[0], paths[1])
 
 
 def test_the_seed_decides_in_two_processes(root: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import count
 from typing import Any
 
 import pytest
@@ -137,3 +138,24 @@ def test_wild_streams_tests_of_the_state_and_parameters_that_nothing_mentions(al
     goal = ("and", *(("Gone", brick) for brick in range(4)))
     solution = solve(PDDLProblem(WALL, {}, WAYS, functions, init, goal), algorithm, max_time=20.0)
     assert [action.args[0] for action in solution.plan or []] == [3, 2, 1, 0]
+
+
+JUMP = """
+(define (domain jump)
+  (:predicates (Number ?n) (At ?n) (Ready) (Large ?n) (Done))
+  (:action jump :parameters (?n) :precondition (Ready) :effect (and (At ?n) (not (Ready))))
+  (:action finish :parameters (?n) :precondition (and (At ?n) (Large ?n)) :effect (Done)))
+"""
+NUMBERS = """
+(define (stream jump)
+  (:stream number :outputs (?n) :certified (Number ?n))
+  (:stream large :inputs (?n) :domain (Number ?n) :certified (Large ?n)))
+"""
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_a_parameter_that_only_an_effect_mentions_is_drawn(algorithm: str) -> None:
+    functions = {"number": from_gen_fn(lambda: ((n,) for n in count())), "large": from_test(lambda n: n > 3)}
+    solution = solve(PDDLProblem(JUMP, {}, NUMBERS, functions, [("Ready",)], ("Done",)), algorithm, max_time=20.0)
+    assert [action.name for action in solution.plan or []] == ["jump", "finish"]
+    assert {action.args[0] > 3 for action in solution.plan or []} == {True}

@@ -57,8 +57,7 @@ def test_a_run_goes_on_from_its_state(table, tmp_path):
             raise Stop
 
     args = Args(iterations=6, critic_catches_up=3, save_every=2, block=2)
-    make = lambda: Trainer(table, True, "both", [240, 20], [0, 3], args)  # noqa: E731
-    whole, cut, resumed = make(), make(), make()
+    whole, cut, resumed = (Trainer(table, True, "both", [240, 20], [0, 3], args) for _ in range(3))
     whole.run()
     state = tmp_path / "state.safetensors"
     with pytest.raises(Stop):
