@@ -21,7 +21,10 @@ FIRST_TRIES = 4
 tried with all poses before the next one has its turn."""
 
 ROUND_BUDGET = 200
-"""Draws in a skeleton's first round, or as many as it has nodes: a long one shall be gone through once."""
+"""Draws in a skeleton's first round at least."""
+
+NODE_BUDGET = 5
+"""Draws for each of its nodes: a long one shall be gone through more than once, since its search was long as well."""
 
 PATIENCE = 1000
 """Failures of one thing without a success after which the incremental algorithm is asked; doubled each time."""
@@ -115,7 +118,7 @@ class Adaptive(Run):
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
-        budget = max(ROUND_BUDGET, len(skeleton.nodes)) * (1 + skeleton.rounds)
+        budget = max(ROUND_BUDGET, NODE_BUDGET * len(skeleton.nodes)) * (1 + skeleton.rounds)
         values = self.binder.bind(skeleton, tries, budget)
         if values is not None and self.stands(skeleton, values):
             self.bound = skeleton, values
