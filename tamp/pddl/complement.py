@@ -2,16 +2,31 @@
 
 A `:predicate` of a streams file is true where its function says so, and what a test stream certifies is true where the
 test passes. Streams can only promise that something holds; so where a condition is helped by the predicate being false,
-it is rewritten over a complement, `not-P`, that a stream of its own promises.
+it is rewritten over a complement, `not-P`, that a stream of its own promises. Where an effect has it in its condition,
+the action is given the precondition that one of the two is known.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
-from tamp.pddl.nodes import error
-from tamp.pddl.structs import And, Atom, Derived, Domain, Exists, Forall, Formula, Not, Or, Predicate, Stream
+from tamp.pddl.structs import (
+    Action,
+    And,
+    Atom,
+    Derived,
+    Domain,
+    Effect,
+    Exists,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Predicate,
+    Stream,
+)
 
 
 def complement_name(predicate: str, domain: Domain) -> str:
@@ -24,7 +39,7 @@ def complement_name(predicate: str, domain: Domain) -> str:
 
 def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> dict[str, Stream]:
     """The test streams that a condition asks to fail, by the predicate that each certifies alone."""
-    asked = {atom.predicate for atom, sign in _all(domain, goal) if not sign}
+    asked = {atom.predicate for atom, sign in atoms_of_conditions(domain, goal) if not sign}
     makers: dict[str, list[Stream]] = {}
     for stream in streams:
         for atom in stream.certified:
@@ -41,54 +56,86 @@ def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> d
     }
 
 
+class _Twins(NamedTuple):
+    """What is written instead where a predicate has to be false.
+
+    Attributes:
+        complements: Of decided predicates: what holds when the predicate does not.
+        copies: Of derived predicates needed both ways that rest on decided ones: what holds unless the complements
+            say that it does not.
+    """
+
+    complements: dict[str, str]
+    copies: dict[str, str]
+
+
 def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) -> tuple[Domain, Formula]:
     """Rewrite actions, rules and goal so that the decided predicates and their complements occur positively only.
 
     In a rule, what helps depends on how the rule is used: `(blocked ?t)`, of which actions need the negation, is helped
-    by what makes it true being false.
-
-    Raises:
-        InputError: One stands in an effect's condition, or in a rule that is needed both true and false.
+    by what makes it true being false. A derived predicate that is needed both ways gets a copy for the negations.
     """
     names = {predicate: complement_name(predicate, domain) for predicate in decided if predicate in domain.predicates}
     if not names:
         return domain, goal
     signs = _signs(domain, goal)
+    both = [predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2]
+    twins = _Twins(names, {predicate: complement_name(predicate, domain) for predicate in both})
     predicates = dict(domain.predicates)
-    for predicate, name in names.items():
+    for predicate, name in {**twins.complements, **twins.copies}.items():
         predicates[name] = Predicate(name, domain.predicates[predicate].parameters)
-    for action in domain.actions:
-        for effect in action.effects:
-            for atom, _ in _atoms(effect.condition, True):
-                if atom.predicate in names and atom.place:
-                    what = f"'{atom.predicate}' is decided by Python, it cannot stand in the condition of an effect"
-                    raise error(
-                        atom.place, what, remedy="Make two actions of it, with the condition in the precondition"
-                    )
     rules: list[Derived] = []
     for rule in domain.derived:
-        needed = signs.get(rule.head.predicate, {True})
-        if len(needed) == 1:
-            body = _rewrite(rule.body, True, names, *needed)
-        else:
-            body = _untouched(rule.body, rule.head.predicate, names)
-        rules.append(replace(rule, body=body))
-    actions = [replace(a, precondition=_rewrite(a.precondition, True, names, True)) for a in domain.actions]
-    changed = replace(domain, predicates=predicates, actions=tuple(actions), derived=tuple(rules))
-    return changed, _rewrite(goal, True, names, True)
+        predicate = rule.head.predicate
+        needed = signs.get(predicate, {True})
+        rules.append(replace(rule, body=_rewrite(rule.body, True, twins, True in needed)))
+        if predicate in twins.copies:
+            head = replace(rule.head, predicate=twins.copies[predicate])
+            rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, twins, False)))
+    actions = tuple(_rewritten(action, twins) for action in domain.actions)
+    changed = replace(domain, predicates=predicates, actions=actions, derived=tuple(rules))
+    return changed, _rewrite(goal, True, twins, True)
+
+
+def _rewritten(action: Action, twins: _Twins) -> Action:
+    """The action over complements; whether an effect happens must be known where a decided predicate says so."""
+    known = [_rewrite(action.precondition, True, twins, True)]
+    effects: list[Effect] = []
+    for effect in action.effects:
+        happens = _rewrite(effect.condition, True, twins, True)
+        does_not = _rewrite(Not(effect.condition), True, twins, True)
+        if happens != effect.condition or does_not != Not(effect.condition):
+            decided = Or((happens, does_not))
+            known.append(Forall(effect.parameters, decided) if effect.parameters else decided)
+        effects.append(replace(effect, condition=happens))
+    return replace(action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects))
+
+
+def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
+    """The derived predicates that rest on decided ones, in any number of steps."""
+    found: dict[str, None] = {}
+    more = True
+    while more:
+        more = False
+        for rule in domain.derived:
+            used = {atom.predicate for atom, _ in _atoms(rule.body, True)}
+            if rule.head.predicate not in found and any(one in decided or one in found for one in used):
+                found[rule.head.predicate] = None
+                more = True
+    return list(found)
 
 
 def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
     """For each derived predicate, whether it is needed to hold, not to hold, or both."""
     derived = domain.derived_predicates
     signs: dict[str, set[bool]] = {}
-    for atom, sign in _all(domain, goal):
+    for atom, sign in atoms_of_conditions(domain, goal):
         if atom.predicate in derived:
             signs.setdefault(atom.predicate, set()).add(sign)
     return signs
 
 
-def _all(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
+def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
     """The atoms of all conditions, and of rules as they are used, each with whether it helps by holding."""
     derived = domain.derived_predicates
     seen: set[tuple[str, bool]] = set()
@@ -107,33 +154,26 @@ def _all(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
                     stack += _atoms(rule.body, sign)
 
 
-def _untouched(body: Formula, head: str, names: dict[str, str]) -> Formula:
-    """A rule that is needed both ways, which therefore mentions no decided predicate."""
-    for atom, _ in _atoms(body, True):
-        if atom.predicate in names and atom.place:
-            what = f"'{head}' is needed both true and false, and rests on '{atom.predicate}', which Python decides"
-            raise error(atom.place, what, remedy="Give the two uses a rule each")
-    return body
-
-
-def _rewrite(formula: Formula, sign: bool, names: dict[str, str], helps: bool) -> Formula:
+def _rewrite(formula: Formula, sign: bool, twins: _Twins, helps: bool) -> Formula:
     """`helps`: whether the formula as a whole is needed to hold; `sign`: whether we are under no negation in it."""
     match formula:
         case Atom(predicate, terms, place):
-            if predicate in names and sign is not helps:
-                return Not(Atom(names[predicate], terms, place))
-            return formula
+            if sign is helps:
+                return formula
+            if predicate in twins.complements:
+                return Not(Atom(twins.complements[predicate], terms, place))
+            return Atom(twins.copies.get(predicate, predicate), terms, place)
         case Not(body):
-            inner = _rewrite(body, not sign, names, helps)
+            inner = _rewrite(body, not sign, twins, helps)
             return inner.body if isinstance(inner, Not) and inner != body else Not(inner)
         case And(parts):
-            return And(tuple(_rewrite(part, sign, names, helps) for part in parts))
+            return And(tuple(_rewrite(part, sign, twins, helps) for part in parts))
         case Or(parts):
-            return Or(tuple(_rewrite(part, sign, names, helps) for part in parts))
+            return Or(tuple(_rewrite(part, sign, twins, helps) for part in parts))
         case Exists(parameters, body):
-            return Exists(parameters, _rewrite(body, sign, names, helps))
+            return Exists(parameters, _rewrite(body, sign, twins, helps))
         case Forall(parameters, body):
-            return Forall(parameters, _rewrite(body, sign, names, helps))
+            return Forall(parameters, _rewrite(body, sign, twins, helps))
 
 
 def _atoms(formula: Formula, sign: bool) -> Iterator[tuple[Atom, bool]]:

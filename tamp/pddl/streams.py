@@ -16,8 +16,14 @@ SECTIONS = (":stream", ":wild-stream", ":function", ":predicate", ":rule", ":opt
 STREAM_KEYWORDS = (":inputs", ":domain", ":fluents", ":outputs", ":certified")
 
 
-def parse_streams(text: str, domain: Domain, file: str | Path | None = None) -> StreamFile:
+def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, waiting: bool = False) -> StreamFile:
     """Read the streams of a domain.
+
+    Args:
+        text: The streams file's.
+        domain: Whose predicates they speak of.
+        file: Where the text is from, for errors.
+        waiting: Whether what actions change may stand in a stream's :domain, see `tamp.pddl.exogenous`.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -25,8 +31,8 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None) -> 
     name, sections = read_sections(text, "stream", SECTIONS, file)
     by_keyword = {keyword: [s for s in sections if s.keyword.text == keyword] for keyword in SECTIONS}
     streamed = [section for section in sections if section.keyword.text in (":stream", ":wild-stream")]
-    streams = [_stream(section, domain) for section in streamed]
-    rules = [_rule(number, section, domain) for number, section in enumerate(by_keyword[":rule"], start=1)]
+    streams = [_stream(section, domain, waiting) for section in streamed]
+    rules = [_rule(number, section, domain, waiting) for number, section in enumerate(by_keyword[":rule"], start=1)]
     notes = [note for s in by_keyword[":optimizer"] for note in check_optimizer(s, [*streams, *rules], domain)]
     result = StreamFile(
         name.text,
@@ -72,7 +78,7 @@ def _declared(atom: Atom, variable: str, domain: Domain) -> list[str]:
     return [type_ for term, parameter in pairs if term == variable for type_ in parameter.types]
 
 
-def _stream(section: Section, domain: Domain) -> Stream:
+def _stream(section: Section, domain: Domain, waiting: bool) -> Stream:
     if not section.items:
         raise error(section.group, "a stream has no name")
     name = as_name(section.items[0], "a stream's name")
@@ -80,7 +86,7 @@ def _stream(section: Section, domain: Domain) -> Stream:
     values = keyword_values(section.items[1:], owner, STREAM_KEYWORDS)
     inputs, outputs = (_variables(values.get(key), key) for key in (":inputs", ":outputs"))
     refuse_duplicates((*inputs, *outputs), f"variable of {owner}:")
-    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}")
+    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
     certified = _atoms(values.get(":certified"), _scope(domain, [*inputs, *outputs]), domain, f":certified of {owner}")
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
@@ -97,12 +103,12 @@ def _stream(section: Section, domain: Domain) -> Stream:
     )
 
 
-def _rule(number: int, section: Section, domain: Domain) -> Stream:
+def _rule(number: int, section: Section, domain: Domain, waiting: bool) -> Stream:
     """`(:rule :inputs (?a) :domain (f ?a) :certified (g ?a))`: what holds whenever the domain does."""
     owner = f"rule {number}"
     values = keyword_values(section.items, owner, (":inputs", ":domain", ":certified"))
     inputs = _variables(values.get(":inputs"), ":inputs")
-    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}")
+    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
     certified = _atoms(values.get(":certified"), _scope(domain, inputs), domain, f":certified of {owner}")
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
@@ -144,10 +150,10 @@ def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], A
     return Function(term.predicate, term.terms, condition, section.group.place)
 
 
-def _atoms(node: Node | None, scope: Scope, domain: Domain, where: str) -> tuple[Atom, ...]:
+def _atoms(node: Node | None, scope: Scope, domain: Domain, where: str, may_change: bool = False) -> tuple[Atom, ...]:
     """The facts of a conjunction, none of which an action may change: streams speak of what holds for ever."""
     atoms = parse_conjunction(node, scope) if node is not None else ()
-    for atom in atoms:
+    for atom in () if may_change else atoms:
         kind = "derived" if atom.predicate in domain.derived_predicates else ""
         kind = "changed by actions" if atom.predicate in domain.fluent_predicates else kind
         if kind and atom.place:

@@ -13,6 +13,7 @@ from tamp.algorithms.solution import StreamTask
 from tamp.algorithms.stream import BoundStream
 from tamp.errors import InputError, closest
 from tamp.pddl.complement import complement_name, negated_tests, with_complements
+from tamp.pddl.exogenous import without_waiting
 from tamp.pddl.formulas import RESERVED
 from tamp.pddl.lint import lint
 from tamp.pddl.nodes import Group, Node, Symbol, warning
@@ -61,7 +62,7 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     computed = _used(initial_functions(problem.init), domain_text)
     domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed))
-    files = [parse_streams(text, domain, file) for text, file in sources]
+    files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
     streams = _joined(files)
     constants, spare = _constants(problem.constant_map, domain)
     names = Names(constants)
@@ -70,6 +71,8 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     warnings = [*_undeclared(sources, domain), *streams.notes, *lint(domain, streams, goal, facts)]
     used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
     warnings += [*unused, *spare, *_check_map(functions, [one for group in used.values() for one in group])]
+    waiting = without_waiting(domain, streams, goal, facts)
+    domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
     bound += [_bound(rule, domain, _always) for rule in streams.rules]

@@ -247,14 +247,6 @@ def test_a_test_stream_that_must_fail(condition: str, algorithm: str) -> None:
     assert not wild.solved
 
 
-def test_a_predicate_in_a_rule_that_is_needed_both_ways_is_refused() -> None:
-    streams = STREAMS.replace("(:stream next", PREDICATE + "(:stream next")
-    domain = DOMAIN.replace("(Conf ?q) (Even ?q)", "(Conf ?q) (not (AtBad))")
-    message = r"19:\d+: 'atbad' is needed both true and false, and rests on 'bad', which Python decides"
-    with pytest.raises(InputError, match=message):
-        walk(("and", ("Rested",), ("AtBad",)), domain=domain, streams=streams, bad=even)
-
-
 def test_rules() -> None:
     streams = STREAMS.replace(":certified (Even ?q)", ":certified (Mark ?q)")
     streams = streams[: streams.rindex(")")] + "(:rule :inputs (?q) :domain (Mark ?q) :certified (Even ?q)))"
