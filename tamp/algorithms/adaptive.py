@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from tamp.algorithms.bystanders import blamed, bystanders
 from tamp.algorithms.incremental import DRY, Incremental
 from tamp.algorithms.run import Run
 from tamp.algorithms.skeleton import Skeleton
@@ -66,6 +67,10 @@ def solve_adaptive(
     return Adaptive(problem, make_rng, deadline, progress).solve()
 
 
+RECALL = 3
+"""Rounds of a skeleton after which things are imagined of all that was set aside, even if nothing blames it."""
+
+
 class Adaptive(Run):
     """One run of the algorithm.
 
@@ -87,7 +92,7 @@ class Adaptive(Run):
                     return result
                 dry = dry + 1 if self.binder.units == before else 0
                 if dry >= DRY or (self.shallow is not None and self.effort.searches >= deeper):
-                    deepened, deeper = self.deepen(), 2 * deeper
+                    deepened, deeper = self.recall() or self.deepen(), 2 * deeper
                     if dry >= DRY and not deepened:
                         return self.result(Outcome.EXHAUSTED)
                     dry = 0 if deepened else dry
@@ -114,7 +119,7 @@ class Adaptive(Run):
         if found.plan is None:
             if self.deadline.passed:
                 raise OutOfTime
-            return None if self.deepen() else self.hopeless()
+            return None if self.recall() or self.deepen() else self.hopeless()
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
@@ -125,10 +130,16 @@ class Adaptive(Run):
             return self.solved(skeleton, values)
         skeleton.rounds += 1
         self.effort.draws = self.binder.units
-        absorbed = self.absorb()
-        if self.bury(skeleton) or absorbed:
+        learned = self.absorb()
+        learned |= self.bury(skeleton)
+        recalled = self.recall(blamed(self.aside, self.experience) if skeleton.rounds < RECALL else None)
+        if learned and not recalled:
             self.optimism, self.grounded = self.imagined()
         return None
+
+    def bystanders(self) -> frozenset[str]:
+        """Nothing is imagined of what the goal does not name, until it stands in the way or nothing else will do."""
+        return bystanders(self.problem.task)
 
     def _wanders(self, rounds: int) -> bool:
         """Whether so many rounds went from plan to plan in a large task and drew little."""

@@ -89,6 +89,7 @@ class Run:
         self.given_up = False
         self.depth = 1
         self.shallow: int | None = None
+        self.aside = self.bystanders()
         useful = relevant(problem.streams, used_predicates(task))
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
@@ -100,6 +101,18 @@ class Run:
         self.known = [*sorted(task.initial), *type_facts(task)]
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.grounded = self.imagined()
+
+    def bystanders(self) -> frozenset[str]:
+        """The objects of which nothing is imagined at first: none, unless an algorithm knows when to recall them."""
+        return frozenset()
+
+    def recall(self, objects: frozenset[str] | None = None) -> bool:
+        """Imagine these as well that were set aside, or all of them; whether there were any."""
+        recalled = self.aside if objects is None else objects & self.aside
+        if recalled:
+            self.aside -= recalled
+            self.optimism, self.grounded = self.imagined()
+        return bool(recalled)
 
     def imagined(self) -> tuple[Optimism, Grounded]:
         """The optimistic task without the calls that are known to be dead.
@@ -125,9 +138,10 @@ class Run:
         return self._imagined(self.shallow) if self.shallow is not None else optimism
 
     def _imagined(self, deepest: int | None) -> Optimism:
+        known = [fact for fact in self.known if self.aside.isdisjoint(fact)] if self.aside else self.known
         optimism = imagine(
             self.useful,
-            [*self.known, *self.real],
+            [*known, *self.real],
             dead=frozenset((*self.dead, *self.settled)),
             levels=LEVELS * self.depth,
             deepest=deepest,
@@ -186,6 +200,7 @@ class Run:
 
     def lower_bound(self, limit: int) -> float:
         """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
+        self.recall()
         started = time.perf_counter()
         found = search(self.grounded, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
         self.effort.search_seconds += time.perf_counter() - started
