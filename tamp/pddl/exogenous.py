@@ -20,7 +20,6 @@ from tamp.pddl.structs import (
     Atom,
     Derived,
     Domain,
-    Effect,
     Exists,
     Fact,
     Forall,
@@ -67,65 +66,90 @@ def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: f
             what = f"'{atom.predicate}' has to be false here, and its stream waits for what actions change"
             remedy = "Put what it waits for in the action's precondition instead of the stream's :domain"
             raise InputError(what, remedy=remedy) if atom.place is None else error(atom.place, what, remedy=remedy)
-    names = _Names(domain)
-    awaited = {a.predicate for stream in made for a in stream.domain if a.predicate in domain.fluent_predicates}
-    now = {predicate: names.new(f"{predicate}-now", domain.predicates[predicate].parameters) for predicate in resting}
-    was = {predicate: names.new(f"was-{predicate}", domain.predicates[predicate].parameters) for predicate in awaited}
-    given = {
-        predicate: names.new(f"given-{predicate}", domain.predicates[predicate].parameters)
-        for predicate in sorted(resting)
-        if any(fact[0] == predicate for fact in facts)
-    }
-    rules = [replace(rule, body=_renamed(rule.body, now)) for rule in domain.derived]
-    for predicate, name in given.items():
-        variables = tuple(f"?x{i}" for i in range(len(domain.predicates[predicate].parameters)))
-        parameters = tuple(Parameter(variable) for variable in variables)
-        rules.append(Derived(Atom(now[predicate], variables), parameters, Atom(name, variables)))
-    changed: dict[str, Stream] = {}
-    for stream in made:
-        certified = [atom for atom in stream.certified if atom.predicate in resting]
-        if not certified and not any(atom.predicate in changing for atom in stream.domain):
-            continue
-        terms = (*stream.inputs, *stream.outputs)
-        result = Atom(names.new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms)
-        waits = [
-            Atom(was.get(atom.predicate) or now.get(atom.predicate) or atom.predicate, atom.terms)
-            for atom in stream.domain
-            if atom.predicate in changing or atom.predicate in resting
-        ]
-        rules += [_rule(Atom(now[atom.predicate], atom.terms), terms, (result, *waits)) for atom in certified]
-        static = tuple(atom for atom in stream.domain if atom.predicate not in changing)
-        changed[stream.name] = replace(stream, domain=static, certified=(*stream.certified, result))
-    started = {(was[fact[0]], *fact[1:]) for fact in facts if fact[0] in was}
-    started |= {(given[fact[0]], *fact[1:]) for fact in facts if fact[0] in given}
+    awaited = {atom.predicate for stream in made for atom in stream.domain} & domain.fluent_predicates
+    rewriting = _Rewriting(domain, resting, sorted(awaited), facts)
+    changed = {stream.name: rewriting.stream(stream) for stream in made}
+    actions = tuple(rewriting.action(action) for action in domain.actions)
+    derived = tuple(rewriting.rules)
+    predicates = {**domain.predicates, **rewriting.predicates}
     return Waiting(
-        replace(
-            domain,
-            predicates={**domain.predicates, **names.made},
-            actions=tuple(_noting(action, was, now) for action in domain.actions),
-            derived=tuple(rules),
-        ),
+        replace(domain, predicates=predicates, actions=actions, derived=derived),
         replace(
             streams,
-            streams=tuple(changed.get(stream.name, stream) for stream in streams.streams),
-            rules=tuple(changed.get(stream.name, stream) for stream in streams.rules),
+            streams=tuple(changed[stream.name] for stream in streams.streams),
+            rules=tuple(changed[stream.name] for stream in streams.rules),
         ),
-        _renamed(goal, now),
-        facts | started,
+        _renamed(goal, rewriting.now),
+        facts | rewriting.started,
     )
 
 
-class _Names:
-    """New predicates, none of which is called as another one."""
+class _Rewriting:
+    """A domain on the way to one whose streams do not wait.
 
-    def __init__(self, domain: Domain) -> None:
+    Attributes:
+        now: Of what rests on waiting streams: the derived predicate that conditions read.
+        was: Of what actions change and streams wait for: what notes that it has been true.
+        predicates: The new ones.
+        rules: The domain's over `now`, and those that define it, of the streams seen so far.
+        started: What is noted of the initial facts.
+    """
+
+    def __init__(
+        self, domain: Domain, resting: Collection[str], awaited: Collection[str], facts: frozenset[Fact]
+    ) -> None:
         self._domain = domain
-        self.made: dict[str, Predicate] = {}
+        self._changing = domain.fluent_predicates | domain.derived_predicates
+        self.predicates: dict[str, Predicate] = {}
+        self.now = {predicate: self._like(predicate, f"{predicate}-now") for predicate in resting}
+        self.was = {predicate: self._like(predicate, f"was-{predicate}") for predicate in awaited}
+        self.rules = [replace(rule, body=_renamed(rule.body, self.now)) for rule in domain.derived]
+        self.started = {(self.was[fact[0]], *fact[1:]) for fact in facts if fact[0] in self.was}
+        for predicate in resting:
+            given = [fact for fact in facts if fact[0] == predicate]
+            if given:
+                name = self._like(predicate, f"given-{predicate}")
+                self.started |= {(name, *fact[1:]) for fact in given}
+                terms = tuple(f"?x{i}" for i in range(len(domain.predicates[predicate].parameters)))
+                self.rules.append(_rule(Atom(self.now[predicate], terms), terms, (Atom(name, terms),)))
 
-    def new(self, name: str, parameters: tuple[Parameter, ...]) -> str:
-        while name in self._domain.predicates or name in self.made:
+    def stream(self, stream: Stream) -> Stream:
+        """One that does not wait, and rules for what it certifies."""
+        certified = [atom for atom in stream.certified if atom.predicate in self.now]
+        if not certified:
+            return stream
+        terms = (*stream.inputs, *stream.outputs)
+        result = Atom(self._new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms)
+        waits = [self._awaited(atom) for atom in stream.domain]
+        body = (result, *(atom for atom in waits if atom is not None))
+        self.rules += [_rule(replace(atom, predicate=self.now[atom.predicate]), terms, body) for atom in certified]
+        static = tuple(atom for atom in stream.domain if atom.predicate not in self._changing)
+        return replace(stream, domain=static, certified=(*stream.certified, result))
+
+    def action(self, action: Action) -> Action:
+        """The action over the rules; what it makes true is noted as having been true."""
+        effects = [replace(effect, condition=_renamed(effect.condition, self.now)) for effect in action.effects]
+        noted = [
+            replace(effect, atom=replace(effect.atom, predicate=self.was[effect.atom.predicate]))
+            for effect in effects
+            if effect.adds and effect.atom.predicate in self.was
+        ]
+        return replace(action, precondition=_renamed(action.precondition, self.now), effects=(*effects, *noted))
+
+    def _awaited(self, atom: Atom) -> Atom | None:
+        """What a rule asks in the place of a stream's domain; nothing of what never changes."""
+        name = self.was.get(atom.predicate) or self.now.get(atom.predicate)
+        if name is not None:
+            return replace(atom, predicate=name)
+        return atom if atom.predicate in self._changing else None
+
+    def _like(self, predicate: str, name: str) -> str:
+        return self._new(name, self._domain.predicates[predicate].parameters)
+
+    def _new(self, name: str, parameters: tuple[Parameter, ...]) -> str:
+        while name in self._domain.predicates or name in self.predicates:
             name += "~"
-        self.made[name] = Predicate(name, parameters)
+        self.predicates[name] = Predicate(name, parameters)
         return name
 
 
@@ -154,17 +178,6 @@ def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived
         tuple(Parameter(term) for term in terms),
         Exists(rest, conditions) if rest else conditions,
     )
-
-
-def _noting(action: Action, was: Mapping[str, str], now: Mapping[str, str]) -> Action:
-    """The action over the rules; what it makes true is noted as having been true."""
-    effects = [replace(effect, condition=_renamed(effect.condition, now)) for effect in action.effects]
-    noted = [_noted(effect, was) for effect in effects if effect.adds and effect.atom.predicate in was]
-    return replace(action, precondition=_renamed(action.precondition, now), effects=(*effects, *noted))
-
-
-def _noted(effect: Effect, was: Mapping[str, str]) -> Effect:
-    return replace(effect, atom=replace(effect.atom, predicate=was[effect.atom.predicate]))
 
 
 def _renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
