@@ -15,11 +15,15 @@ class Deadline:
 
     Args:
         seconds: From now; infinite by default.
+
+    Attributes:
+        ended: Whether the computation knows that it has to end, and only says what it found: let it finish that.
     """
 
     def __init__(self, seconds: float = math.inf) -> None:
         self.started = time.monotonic()
         self.seconds = seconds
+        self.ended = False
 
     def left(self) -> float:
         """Seconds until the deadline, never negative."""

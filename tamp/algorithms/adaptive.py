@@ -109,9 +109,9 @@ class Adaptive(Run):
                         return result
                 self.progress(self.effort)
         except OutOfTime:
-            return self.result(Outcome.TIMEOUT)
+            return self.stopped(Outcome.TIMEOUT)
         except KeyboardInterrupt:
-            return self.result(Outcome.INTERRUPTED)
+            return self.stopped(Outcome.INTERRUPTED)
 
     def _round(self) -> Result | None:
         """Search, bind, learn."""

@@ -64,6 +64,9 @@ class Incremental(Run):
 
         Args:
             most: Draws after which no further level is begun.
+
+        Raises:
+            OutOfTime: The deadline passed, and `most` was given.
         """
         try:
             while True:
@@ -77,9 +80,11 @@ class Incremental(Run):
                     return self.result(Outcome.EXHAUSTED)
                 self.progress(self.effort)
         except OutOfTime:
-            return self.result(Outcome.TIMEOUT)
+            if most is not None:  # who asked for so many draws has more to say
+                raise
+            return self.stopped(Outcome.TIMEOUT)
         except KeyboardInterrupt:
-            return self.result(Outcome.INTERRUPTED)
+            return self.stopped(Outcome.INTERRUPTED)
 
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""

@@ -1,58 +1,39 @@
-"""What algorithms are made of: imagine, search, lift, bind, and remember what failed."""
+"""What algorithms are made of: search what is imagined, lift, bind, and remember what failed."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
-from tamp.algorithms.costs import Costs
 from tamp.algorithms.doubts import doubts
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
+from tamp.algorithms.imagination import Imagination
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
-from tamp.algorithms.optimistic import (
-    ENOUGH,
-    LEVELS,
-    Named,
-    Optimism,
-    assumable,
-    imagine,
-    relevant,
-    type_facts,
-    used_predicates,
-)
 from tamp.algorithms.skeleton import Skeleton
-from tamp.algorithms.solution import Effort, GroundAction, Outcome, Progress, Result, StreamTask
+from tamp.algorithms.solution import GroundAction, Outcome, Progress, Result, StreamTask
 from tamp.algorithms.standing import stands
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
-from tamp.algorithms.stream import Objects, Streams
+from tamp.algorithms.stream import Streams
 from tamp.algorithms.tally import Tally, tallies
 from tamp.clock import Deadline
-from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
-from tamp.search.instantiate import Instantiator
-from tamp.search.operators import Grounded
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
-
-
-DEEPEST = 8
-"""How many times the first depth and number of guesses are imagined at most, when there is no plan with fewer."""
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
 
 
-class Run:
+class Run(Imagination):
     """One run of planning: what it knows, and the steps that algorithms are made of.
 
     `pruned` leaves out the streams whose facts nothing asks for.
@@ -67,110 +48,15 @@ class Run:
         *,
         pruned: bool = True,
     ) -> None:
-        task = problem.task
-        self.problem = problem
         self.make_rng = make_rng
         self.deadline = deadline
         self.progress = progress
-        self.objects = Objects(
-            {**task.domain.constants, **task.objects},
-            {**{name: name for name in task.domain.constants}, **problem.values},
-            by_value=problem.by_value,
-        )
-        self.costs = Costs(problem.functions, self.objects, task.costs)
-        self.task = replace(task, costs=self.costs)
+        super().__init__(problem, pruned)
         self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
-        self.effort = Effort()
         self.skeletons: dict[object, Skeleton] = {}
         self.latest: Skeleton | None = None
-        self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
-        self.given_up = False
-        self.depth = 1
-        self.shallow: int | None = None
-        self.aside = self.bystanders()
-        useful = relevant(problem.streams, used_predicates(task))
-        self.assumed = assumable(useful, task)
-        tests = {stream.name for stream, _ in self.assumed.values()}
-        self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
-        self.refused: set[Fact] = set()
-        self.names: dict[tuple[str, tuple[str, ...]], Named] = {}
-        self.settled: set[tuple[str, tuple[str, ...]]] = set()
-        self.real: dict[Fact, None] = {}
-        self.known = [*sorted(task.initial), *type_facts(task)]
-        self.instantiator = Instantiator(self.task, frozenset(self.assumed))
-        self.optimism, self.grounded = self.imagined()
-
-    def bystanders(self) -> frozenset[str]:
-        """The objects of which nothing is imagined at first: none, unless an algorithm knows when to recall them."""
-        return frozenset()
-
-    def recall(self, objects: frozenset[str] | None = None) -> bool:
-        """Imagine these as well that were set aside, or all of them; whether there were any."""
-        recalled = self.aside if objects is None else objects & self.aside
-        if recalled:
-            self.aside -= recalled
-            self.optimism, self.grounded = self.imagined()
-        return bool(recalled)
-
-    def imagined(self) -> tuple[Optimism, Grounded]:
-        """The optimistic task without the calls that are known to be dead.
-
-        Where guesses have to be left out, those that are not deeper than a first plan asks for are all that is kept.
-        """
-        started = time.perf_counter()
-        optimism = self._guesses()
-        grounded = self._instantiated(optimism)
-        while self._shallower() and not grounded.goal.positive <= grounded.reachable | grounded.initial:
-            self.shallow = (self.shallow or 0) + 1
-            optimism = self._guesses()
-            grounded = self._instantiated(optimism)
-        self.effort.search_seconds += time.perf_counter() - started
-        return optimism, grounded
-
-    def _guesses(self) -> Optimism:
-        """As many as may be; the lowest level alone, when those were too many for the first time."""
-        optimism = Optimism(complete=False)
-        if self.shallow is None:
-            optimism = self._imagined(None)
-            self.shallow = None if optimism.complete else 1
-        return self._imagined(self.shallow) if self.shallow is not None else optimism
-
-    def _imagined(self, deepest: int | None) -> Optimism:
-        known = [fact for fact in self.known if self.aside.isdisjoint(fact)] if self.aside else self.known
-        optimism = imagine(
-            self.useful,
-            [*known, *self.real],
-            dead=frozenset((*self.dead, *self.settled)),
-            levels=LEVELS * self.depth,
-            deepest=deepest,
-            enough=ENOUGH * self.depth,
-            names=self.names,
-        )
-        optimism.assumed = self.assumed
-        return optimism
-
-    def _instantiated(self, optimism: Optimism) -> Grounded:
-        facts = [*self.real, *optimism.makers]
-        types = {**self.objects.types, **optimism.types}
-        return self.instantiator.instantiate(facts, types, frozenset(self.refused))
-
-    def _shallower(self) -> bool:
-        """Whether guesses are kept shallower than they might be."""
-        return self.shallow is not None and self.shallow < LEVELS * self.depth
-
-    def deepen(self) -> bool:
-        """Imagine more where guesses were left out; whether there was anything to add, and not too much already."""
-        if not self.optimism.complete and self._shallower():
-            self.shallow = (self.shallow or 0) + 1
-        elif self.optimism.complete or self.depth >= DEEPEST:
-            self.given_up |= not self.optimism.complete
-            return False
-        else:
-            self.depth *= 2
-        self.optimism, self.grounded = self.imagined()
-        return True
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -289,6 +175,11 @@ class Run:
     def tallies(self) -> tuple[Tally, ...]:
         """What was tried, by action and stream."""
         return tallies(list(self.skeletons.values()), self.experience, self.problem.values)
+
+    def stopped(self, outcome: Outcome) -> Result:
+        """What the run ends with when the time is up or the user wants an end: no alarm disturbs that."""
+        self.deadline.ended = True
+        return self.result(outcome)
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
         """What the run ends with; by default the explanation is what failed most."""
