@@ -11,11 +11,12 @@ import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from tamp.arguments import Arguments, parsed, sampler_choices
 from tamp.data import check_writable
 from tamp.errors import InputError
+from tamp.leave import leave
 from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
 SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main() -> NoReturn:
     """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 interrupted."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without our letters is no reason to fail
     # The time that the user gives counts from here, less what the interpreter took to come here.
     started = time.monotonic() - time.process_time()
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments, started))
+    leave(run(sys.argv[1:], started))
 
 
 def execute(arguments: list[str] | None = None) -> None:
