@@ -77,7 +77,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
 
 def _check_samplers(stored: Stored, named: Mapping[str, str]) -> None:
     """An object in Python that served a relation of the user's own is not in the plan file."""
-    for relation, text in stored.document.get("options", {}).get("samplers", {}).items():
+    for relation, text in stored.plan.samplers.items():
         if is_given(text) and relation not in named and relation not in SAMPLERS:
             what = f"to plan anew, '{relation}' needs the object in Python that the plan was made with"
             raise InputError(what, remedy=f"Name its file: --sampler {relation}=FILE.py")

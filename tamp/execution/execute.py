@@ -22,7 +22,7 @@ from tamp.pddl.parser import parse_domain, parse_goal
 from tamp.simulation.actuated import Actuated
 from tamp.stored import Stored
 from tamp.streams.relations import Classifier
-from tamp.verification.files import source_file
+from tamp.verification.files import plan_hashes, source_file, unquoted
 from tamp.verification.plan_file import PlanFile, TimedAction
 from tamp.verification.start import apart
 from tamp.world.pose import Array
@@ -85,7 +85,8 @@ class _Run:
     def __init__(self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
-        self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
+        with unquoted(stored.plan.file, plan_hashes(stored.plan)):
+            self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
         self._player = Player(world, chosen.grasp)
         self._begin(stored.plan)
         loaded = stored.loaded

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from tamp.algorithms.solution import Outcome
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import write_whole
 from tamp.pddl.structs import And
 from tamp.symbolic.problem import SymbolicProblem
 from tamp.symbolic.solve import SymbolicSolution

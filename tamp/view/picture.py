@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import write_whole
 from tamp.view.film import Film, holding, tool_path
 from tamp.view.looks import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh, unit
