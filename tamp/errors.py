@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
@@ -80,8 +81,7 @@ class InputError(Exception):
 
 def one_line(text: str) -> str:
     """A message as one line of bounded length, harmless wherever it is shown."""
-    line = " ".join(text.splitlines()) if "\n" in text or "\r" in text else text
-    shown = printable(line)
+    shown = printable(re.sub(r"[\r\n]+", " ", text))
     return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]} ..."
 
 

@@ -116,8 +116,8 @@ def fulfil(
         write_png(film, wishes.png, wishes.at, wishes.size or (800, 600))
         say(f"{wishes.png} written.")
     if wishes.video is not None:
-        write_video(film, wishes.video, wishes.speed, wishes.size or (480, 360))
-        say(f"{wishes.video} written.")
+        cut = write_video(film, wishes.video, wishes.speed, wishes.size or (480, 360))
+        say(f"{wishes.video} written{f', without {cut:,.0f} s of pauses' if cut else ''}.")
     if wishes.page:
         content = page_document(film, story, shots(document, film.scene, file))
         if wishes.html is not None:
