@@ -14,12 +14,14 @@ from grounding.dataset import Dataset, read_dataset, write_dataset
 from grounding.mesh_folder import MeshFolder, read_folder
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
-from tamp.data import check_writable
 from tamp.errors import InputError
+from tamp.outputs import check_outputs, check_writable
+from tamp.terminal import spoken
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
+@spoken
 def main(arguments: list[str] | None = None) -> None:
     """Run tamp-learn and leave the process with 0, 2 for bad input, 130 interrupted."""
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
@@ -54,7 +56,7 @@ def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
-    _check_out(out, DATA)
+    _check_out(out, DATA, _mesh_files(chosen))
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
     data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
@@ -65,7 +67,7 @@ def _explore(chosen: Explore) -> None:
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
-    _check_out(out, DATA)
+    _check_out(out, DATA, [*_mesh_files(chosen), *_with_card(chosen.model)])
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
     data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
     _show("", last=True)
@@ -76,7 +78,7 @@ def _collect(chosen: Collect) -> None:
     from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
-    _check_out(out, DATA)
+    _check_out(out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))])
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
     for text in unsteady(data):
         print(f"warning: {text}", file=sys.stderr)
@@ -86,7 +88,7 @@ def _collect(chosen: Collect) -> None:
 
 def _encoder(chosen: Encoder) -> None:
     out = chosen.out or _encoder_file(chosen.relation)
-    _check_out(out, WEIGHTS)
+    _check_out(out, WEIGHTS, _with_card(chosen.data or data_file(chosen.relation, "train")))
     data = _data(chosen.data, chosen.relation, "train")
     try:
         from grounding.paper.encoders import Args, train_encoder
@@ -127,7 +129,8 @@ def _train(chosen: Train) -> None:
         commit=_commit(),
     )
     check(chosen.relation, chosen.model, args)
-    _check_out(out, WEIGHTS)
+    read = [*_with_card(chosen.data or data_file(chosen.relation, "train")), *_with_card(encoder)]
+    _check_out(out, WEIGHTS, read, args.state)
     data = _data(chosen.data, chosen.relation, "train")
     try:
         weights = train(data, chosen.model, args, _show)
@@ -179,21 +182,36 @@ def _data(path: Path | None, relation: str, split: str) -> Dataset:
     return data
 
 
-def _check_out(out: Path, form: str) -> None:
-    """Refuse an output that cannot be written, or whose card would take the place of something else.
+def _with_card(path: Path | None) -> list[Path]:
+    """A file of data or weights, and what says what it is."""
+    return [] if path is None else [path, path.with_suffix(".json")]
+
+
+def _below(folder: Path, pattern: str) -> list[Path]:
+    return sorted(folder.rglob(pattern)) if folder.is_dir() else []
+
+
+def _mesh_files(chosen: Generate | Explore) -> list[Path]:
+    return [] if chosen.meshes is None else [file for file in _below(chosen.meshes, "*") if file.is_file()]
+
+
+def _check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:
+    """Refuse an output that cannot be written, or that (or whose card) would take the place of something else.
 
     Raises:
-        InputError: As for `check_writable`, or the .json beside it is no card of this form.
+        InputError: As for `check_writable` and `check_outputs`, or the .json beside it is no card of this form.
     """
-    check_writable(out)
     card = out.with_suffix(".json")
+    for path in (out, card):
+        check_writable(path)
     try:
         found = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {"format": form}
-    except (OSError, ValueError):
-        return
+    except (OSError, ValueError, RecursionError):
+        found = None  # no card at all
     if not isinstance(found, dict) or found.get("format") != form:
         what = f"the card of {out.name} would overwrite it"
         raise InputError(what, file=card, remedy="Choose another name with --out")
+    check_outputs({"--out": out, "the card of --out": card, "what is kept to go on": state}, read)
 
 
 def _encoder_file(relation: str) -> Path:

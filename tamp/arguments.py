@@ -72,6 +72,8 @@ class Arguments:
     """Open the plan, or the scene and what was tried, in the browser until Ctrl-C."""
     html: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """Write the same as one HTML file that plays offline."""
+    allow_outside: bool = False
+    """Let the page of --html show meshes from outside of the problem's folder, which its readers then have."""
     png: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """Write a picture: start, middle and end."""
     video: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
@@ -93,6 +95,11 @@ class Arguments:
     quiet: bool = False
     """Print nothing but errors."""
 
+    @property
+    def outputs(self) -> dict[str, Path | None]:
+        """What may be written, by option."""
+        return {f"--{name}": getattr(self, name) for name in ("out", "html", "png", "video", "statistics")}
+
 
 def parsed(arguments: list[str]) -> Arguments:
     """What the words of a command line say.
@@ -100,9 +107,10 @@ def parsed(arguments: list[str]) -> Arguments:
     Raises:
         InputError: Something that the command does not know.
     """
-    options = ["--" + option.name for option in fields(Arguments) if option.name != "files"] + ["--help"]
+    names = [option.name.replace("_", "-") for option in fields(Arguments) if option.name != "files"]
+    options = [f"--{name}" for name in (*names, "help")]
     for word in arguments:
-        name = word.partition("=")[0]
+        name = word.partition("=")[0].replace("_", "-")
         if name.startswith("--") and name not in options:
             raise InputError(f"unknown option '{name}'", found=name, choices=options)
     complaint = io.StringIO()

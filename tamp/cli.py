@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import io
 import shlex
 import sys
 import time
@@ -14,10 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from tamp.arguments import Arguments, parsed, sampler_choices
-from tamp.data import check_writable
 from tamp.errors import InputError
 from tamp.leave import leave
+from tamp.outputs import check_outputs, check_writable
 from tamp.progress import Progress, say
+from tamp.terminal import spoken
 
 if TYPE_CHECKING:
     from tamp.execution.report import Execution
@@ -30,19 +30,16 @@ SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 def main() -> NoReturn:
     """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 interrupted."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without our letters is no reason to fail
     # The time that the user gives counts from here, less what the interpreter took to come here.
     started = time.monotonic() - time.process_time()
-    leave(run(sys.argv[1:], started))
+    leave(spoken(run)(sys.argv[1:], started))
 
 
 def execute(arguments: list[str] | None = None) -> None:
     """Run tamp-execute."""
     from tamp.execution.cli import main
 
-    sys.exit(main(sys.argv[1:] if arguments is None else arguments, registry))
+    sys.exit(spoken(main)(sys.argv[1:] if arguments is None else arguments, registry))
 
 
 def run(arguments: list[str], started: float | None = None) -> int:
@@ -59,7 +56,9 @@ def run(arguments: list[str], started: float | None = None) -> int:
 
 def _solve(arguments: Arguments, started: float) -> int:
     samplers = sampler_choices(arguments.sampler)
-    check_writable(arguments.out)
+    for option, file in arguments.outputs.items():
+        if file is not None:
+            check_writable(file, option)
     if arguments.files[-1].endswith(".pddl"):
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
@@ -71,7 +70,9 @@ def _solve(arguments: Arguments, started: float) -> int:
     from tamp.relaxation.why import why
     from tamp.report import headline, improvement, summary
     from tamp.statistics_file import add_statistics, read_statistics
+    from tamp.streams.choice import sampler_files
     from tamp.streams.python_file import given_by_files
+    from tamp.view.outside import check_inside
     from tamp.view.wishes import Wishes, fulfil
 
     if arguments.algorithm not in ALGORITHMS:
@@ -80,6 +81,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     wishes = Wishes(html=arguments.html, png=arguments.png, video=arguments.video, view=arguments.view)
     if wishes.any:
         wishes.check()
+    given_names = samplers
     samplers, groundings = given_by_files(samplers)
     *domain, problem_name = arguments.files
     load = partial(
@@ -93,10 +95,12 @@ def _solve(arguments: Arguments, started: float) -> int:
         steering=arguments.steering,
     )
     problem = load()
-    known = {}
     domain_name = problem.stream_task.task.domain.name
+    given = sampler_files((*problem.samplers.values(), *given_names.values()))
+    check_outputs(arguments.outputs, (*(file for files in problem.files.values() for file in files), *given))
+    if arguments.html is not None and not arguments.allow_outside:
+        check_inside(problem.files["meshes"], problem.files["problem"][0])
     if arguments.statistics is not None:
-        check_writable(arguments.statistics)
         known = read_statistics(arguments.statistics, domain_name)
         problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
     shown = Progress(quiet=arguments.quiet or arguments.json)
@@ -118,17 +122,21 @@ def _solve(arguments: Arguments, started: float) -> int:
         record=arguments.record or wishes.page,
     )
     shown.clear()
+    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
+    holds = solution.solved and (verdict is None or verdict.holds)
+    written = write_plan(solution, arguments.out) if holds else None  # first of all: what fails later loses no plan
+    later = None
     if arguments.statistics is not None:
-        add_statistics(arguments.statistics, domain_name, known, solution.statistics)
+        try:
+            add_statistics(arguments.statistics, domain_name, solution.statistics)
+        except InputError as error:
+            later = error
     asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
     because = None
     if asked:
         shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
         because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
         shown.clear()
-    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
-    holds = solution.solved and (verdict is None or verdict.holds)
-    written = write_plan(solution, arguments.out) if holds else None
     executed = _execute(written, arguments) if written is not None and arguments.execute else None
     if arguments.json:
         import json
@@ -151,6 +159,8 @@ def _solve(arguments: Arguments, started: float) -> int:
         from tamp.view.open import film_of_solution
 
         fulfil(wishes, *film_of_solution(solution), None, shown.line)
+    if later is not None:
+        raise later
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
     return SOLVED if holds and (executed is None or executed.reached) else NO_PLAN
@@ -165,8 +175,11 @@ def _execute(plan: Path, arguments: Arguments) -> Execution:
 
 def _solve_symbolic(arguments: Arguments, started: float) -> int:
     """A domain and a problem in PDDL."""
+    from tamp.data import find_domain
     from tamp.symbolic.command import plan_files
 
+    *domain, problem = arguments.files
+    check_outputs(arguments.outputs, (*(find_domain(name) for name in domain), Path(problem)))
     shown = Progress(quiet=arguments.quiet or arguments.json)
     ended = plan_files(
         arguments.files,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-import tempfile
-import uuid
 from pathlib import Path
 
 from tamp.errors import InputError
+from tamp.outputs import check_writable as check_writable
+from tamp.outputs import write_whole as write_whole
 
 _PACKAGE = Path(__file__).resolve().parent
 _STREAMS = ".streams.pddl"
@@ -46,43 +46,6 @@ def find_domain(name: str | Path, beside: Path | None = None) -> Path:
 def cache_folder() -> Path:
     """The folder for what is expensive to compute: `TAMP_CACHE`, or `~/.cache/tamp`. It may not exist yet."""
     return Path(os.path.expanduser(os.environ.get("TAMP_CACHE") or "~/.cache/tamp"))
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file so that a reader in another process sees all of it or nothing.
-
-    Raises:
-        OSError: The folder cannot be made or written.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
-    try:
-        temporary.write_bytes(content)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-
-
-def check_writable(path: Path) -> None:
-    """Refuse an output that cannot be written before time is spent on a plan.
-
-    Raises:
-        InputError: A folder, no regular file, or no place where one can write.
-    """
-    elsewhere = "Choose another place with --out"
-    try:
-        if path.is_dir():
-            raise InputError("the output is a folder", file=path, remedy=f"Name a file: --out {path / 'plan.json'}")
-        if path.exists() and not path.is_file():
-            raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
-        folder = path.parent
-        while not folder.exists():
-            folder = folder.parent
-        with tempfile.TemporaryFile(dir=folder):  # the only test that root, too, can trust
-            pass
-    except OSError as error:
-        raise InputError(f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere) from None
 
 
 def _find(name: str | Path, kind: str, suffix: str, names: list[str], folders: tuple[Path, ...]) -> Path:

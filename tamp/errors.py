@@ -3,8 +3,22 @@
 from __future__ import annotations
 
 import difflib
+import re
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
+
+LONGEST = 2_000
+"""Characters of a message: a name may be a megabyte."""
+
+MOST_CHOICES = 40
+"""Choices that a message names."""
+
+LONGEST_WORD = 100
+"""Characters of a word that may be a typing error."""
+
+HIDDEN = frozenset(("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"))
+"""Unicode's categories of what a terminal obeys or hides: controls, bidirectional marks, halves of characters."""
 
 
 class InputError(Exception):
@@ -56,15 +70,37 @@ class InputError(Exception):
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
         text = f"{place}: {self.message}" if place else self.message
         if self.choices:
-            text += f". Choices: {', '.join(self.choices)}"
+            more = f" and {len(self.choices) - MOST_CHOICES:,} more" if len(self.choices) > MOST_CHOICES else ""
+            text += f". Choices: {', '.join(self.choices[:MOST_CHOICES])}{more}"
         if self.suggestion:
             text += f". Did you mean '{self.suggestion}'?"
         if self.remedy:
             text += f"{'' if text.endswith('?') else '.'} {self.remedy}"
+        return one_line(text)
+
+
+def one_line(text: str) -> str:
+    """A message as one line of bounded length, harmless wherever it is shown."""
+    shown = printable(re.sub(r"[\r\n]+", " ", text))
+    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]} ..."
+
+
+def printable(text: str, kept: str = "") -> str:
+    """The text with what a terminal would obey or hide written as Python writes it, in backslashes.
+
+    Args:
+        text: Anything, names out of files among it.
+        kept: Control characters that stay: line breaks and tabulators where a text has several lines.
+    """
+    if text.isprintable():
         return text
+    hidden = {one for one in set(text) if one not in kept and unicodedata.category(one) in HIDDEN}
+    return text.translate({ord(one): one.encode("unicode_escape").decode() for one in hidden}) if hidden else text
 
 
 def closest(word: str, choices: Iterable[str]) -> str | None:
     """The choice that `word` was probably meant to be, or None when nothing is near."""
+    if len(word) > LONGEST_WORD:
+        return None
     matches = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
     return matches[0] if matches else None

@@ -17,6 +17,7 @@ def leave(code: int) -> NoReturn:
     """
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
-        with contextlib.suppress(BrokenPipeError, ValueError):  # nobody reads on, or it is closed
-            stream.flush()
+        with contextlib.suppress(OSError, ValueError):  # nobody reads on, it is full or it is closed
+            if stream is not None:
+                stream.flush()
     os._exit(code)

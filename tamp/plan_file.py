@@ -10,8 +10,8 @@ import re
 from pathlib import Path
 from typing import Any
 
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import write_whole
 from tamp.recording import Sample
 from tamp.solution import Action, Solution
 from tamp.streams.values import BaseConf, Grasp, Grip, Motion, Reach

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Iterable
 
 from tamp.algorithms.solution import Outcome
+from tamp.errors import printable
 from tamp.pddl.structs import And
 from tamp.problem import Problem
 from tamp.solution import Action, Solution
@@ -34,8 +35,8 @@ def headline(problem: Problem) -> str:
     goals = len(goal.parts) if isinstance(goal, And) else 1
     movable = len(problem.scene.movable)
     return (
-        f"{problem.name}: {_count(goals, 'goal')}, {movable} movable of {_count(len(problem.scene.bodies), 'body')}, "
-        f"{problem.scene.robot.model}"
+        f"{printable(problem.name)}: {_count(goals, 'goal')}, "
+        f"{movable} movable of {_count(len(problem.scene.bodies), 'body')}, {problem.scene.robot.model}"
     )
 
 

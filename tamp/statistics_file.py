@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
-import math
+import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from tamp.algorithms.posterior import Posterior
 from tamp.algorithms.statistics import StreamStatistics
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import locked_folder, write_whole
+from tamp.reading import read_json
+from tamp.verification.fields import Field, clipped
 
 FORMAT, VERSION = "tamp-statistics", 1
+
+MOST_BYTES = 4_000_000
+"""The largest file of statistics that is read."""
 
 REMEDY = "Name another file, or delete this one to begin anew"
 
@@ -27,39 +31,37 @@ def read_statistics(path: Path, domain: str) -> dict[str, Posterior]:
     if not path.exists():
         return {}
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is not JSON"
-        raise InputError(f"cannot read the statistics: {reason}", file=path, remedy=REMEDY) from error
-    if not isinstance(document, dict) or (document.get("format"), document.get("version")) != (FORMAT, VERSION):
-        raise InputError(f"it is no '{FORMAT}' file of version {VERSION}", file=path, remedy=REMEDY)
-    if document.get("domain") != domain:
-        raise InputError(
-            f"its statistics are of domain '{document.get('domain')}', not '{domain}'", file=path, remedy=REMEDY
-        )
-    streams = document.get("streams")
-    if not isinstance(streams, dict):
-        raise InputError("it has no 'streams'", file=path, remedy=REMEDY)
-    return {str(name): _posterior(path, str(name), entry) for name, entry in streams.items()}
+        root = Field(read_json(path, MOST_BYTES, kind="file of statistics"), "", path)
+        if not isinstance(root.value, dict):
+            raise root.wrong(f"it is no '{FORMAT}' file of version {VERSION}")
+        if [found and found.value for found in (root.get("format"), root.get("version"))] != [FORMAT, VERSION]:
+            raise root.wrong(f"it is no '{FORMAT}' file of version {VERSION}")
+        if root["domain"].text() != domain:
+            raise root.wrong(f"its statistics are of domain '{clipped(root['domain'].text())}', not '{domain}'")
+        return {name: _posterior(entry) for name, entry in root["streams"].fields().items()}
+    except InputError as error:
+        error.remedy = error.remedy or REMEDY
+        raise error.at(path) from None
 
 
-def add_statistics(
-    path: Path, domain: str, known: Mapping[str, Posterior], ran: Mapping[str, StreamStatistics]
-) -> dict[str, Posterior]:
-    """Write what was known and what a run adds to it, whole or not at all; returns the sum.
+def add_statistics(path: Path, domain: str, ran: Mapping[str, StreamStatistics]) -> dict[str, Posterior]:
+    """Add what a run tells to what the file says by now, whole or not at all; returns the sum.
+
+    Several runs may end at the same time: each waits for the others, and none is lost.
 
     Raises:
-        InputError: The file cannot be written.
+        InputError: The file cannot be written, or has become something else meanwhile.
     """
-    total = dict(known)
-    for name, one in ran.items():
-        if one.calls:
-            added = Posterior(one.successes, one.calls - one.successes, one.seconds)
-            total[name] = total.get(name, Posterior()) + added
-    streams = {name: _entry(one) for name, one in sorted(total.items())}
-    document = {"format": FORMAT, "version": VERSION, "domain": domain, "streams": streams}
     try:
-        write_whole(path, (json.dumps(document, indent=1) + "\n").encode())
+        with locked_folder(Path(os.path.realpath(path)).parent):
+            total = read_statistics(path, domain)
+            for name, one in ran.items():
+                if one.calls:
+                    added = Posterior(one.successes, one.calls - one.successes, one.seconds)
+                    total[name] = total.get(name, Posterior()) + added
+            streams = {name: _entry(one) for name, one in sorted(total.items())}
+            document = {"format": FORMAT, "version": VERSION, "domain": domain, "streams": streams}
+            write_whole(path, (json.dumps(document, indent=1) + "\n").encode())
     except OSError as error:
         raise InputError(f"cannot write the statistics: {error.strerror}", file=path) from error
     return total
@@ -70,9 +72,9 @@ def _entry(one: Posterior) -> dict[str, float]:
     return {"successes": one.successes, "failures": one.failures, "seconds": seconds, "mean": mean}
 
 
-def _posterior(path: Path, name: str, entry: Any) -> Posterior:
-    match entry:
-        case {"successes": int(successes), "failures": int(failures), "seconds": int(seconds) | float(seconds)}:
-            if min(successes, failures, seconds) >= 0 and math.isfinite(seconds):
-                return Posterior(int(successes), int(failures), float(seconds))
-    raise InputError(f"stream '{name}' wants successes, failures (whole) and seconds", file=path, remedy=REMEDY)
+def _posterior(entry: Field) -> Posterior:
+    counts = [entry[name].number(0.0) for name in ("successes", "failures")]
+    for name, count in zip(("successes", "failures"), counts, strict=True):
+        if count != int(count):
+            raise entry[name].wrong(f"{count:g} is no whole number")
+    return Posterior(int(counts[0]), int(counts[1]), entry["seconds"].number(0.0))

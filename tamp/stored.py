@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.verification.fields import read_json
-from tamp.verification.files import sha256, source_file
+from tamp.reading import is_file, read_json
+from tamp.verification.files import plan_hashes, sha256, source_file, unquoted
 from tamp.verification.plan_file import PlanFile, read_plan
 from tamp.verification.start import check_files
 from tamp.verification.symbolic import is_symbolic
@@ -47,10 +47,11 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
     path = Path(file)
     plan = _read(path)
     source = source_file(plan, "problem", None if problem is None else Path(problem))
-    loaded = load_scene(source)
+    with unquoted(path, plan_hashes(plan, problem=None if problem is None else source)):
+        loaded = load_scene(source)
     files = {"problem": source}
     domain = plan.source("domain")
-    if domain is not None and domain.path.is_file():
+    if domain is not None and is_file(domain.path):
         files["domain"] = domain.path
     for violation in check_files(plan, files, loaded.meshes):
         raise InputError(violation.message, file=path, remedy="Plan again with tamp-solve")
@@ -70,7 +71,7 @@ def read_motions(file: str | Path) -> PlanFile:
     path = Path(file)
     plan = _read(path)
     for source in plan.sources:
-        if source.path.is_file() and sha256(source.path) != source.sha256:
+        if is_file(source.path) and sha256(source.path) != source.sha256:
             what = f"the {source.role} {source.path} is not the one that the plan was made from"
             raise InputError(what, file=path, remedy="Plan again with tamp-solve")
     return plan

@@ -351,17 +351,20 @@ def test_files_of_something_else(file: str, content: bytes, folder: Path, capsys
 def test_where_the_plan_cannot_be_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     problem = str(folder / "mine.yaml")
     (folder / "file").write_text("mine")
+    os.mkfifo(folder / "pipe")
     for out, says in [
         (folder, r"is a folder. Name a file"),
         (folder / "file" / "plan.json", r"cannot be written"),
-        (Path("/dev/null"), r"not a regular file"),
+        (folder / "pipe", r"not a regular file"),
         (Path("/proc/plan.json"), r"cannot be written"),
         (folder / ("x" * 300), r""),
     ]:
         message = check_one_error(run([problem, "--out", str(out)]), *capsys.readouterr())
         assert message.startswith(f"{out}: ") and re.search(says, message), message
     assert (folder / "file").read_text() == "mine"
-    assert sorted(path.name for path in folder.iterdir()) == ["file", "mine.yaml", "my.pddl", "my.streams.pddl"]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "file", "mine.yaml", "my.pddl", "my.streams.pddl", "pipe",
+    ]  # fmt: skip
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")

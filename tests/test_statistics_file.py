@@ -48,9 +48,9 @@ HEAD = '{"format": "tamp-statistics", "version": 1, "domain": "cupboard"'
         ("{", "not JSON"),
         ("[]", "tamp-statistics"),
         ('{"format": "tamp-statistics", "version": 1, "domain": "other", "streams": {}}', "'other'"),
-        (HEAD + "}", "no 'streams'"),
+        (HEAD + "}", "'streams' is missing"),
         (HEAD + ', "streams": {"plan-pick": {"successes": -1}}}', "plan-pick"),
-        (HEAD + ', "streams": {"x": {"successes": 1, "failures": -1, "seconds": 0}}}', "'x'"),
+        (HEAD + ', "streams": {"x": {"successes": 1, "failures": -1, "seconds": 0}}}', "streams.x.failures"),
     ],
 )
 def test_a_broken_file_is_one_error_and_stays(

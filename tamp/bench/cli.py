@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from tamp.bench.arguments import Draw, Fig8, Run, Tabulate, parsed
 from tamp.errors import InputError
+from tamp.outputs import check_outputs
+from tamp.terminal import spoken
 
 if TYPE_CHECKING:
     from tamp.bench.crew import Crew
@@ -22,6 +24,7 @@ BASELINE = "uniform"
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
+@spoken
 def main(arguments: list[str] | None = None) -> None:
     """Run tamp-bench and leave the process with 0, 2 for bad input, 130 interrupted."""
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
@@ -34,9 +37,9 @@ def run(arguments: list[str]) -> int:
         if isinstance(chosen, Tabulate):
             _print_tables(_read(chosen.log), chosen.against)
         elif isinstance(chosen, Draw):
-            _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""))
+            _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""), chosen.log)
         elif isinstance(chosen, Fig8):
-            _draw(_fig8(chosen), chosen.out.with_suffix(""))
+            _draw(_fig8(chosen), chosen.out.with_suffix(""), chosen.out)
         else:
             _run(chosen)
     except InputError as error:
@@ -76,13 +79,18 @@ def _lead(
     from tamp.bench.log import Log
     from tamp.bench.progress import Watch
     from tamp.problem import load_problem
+    from tamp.streams.choice import sampler_files
 
     if algorithm not in ALGORITHMS:
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     problems = [named(problem) for problem in chosen.problems]
+    read: list[Path] = []
     for problem in dict.fromkeys(problems):  # an error in a file is one now, and not one in each run
         for relation_samplers in samplers.values():
-            load_problem(problem, samplers=relation_samplers, registry=_registry())
+            loaded = load_problem(problem, samplers=relation_samplers, registry=_registry())
+            read += [file for files in loaded.files.values() for file in files]
+            read += sampler_files(loaded.samplers.values())
+    check_outputs({"--out": chosen.out}, read)
     wanted = cases(problems, samplers, seeds, chosen.time, algorithm)
     with Log(chosen.out) as log:
         log.check(chosen.time, algorithm)
@@ -145,8 +153,10 @@ def _print_tables(lines: Sequence[Mapping[str, Any]], against: str | None = None
     print(report(lines, against or usual))
 
 
-def _draw(lines: Sequence[Mapping[str, Any]], folder: Path) -> None:
-    from tamp.bench.picture import draw
+def _draw(lines: Sequence[Mapping[str, Any]], folder: Path, log: Path) -> None:
+    from tamp.bench.picture import PICTURES, draw
+
+    check_outputs({f"the picture '{name}'": folder / f"{name}.png" for name in PICTURES}, (log,))
 
     for path in draw(lines, folder):
         print(f"{path} written")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import math
@@ -15,6 +16,12 @@ from tamp.bench.case import Case, key
 from tamp.errors import InputError
 
 ELSEWHERE = "Name another file with --out"
+
+BEGINNING = b'{"config": '
+"""Of each line."""
+
+LONGEST_LINE = 10_000_000
+"""Bytes."""
 
 Line = dict[str, Any]
 
@@ -45,18 +52,22 @@ class Log:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._new = not path.exists()
+        if not self._new:
+            _check_own(path)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._stream = path.open("ab")
+            self._stream = path.open("ab", buffering=0)
         except OSError as error:
             raise InputError(f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE) from None
         try:
             self._lock()
             whole = _whole(path)
             self.lines = _lines(path, whole)
+            _check_own(path)
             self._stream.truncate(len(whole))
         except BaseException:
-            self._stream.close()
+            self._close()
             raise
         self._known = {key(line["config"]) for line in self.lines}
 
@@ -66,7 +77,7 @@ class Log:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._stream.close()
+        self._close()
 
     def check(self, time: float, algorithm: str) -> None:
         """Refuse to add runs of other settings, which no table could compare.
@@ -88,11 +99,24 @@ class Log:
     def add(self, line: Mapping[str, Any]) -> None:
         """Append a result, on the disk before this returns."""
         plain = _plain(dict(line))
-        self._stream.write(json.dumps(plain, allow_nan=False).encode() + b"\n")
-        self._stream.flush()
-        os.fsync(self._stream.fileno())
+        size = os.fstat(self._stream.fileno()).st_size
+        try:
+            rest = json.dumps(plain, allow_nan=False).encode() + b"\n"
+            while rest:
+                rest = rest[self._stream.write(rest) :]
+            os.fsync(self._stream.fileno())
+        except OSError as error:
+            with contextlib.suppress(OSError):  # no half a line
+                self._stream.truncate(size)
+            what = f"the results cannot be written: {error.strerror}"
+            raise InputError(what, file=self.path, remedy="The same command goes on where this one was") from None
         self.lines.append(plain)
         self._known.add(key(plain["config"]))
+
+    def _close(self) -> None:
+        if self._new and not os.fstat(self._stream.fileno()).st_size:  # nothing came of it
+            self.path.unlink(missing_ok=True)
+        self._stream.close()
 
     def _lock(self) -> None:
         try:
@@ -113,6 +137,20 @@ def _check(path: Path, lines: list[Line], time: float, algorithm: str, remedy: s
 
 def _settings(line: Line) -> tuple[float, str]:
     return line["config"]["time"], line["config"]["algorithm"]
+
+
+def _check_own(path: Path) -> None:
+    """Refuse to add to, or to mend, what tamp-bench has not written; whole lines are looked at when they are read.
+
+    Raises:
+        InputError: It is no regular file, or its only line, which may have been cut off, begins as none of ours.
+    """
+    if not path.is_file():
+        raise InputError("the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE)
+    with path.open("rb") as stream:
+        head = stream.read(LONGEST_LINE)
+    if b"\n" not in head and head[: len(BEGINNING)] != BEGINNING[: len(head)]:
+        raise InputError("this is no file of results of tamp-bench", file=path, remedy=ELSEWHERE)
 
 
 def _whole(path: Path) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 from tamp.bench.summary import Summary, summaries, times
 from tamp.bench.table import short
 from tamp.errors import InputError
+from tamp.outputs import write_whole
 
 COLOURS = (
     "#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee", "#777777", "#994455", "#225522", "#000000",
@@ -43,16 +45,10 @@ def draw(lines: Sequence[Mapping[str, Any]], folder: Path) -> list[Path]:
     except ImportError:
         raise InputError("pictures need matplotlib", remedy="pip install 'tamp[bench]'") from None
     matplotlib.use("Agg")
-    pictures: dict[str, Callable[[_Sheet], None]] = {
-        "success": _success,
-        "ecdf": _ecdf,
-        "cactus": _cactus,
-        "parts": _parts,
-    }
     try:
         folder.mkdir(parents=True, exist_ok=True)
         written: list[Path] = []
-        for name, picture in pictures.items():
+        for name, picture in PICTURES.items():
             sheet = _Sheet(lines)
             picture(sheet)
             written.append(sheet.save(folder / f"{name}.png"))
@@ -108,7 +104,9 @@ class _Sheet:
             width, height = self._figure.get_size_inches()
             self._figure.set_size_inches(width + LEGEND, height)
             self._figure.legend(list(labels.values()), list(labels), loc="outside right center", frameon=False)
-        self._figure.savefig(path, dpi=150)
+        content = io.BytesIO()
+        self._figure.savefig(content, dpi=150, format="png")
+        write_whole(path, content.getvalue())
         return path
 
 
@@ -170,3 +168,12 @@ def _parts(sheet: _Sheet) -> None:
         axes.set_xticks(places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor")
         axes.grid(axis="x", visible=False)
         axes.set_ylabel("mean time of a run [s]")
+
+
+PICTURES: dict[str, Callable[[_Sheet], None]] = {
+    "success": _success,
+    "ecdf": _ecdf,
+    "cactus": _cactus,
+    "parts": _parts,
+}
+"""What is drawn, by the file's name."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from tamp.command_line import Parser
 from tamp.errors import InputError
 from tamp.progress import say
 from tamp.streams.choice import Registry
@@ -17,7 +17,11 @@ REACHED, NOT_REACHED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     """Exit with 0 when the goal holds at the end, 1 when it does not, 2 for bad input, 130 when interrupted."""
-    given = _parser().parse_args(arguments)
+    try:
+        given = _parser().parse_args(arguments)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
     from tamp.execution.command import Options, carry_out  # after --help
 
     options = Options(
@@ -38,8 +42,8 @@ def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     return REACHED if done.reached else NOT_REACHED
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="tamp-execute",
         description="Carry out a plan file in physics (pybullet): motors follow its trajectories, fingers close with "
         "force and friction, bodies have mass. Says for each action how it went, and which parts of the goal hold.",

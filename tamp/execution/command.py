@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from tamp.api import ALGORITHMS
 from tamp.arguments import sampler_choices
 from tamp.errors import InputError
 from tamp.execution.disturbance import DISTURBANCES
@@ -64,7 +65,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
     names, objects = given_by_files(sampler_choices(options.sampler))
     stored = open_plan(file, options.problem)
     if options.replan:
-        _check_samplers(stored, names)
+        _check_options(stored, names)
     circumstances = Circumstances(
         grasp=options.grasp,
         replanner=Replanner(stored, registry, options.time, options.seed, names, objects) if options.replan else None,
@@ -75,9 +76,13 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
     return execute(stored, circumstances)
 
 
-def _check_samplers(stored: Stored, named: Mapping[str, str]) -> None:
-    """An object in Python that served a relation of the user's own is not in the plan file."""
-    for relation, text in stored.document.get("options", {}).get("samplers", {}).items():
+def _check_options(stored: Stored, named: Mapping[str, str]) -> None:
+    """The plan's own options; an object in Python that served a relation of the user's own is not in the file."""
+    algorithm = stored.plan.algorithm
+    if algorithm not in ALGORITHMS:
+        what = f"options.algorithm: unknown algorithm '{algorithm}'"
+        raise InputError(what, file=stored.plan.file, found=algorithm, choices=ALGORITHMS)
+    for relation, text in stored.plan.samplers.items():
         if is_given(text) and relation not in named and relation not in SAMPLERS:
             what = f"to plan anew, '{relation}' needs the object in Python that the plan was made with"
             raise InputError(what, remedy=f"Name its file: --sampler {relation}=FILE.py")

@@ -13,6 +13,7 @@ from tamp.execution.deviation import Deviation, Seen, deviations
 from tamp.execution.disturbance import Happening, Scheduled, schedule
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
+from tamp.execution.pauses import without_pauses
 from tamp.execution.playing import CLOSING, Player
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
@@ -22,7 +23,7 @@ from tamp.pddl.parser import parse_domain, parse_goal
 from tamp.simulation.actuated import Actuated
 from tamp.stored import Stored
 from tamp.streams.relations import Classifier
-from tamp.verification.files import source_file
+from tamp.verification.files import plan_hashes, source_file, unquoted
 from tamp.verification.plan_file import PlanFile, TimedAction
 from tamp.verification.start import apart
 from tamp.world.pose import Array
@@ -70,22 +71,26 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed.
+        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
     scene = stored.loaded.scene
+    plan, cut = without_pauses(stored.plan)
+    stored = replace(stored, plan=plan)
+    notes = (f"{cut:,.0f} s of pauses in the plan were left out",) if cut else ()
     with Actuated(scene, stored.robot) as world, Observer(scene) as observer:
         run = _Run(stored, chosen, world, observer)
         run.all()
-        return replace(run.result(), seconds=time.monotonic() - began)
+        return replace(run.result(), notes=notes, seconds=time.monotonic() - began)
 
 
 class _Run:
     def __init__(self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
-        self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
+        with unquoted(stored.plan.file, plan_hashes(stored.plan)):
+            self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
         self._player = Player(world, chosen.grasp)
         self._begin(stored.plan)
         loaded = stored.loaded

@@ -63,8 +63,7 @@ class Replanner:
     ) -> None:
         self._stored, self._registry = stored, registry or {}
         self._max_time, self._seed = max_time, seed
-        self._options = stored.document.get("options", {})
-        own = {name: text for name, text in self._options.get("samplers", {}).items() if not is_given(text)}
+        own = {name: text for name, text in stored.plan.samplers.items() if not is_given(text)}
         self._samplers, self._groundings = {**own, **samplers}, groundings
 
     def grasp(self, body: str, T_tool_body: Array, opening: float) -> Grasp:
@@ -102,9 +101,7 @@ class Replanner:
         if self._holds(problem, truth, plan, rest, found, expected):
             return Mended(keeps=True)
         seed, self._seed = self._seed, self._seed + 1
-        solution = solve(
-            problem, max_time=self._max_time, seed=seed, algorithm=self._options.get("algorithm", "adaptive")
-        )
+        solution = solve(problem, max_time=self._max_time, seed=seed, algorithm=self._stored.plan.algorithm)
         if not solution.solved:
             return Mended(explanation=(solution.outcome.value, *solution.explanation))
         return Mended(plan=read_plan(json.loads(plan_text(solution))))

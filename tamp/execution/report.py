@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from tamp.errors import printable
 from tamp.execution.deviation import Deviation
 from tamp.execution.watching import Touch
 
@@ -78,6 +79,7 @@ class Execution:
         disturbance: What was done to the scene, and when.
         explanation: Why the goal was not reached.
         simulated: Seconds in physics.
+        notes: What was not done as the plan says.
         seconds: Seconds that it took.
     """
 
@@ -92,6 +94,7 @@ class Execution:
     disturbance: str | None = None
     explanation: tuple[str, ...] = ()
     simulated: float = 0.0
+    notes: tuple[str, ...] = ()
     seconds: float = field(default=0.0, compare=False)
 
     @property
@@ -106,6 +109,7 @@ class Execution:
         lines.append("")
         lines += [_goal(fact) for fact in self.goal]
         lines += [f"  {line}" for line in self.explanation]
+        lines += [f"  note: {line}" for line in self.notes]
         facts = [f"{len(self.actions)} actions", f"{self.simulated:.1f} s in physics", f"{self.grasp} grasp"]
         facts += [f"planned anew {self.replans}x"] if self.replans else []
         facts += [f"went on after {self.kept} deviations"] if self.kept else []
@@ -130,10 +134,11 @@ def _action(number: int, action: Done) -> list[str]:
         for one in action.displaced
     ]
     lines += [f"        {one.kind}: {one.message}" for one in action.deviations]
-    return [*lines, f"        -> {action.after}"] if action.after else lines
+    lines += [f"        -> {action.after}"] if action.after else []
+    return [printable(line) for line in lines]
 
 
 def _goal(fact: GoalFact) -> str:
     classified = "" if fact.classifier is None else f"   {fact.classifier} says {fact.probability:.2f}"
     why = f": {fact.why}" if fact.why else ""
-    return f"  {fact.fact} {'holds' if fact.holds else 'does not hold' + why}{classified}"
+    return f"  {printable(fact.fact)} {'holds' if fact.holds else 'does not hold' + why}{classified}"

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tamp.data import check_writable, write_whole
+from tamp.command_line import Parser
 from tamp.errors import InputError
+from tamp.outputs import check_outputs, check_writable, write_whole
 from tamp.progress import say
+from tamp.terminal import spoken
 
 
+@spoken
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the trajectories are written, 2 for bad input."""
-    options = _parser().parse_args(arguments)
     try:
+        options = _parser().parse_args(arguments)
         _export(options.plan, options.format, options.out)
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -26,6 +28,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _export(file: Path, name: str, out: Path | None) -> None:
+    if out is not None and str(out) == "-":
+        out = None
     if out is not None:
         check_writable(out)
     from tamp.export.formats import FORMATS
@@ -35,6 +39,8 @@ def _export(file: Path, name: str, out: Path | None) -> None:
     if name not in FORMATS:
         raise InputError(f"unknown format '{name}'", found=name, choices=tuple(FORMATS))
     plan = read_motions(file)
+    sources = [source.path for source in plan.sources]
+    check_outputs({"--out": out}, (file, *sources, *(file.parent / path.name for path in sources)))
     robot = robot_of(plan)
     text = FORMATS[name](plan, robot, timed_actions(plan, robot))
     if out is None:
@@ -46,8 +52,8 @@ def _export(file: Path, name: str, out: Path | None) -> None:
         raise InputError(f"cannot write the trajectories: {error.strerror}", file=out) from error
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="tamp-export",
         description="Write the trajectories of a plan file for another program: joint names, times, positions and "
         "velocities of base, arm and fingers.",
@@ -60,7 +66,7 @@ def _parser() -> argparse.ArgumentParser:
         default="json",
         help="json (the default), csv (a row a sample, all joints), or ros (JointTrajectory messages as JSON)",
     )
-    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write; else to the standard output")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write; else to the standard output (-)")
     return parser
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -77,6 +77,12 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
         remedy = f"For example: {relation}={name}:alone"
         raise InputError(f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy)
     return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
+
+
+def sampler_files(samplers: Iterable[str]) -> list[Path]:
+    """The files that samplers are made from, as far as they are named by files: weights with their card, Python."""
+    names = [Path(text.removesuffix(":alone").removesuffix(":mixed")) for text in samplers]
+    return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
 def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:

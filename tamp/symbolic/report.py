@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from tamp.algorithms.solution import Outcome
-from tamp.data import write_whole
-from tamp.errors import InputError
+from tamp.errors import InputError, printable
+from tamp.outputs import write_whole
 from tamp.pddl.structs import And
 from tamp.symbolic.problem import SymbolicProblem
 from tamp.symbolic.solve import SymbolicSolution
@@ -21,7 +21,8 @@ def headline(problem: SymbolicProblem) -> str:
     """One line about the problem."""
     task = problem.task
     goals = len(task.goal.parts) if isinstance(task.goal, And) else 1
-    return f"{problem.name}: {_count(goals, 'goal')}, {_count(len(task.objects), 'object')}, domain {task.domain.name}"
+    objects = _count(len(task.objects), "object")
+    return f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
 
 
 def summary(solution: SymbolicSolution) -> str:

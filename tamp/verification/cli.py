@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections.abc import Sequence
 
+from tamp.command_line import Parser
 from tamp.errors import InputError
+from tamp.terminal import spoken
 from tamp.verification.verify import verify
 
 
+@spoken
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the plan holds, 1 when it does not, 2 when it cannot be read, 130 when interrupted."""
-    options = _parser().parse_args(arguments)
     try:
+        options = _parser().parse_args(arguments)
         report = verify(options.plan, options.problem, options.domain)
     except InputError as error:
-        print(error, file=sys.stderr)
+        print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
@@ -28,8 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0 if report.holds else 1
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="tamp-verify",
         description="Judge a plan file independently of the planner: its facts by PDDL's semantics, its motions by "
         "pybullet's kinematics and collision detection.",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -12,27 +11,8 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.world.pose import Array, Pose
 
-
-def read_json(file: Path) -> Any:
-    """The document in a file.
-
-    Raises:
-        InputError: No such file, not UTF-8, not JSON, a number that is not finite, or a key given twice.
-    """
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise InputError(f"no such file: {file}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read: {error}", file=file) from None
-    try:
-        return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_unique)
-    except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", file=file, line=error.lineno, column=error.colno) from None
-    except RecursionError:
-        raise InputError("not a plan: nested too deeply", file=file) from None
-    except InputError as error:
-        raise error.at(file) from None
+LARGEST = 1e12
+"""Of a number in a file: metres, radians, seconds, costs and counts are all below."""
 
 
 class Field:
@@ -81,7 +61,7 @@ class Field:
         if not isinstance(self.value, str):
             raise self.wrong(f"a string is expected, not {_kind(self.value)}")
         if choices and self.value not in choices:
-            raise self.wrong(f"'{self.value}' is unknown", found=self.value, choices=choices)
+            raise self.wrong(f"'{clipped(self.value)}' is unknown", found=self.value, choices=choices)
         return self.value
 
     def number(self, least: float = -math.inf) -> float:
@@ -94,16 +74,21 @@ class Field:
             number = math.inf
         if not math.isfinite(number):
             raise self.wrong("a finite number is expected")
+        if abs(number) > LARGEST:
+            raise self.wrong(f"{number:g} is larger than anything that is counted or measured here")
         if number < least:
             raise self.wrong(f"{number:g} is less than {least:g}")
         return number
 
     def numbers(self, size: int | None = None) -> Array:
         """As an array of finite numbers, shape (size,)."""
-        items = self.items()
-        if size is not None and len(items) != size:
-            raise self.wrong(f"{size} numbers are expected, not {len(items)}")
-        return np.array([item.number() for item in items], dtype=float)
+        plain = isinstance(self.value, list) and all(type(item) in (float, int) for item in self.value)
+        array = np.array(self.value, dtype=float) if plain else np.array([math.nan])
+        if not (np.abs(array) <= LARGEST).all():
+            array = np.array([item.number() for item in self.items()], dtype=float)  # which says where
+        if size is not None and len(array) != size:
+            raise self.wrong(f"{size} numbers are expected, not {len(array)}")
+        return array
 
     def rows(self, width: int) -> Array:
         """As rows of finite numbers, shape (n >= 1, width)."""
@@ -122,19 +107,11 @@ class Field:
         return Pose((float(position[0]), float(position[1]), float(position[2])), (x, y, z, w)).matrix
 
 
+def clipped(word: str, length: int = 60) -> str:
+    """The beginning of a word that may be very long."""
+    return word if len(word) <= length else f"{word[:length]}..."
+
+
 def _kind(value: Any) -> str:
     names = {dict: "an object", list: "an array", str: "a string", bool: "true or false", type(None): "null"}
     return names.get(type(value), "a number")
-
-
-def _refuse_constant(constant: str) -> float:
-    raise InputError(f"{constant} is not a number that a plan may hold")
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    members = dict(pairs)
-    if len(members) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise InputError(f"the key '{twice}' is given twice")
-    return members

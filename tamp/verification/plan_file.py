@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from tamp.pddl.structs import Fact
-from tamp.verification.fields import Field, read_json
+from tamp.reading import read_json
+from tamp.verification.fields import Field, clipped
 from tamp.world.pose import Array
 
 FORMAT, VERSION = "tamp-plan", 1
@@ -88,7 +90,7 @@ class TimedAction:
 
 @dataclass(frozen=True, eq=False)
 class PlanFile:
-    """A whole plan. `certified` are the static facts that it rests on."""
+    """A whole plan. `certified` are the static facts that it rests on; what made it are `algorithm` and `samplers`."""
 
     file: Path | None
     sources: tuple[Source, ...]
@@ -101,6 +103,8 @@ class PlanFile:
     certified: tuple[Fact, ...]
     cost: float
     duration: float
+    algorithm: str = "adaptive"
+    samplers: Mapping[str, str] = dataclasses.field(default_factory=dict[str, str])
 
     def source(self, role: str) -> Source | None:
         """The file of that role."""
@@ -119,7 +123,7 @@ def read_plan(plan: dict[str, Any] | Path) -> PlanFile:
         raise root.wrong('not a plan file: it does not say "format": "tamp-plan"')
     version = root["version"].value
     if version != VERSION:
-        raise root["version"].wrong(f"version {version} is not known, only {VERSION}")
+        raise root["version"].wrong(f"version {clipped(str(version))} is not known, only {VERSION}")
     objects = {name: _names(field) for name, field in root["objects"].fields().items()}
     values = {name: _value(field) for name, field in root["values"].fields().items()}
     result = PlanFile(
@@ -134,9 +138,20 @@ def read_plan(plan: dict[str, Any] | Path) -> PlanFile:
         certified=_facts(root["certified"]),
         cost=root["cost"].number(),
         duration=root["duration"].number(0.0),
+        **_options(root.get("options")),
     )
     _check_bodies(root, result)
     return result
+
+
+def _options(options: Field | None) -> dict[str, Any]:
+    """With what it was planned, as far as it says so."""
+    if options is None:
+        return {}
+    algorithm, samplers = options.get("algorithm"), options.get("samplers")
+    chosen = {} if algorithm is None else {"algorithm": algorithm.text()}
+    named = {} if samplers is None else {relation: name.text() for relation, name in samplers.fields().items()}
+    return {**chosen, "samplers": named}
 
 
 def _sources(inputs: Field) -> tuple[Source, ...]:

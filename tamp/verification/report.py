@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from tamp.errors import one_line, printable
 from tamp.verification.sweep import Contact
 
 KINDS = {
@@ -54,7 +55,7 @@ class Violation:
         place = "" if self.index is None else f"{self.index + 1} {self.action}"
         when = "" if self.time is None else f"{self.time:.2f} s"
         where = ", ".join(part for part in (place, when) if part)
-        return f"{self.kind:<12} {where + ': ' if where else ''}{self.message}"
+        return one_line(f"{self.kind:<12} {where + ': ' if where else ''}{self.message}")
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,7 @@ class Report:
     def text(self) -> str:
         """For people: a line a violation and a summary."""
         lines = [f"  {violation}" for violation in self.violations]
-        lines += [f"  note: {note}" for note in self.notes]
+        lines += [f"  note: {one_line(note)}" for note in self.notes]
         moving = [f"{self.duration:.1f} s"] if self.duration else []
         facts = [f"{self.actions} actions", *moving, f"{self.states:,} states checked"]
         if self.nearest:
@@ -100,7 +101,7 @@ class Report:
         if self.trusted:
             facts.append("on trust: " + " ".join(f"{name} ({count})" for name, count in self.trusted.items()))
         verdict = "holds" if self.holds else f"does not hold, {_counted(self.violations)}"
-        lines.append(f"{self.name} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
+        lines.append(f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:

@@ -10,8 +10,9 @@ from typing import Any
 from tamp.errors import InputError
 from tamp.pddl.parser import parse_domain, parse_task
 from tamp.pddl.structs import Action, Atom, Fact, Task
-from tamp.verification.fields import Field, read_json
-from tamp.verification.files import sha256
+from tamp.reading import is_file, read_json
+from tamp.verification.fields import Field, clipped
+from tamp.verification.files import sha256, unquoted
 from tamp.verification.formulas import flat, ground, show
 from tamp.verification.report import Report, Violation
 from tamp.verification.semantics import Semantics, State
@@ -42,16 +43,20 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
     file = None if isinstance(plan, dict) else plan
     root = Field(plan if isinstance(plan, dict) else read_json(plan), "", file)
     if root["version"].value != VERSION:
-        raise root["version"].wrong(f"version {root['version'].value} is not known, only {VERSION}")
+        version = clipped(str(root["version"].value))
+        raise root["version"].wrong(f"version {version} is not known, only {VERSION}")
     violations: list[Violation] = []
     files: dict[str, Path] = {}
+    hashes: dict[Path, str | None] = {}
     for role, given in (("problem", problem), ("domain", domain)):
         source = root["inputs"][role]
         files[role] = _file(Path(source["path"].text()), given, role, file)
+        hashes[files[role]] = source["sha256"].text() if given is None else None
         if sha256(files[role]) != source["sha256"].text():
             violations.append(Violation("hash", f"the {role} {files[role]} is not the one that the plan was made from"))
-    parsed = parse_domain(files["domain"].read_text(encoding="utf-8"), files["domain"])
-    task = parse_task(files["problem"].read_text(encoding="utf-8"), parsed, files["problem"])
+    with unquoted(file, hashes):
+        parsed = parse_domain(files["domain"].read_text(encoding="utf-8"), files["domain"])
+        task = parse_task(files["problem"].read_text(encoding="utf-8"), parsed, files["problem"])
     actions = root["actions"].items()
     violations += _run(task, actions, root["cost"].number())
     return Report(
@@ -118,7 +123,7 @@ def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path
     """The problem's or domain's file: what the user says, else where the plan says, else of that name beside it."""
     beside = [plan.parent / named.name] if plan else []
     for file in (named, *beside) if given is None else (given,):
-        if file.is_file():
+        if is_file(file):
             return file
     if given is not None:
         raise InputError(f"no such file: {given}")

@@ -12,7 +12,7 @@ from tamp.pddl.parser import parse_domain, parse_facts, parse_goal
 from tamp.pddl.structs import Domain, Fact
 from tamp.simulation.physics import World
 from tamp.verification.certified import Certified
-from tamp.verification.files import source_file
+from tamp.verification.files import plan_hashes, source_file, unquoted
 from tamp.verification.formulas import substitute
 from tamp.verification.plan_file import PlanFile, read_plan
 from tamp.verification.replay import Replay
@@ -46,8 +46,12 @@ def verify(
     read = read_plan(document)
     problem_file = source_file(read, "problem", None if problem is None else Path(problem))
     domain_file = source_file(read, "domain", None if domain is None else Path(domain))
-    loaded = load_scene(problem_file)
-    parsed = parse_domain(domain_file.read_text(encoding="utf-8"), domain_file)
+    named = plan_hashes(
+        read, problem=None if problem is None else problem_file, domain=None if domain is None else domain_file
+    )
+    with unquoted(read.file, named):
+        loaded = load_scene(problem_file)
+        parsed = parse_domain(domain_file.read_text(encoding="utf-8"), domain_file)
     objects = _objects(read, parsed)
     given = _given(loaded, parsed, objects)
     goal = parse_goal(

@@ -7,16 +7,19 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from tamp.command_line import Parser
 from tamp.errors import InputError
+from tamp.outputs import check_outputs
 from tamp.progress import say
+from tamp.terminal import spoken
 from tamp.view.wishes import Wishes, fulfil
 
 
+@spoken
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when it was shown, 2 for bad input."""
-    options = _parser().parse_args(arguments)
     try:
-        _view(options)
+        _view(_parser().parse_args(arguments))
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -40,8 +43,14 @@ def _view(options: argparse.Namespace) -> None:
     )
     wishes.check()
     from tamp.view.open import open_film
+    from tamp.view.outside import check_inside
 
-    film, story, document = open_film(options.what, options.problem)
+    def check(files: Sequence[Path], meshes: Sequence[Path]) -> None:
+        check_outputs(wishes.outputs, (*files, *meshes))
+        if options.html is not None and not options.allow_outside:
+            check_inside(meshes, files[0])
+
+    film, story, document = open_film(options.what, options.problem, check)
     fulfil(wishes, film, story, document, Path(options.what), say)
 
 
@@ -54,8 +63,8 @@ def _size(text: str | None) -> tuple[int, int] | None:
     return int(columns), int(rows)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="tamp-view",
         description="Show a plan, or a scene without one: in the browser (the default), as a page that plays offline, "
         "as a picture, as a moving picture.",
@@ -66,6 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--problem", metavar="FILE", help="the problem, instead of the file that the plan names")
     parser.add_argument("--html", metavar="FILE", type=Path, help="write one HTML file that needs no network")
+    parser.add_argument(
+        "--allow-outside", action="store_true", help="let the page show meshes from outside of the problem's folder"
+    )
     parser.add_argument("--png", metavar="FILE", type=Path, help="write a picture: start, middle and end of a plan")
     parser.add_argument("--video", metavar="FILE", type=Path, help="write a moving picture (.gif or .webp) of a plan")
     parser.add_argument(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +20,34 @@ Opened = tuple[Film, Story, dict[str, Any]]
 """A film, its story, and the plan file's content (empty without a plan)."""
 
 
-def open_film(what: str, problem: str | None = None) -> Opened:
+def _read(files: Sequence[Path], meshes: Sequence[Path]) -> None:
+    pass
+
+
+def open_film(
+    what: str, problem: str | None = None, read: Callable[[Sequence[Path], Sequence[Path]], None] = _read
+) -> Opened:
     """A plan file (.json), or a problem by file or name.
+
+    Args:
+        what: The file or the name.
+        problem: The problem's file, instead of the one that the plan names.
+        read: Told of the files that it was read from, the problem first, and of the meshes.
 
     Raises:
         InputError: Neither, or something is wrong with it.
     """
     if what.endswith(".json"):
         stored = open_plan(what, problem)
+        sources = [source.path for source in stored.plan.sources]
+        beside = [Path(what).parent / path.name for path in sources]
+        read((stored.loaded.path, Path(what), *sources, *beside), stored.loaded.meshes)
         film = film_of(stored.loaded.scene, stored.robot, stored.plan)
         return film, story_of(stored.document, Path(what)), stored.document
     if problem is not None:
         raise InputError("--problem goes with a plan", remedy="Name a plan file before it")
     loaded = load_scene(what)
+    read((loaded.path,), loaded.meshes)
     scene = loaded.scene
     goal = " ".join(loaded.goal.text.split())
     head = f"{len(scene.bodies)} bodies, {len(scene.movable)} movable · goal {goal}"

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import html
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from tamp.data import write_whole
-from tamp.errors import InputError
+from tamp.errors import InputError, printable
+from tamp.outputs import write_whole
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 
 
 def page(document: Mapping[str, Any]) -> str:
     """The page of a document from `page_document`."""
+    document = _harmless(dict(document))
     data = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     parts = {
         "@TITLE@": html.escape(str(document["title"])),
@@ -23,11 +25,17 @@ def page(document: Mapping[str, Any]) -> str:
         "@SCRIPT@": f"{_asset('draw.js')}\n{_asset('page.js')}",
         "@DATA@": data.replace("<", "\\u003c"),  # so that no name ends the script element
     }
-    text = _asset("page.html")
-    for mark, content in parts.items():
-        before, _, after = text.partition(mark)
-        text = f"{before}{content}{after}"
-    return text
+    marks = re.compile("|".join(parts))
+    return marks.sub(lambda mark: parts[mark[0]], _asset("page.html"))  # once: a name may be a mark
+
+
+def _harmless(value: Any) -> Any:
+    """A document with what hides or turns text around, in names out of files, written in backslashes."""
+    if isinstance(value, str):
+        return printable(value)
+    if isinstance(value, dict):
+        return {name: _harmless(inner) for name, inner in value.items()}
+    return [_harmless(inner) for inner in value] if isinstance(value, list | tuple) else value
 
 
 def write_page(document: Mapping[str, Any], file: Path) -> None:

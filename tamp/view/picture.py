@@ -5,15 +5,16 @@ from __future__ import annotations
 import io
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import write_whole
 from tamp.view.film import Film, holding, tool_path
 from tamp.view.looks import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh, unit
@@ -22,6 +23,9 @@ from tamp.view.raster import Camera, Triangles, render, triangles
 from tamp.world.bounds import bounds
 from tamp.world.kinematics import Kinematics
 from tamp.world.pose import Array
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 FLOOR_COLOURS = ((0.86, 0.85, 0.83, 1.0), (0.83, 0.82, 0.8, 1.0))
 EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (0.2, 0.45, 0.85, 1.0), (0.95, 0.45, 0.1, 1.0), (0.3, 0.3, 0.35, 1.0)
@@ -44,6 +48,15 @@ FILLED = 0.94
 
 FRAMES = 8
 """Of a moving picture, a second."""
+
+PAUSE = 10.0
+"""Seconds of a plan's time in which nothing moves that are shown; what is longer is cut."""
+
+MOST_BYTES = 600_000_000
+"""Of a moving picture's frames in memory."""
+
+TILES = 100
+"""Of the floor, on each side at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +141,11 @@ def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[i
     _save(file, image, "PNG", {"optimize": True})
 
 
-def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)) -> None:
-    """A moving picture of the plan, `speed` times as fast as the robot.
+def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)) -> float:
+    """A moving picture of the plan, `speed` times as fast as the robot; the seconds of long pauses that were cut.
 
     Raises:
-        InputError: Nothing moves, the file's ending is unknown, or it cannot be written.
+        InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it cannot be written.
     """
     from PIL import Image
 
@@ -140,18 +153,44 @@ def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int
     suffix = file.suffix.lower()
     if not film.actions:
         raise InputError("nothing moves without a plan", file=file, remedy="A picture is made by --png")
-    images = [Image.fromarray(frame) for frame in _moving(Studio(film, size), speed)]
+    moments, cut = moments_of(film, speed)
+    deep = 1 if suffix == ".gif" else 3
+    most = MOST_BYTES // (size[0] * size[1] * deep)
+    if len(moments) > most:
+        what = f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, and {most:,} are the most"
+        faster = math.ceil(speed * len(moments) / most)
+        raise InputError(what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room")
+    studio = Studio(film, size)
+    images = [Image.fromarray(studio.frame(float(moments[len(moments) // 2])))]
+    palette = images[0].quantize(128, dither=Image.Dither.NONE) if suffix == ".gif" else None
+    images = [_coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments]
     options = {"save_all": True, "append_images": images[1:], "duration": 1000 // FRAMES, "loop": 0}
-    if suffix == ".gif":  # colours that the scene has, the same in all frames
-        palette = images[len(images) // 2].quantize(128, dither=Image.Dither.NONE)
-        images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-        options["append_images"] = images[1:]
     _save(file, images[0], MOVING[suffix], options)
+    return cut
 
 
-def _moving(studio: Studio, speed: float) -> Iterator[NDArray[np.uint8]]:
-    for time in np.append(np.arange(0.0, studio.film.duration, speed / FRAMES), studio.film.duration):
-        yield studio.frame(float(time))
+def moments_of(film: Film, speed: float) -> tuple[Array, float]:
+    """The times of a moving picture's frames, and how many seconds of pauses they leave out.
+
+    Raises:
+        InputError: There would be more than anybody has memory for.
+    """
+    spans = np.diff(film.times)
+    still = (np.diff(film.rows, axis=0) == 0.0).all(axis=1)
+    cuts = np.where(still & (spans > PAUSE), spans - PAUSE, 0.0)
+    shown = film.times - np.concatenate([[0.0], np.cumsum(cuts)])
+    length = float(shown[-1] - shown[0])
+    if length * FRAMES / speed > MOST_BYTES:
+        raise InputError(f"the plan moves for {length:,.0f} s, which no moving picture can show")
+    at = np.append(np.arange(float(shown[0]), float(shown[-1]), speed / FRAMES), shown[-1])
+    return np.interp(at, shown, film.times), float(cuts.sum())
+
+
+def _coloured(image: Image.Image, palette: Image.Image | None) -> Image.Image:
+    """With colours that the scene has, the same in all frames."""
+    from PIL import Image
+
+    return image if palette is None else image.quantize(palette=palette, dither=Image.Dither.NONE)
 
 
 def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> None:
@@ -164,14 +203,17 @@ def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> N
 
 
 def _floor(film: Film) -> list[Triangles]:
-    """Tiles of two shades, a metre wide, under the room and around it."""
+    """Tiles of two shades, a metre wide (larger ones in a hall), under the room and around it."""
     room = film.scene.room
-    xs = range(math.floor(room.x[0]) - AROUND, math.ceil(room.x[1]) + AROUND)
-    ys = range(math.floor(room.y[0]) - AROUND, math.ceil(room.y[1]) + AROUND)
+    side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
+    xs, ys = (
+        range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND) for low, high in (room.x, room.y)
+    )
     tiles: list[Triangles] = []
     for shade, colour in enumerate(FLOOR_COLOURS):
         corners = [(x, y) for x in xs for y in ys if (x + y) % 2 == shade]
-        vertices = [(x + dx, y + dy, 0.0) for x, y in corners for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        around = ((0, 0), (1, 0), (1, 1), (0, 1))
+        vertices = [(side * (x + dx), side * (y + dy), 0.0) for x, y in corners for dx, dy in around]
         faces = [(4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))]
         tiles.append(triangles(Mesh(np.array(vertices), np.array(faces), colour)))
     return tiles

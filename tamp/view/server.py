@@ -8,9 +8,22 @@ from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 from tamp.errors import InputError
+from tamp.terminal import unheard
 
 HOST = "127.0.0.1"
 """Nobody else on the network is served."""
+
+HEADERS = {
+    "Cache-Control": "no-store",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+}
+"""The page is for whoever opened it, and for no page of others."""
+
+PATIENCE = 10.0
+"""Seconds in which a request has to be told."""
 
 
 class PageServer(ThreadingHTTPServer):
@@ -39,12 +52,23 @@ class PageServer(ThreadingHTTPServer):
             ) from error
 
     @property
+    def names(self) -> tuple[str, str]:
+        """What a browser on this machine calls us."""
+        port = self.server_address[1]
+        shown = "" if port == 80 else f":{port}"
+        return f"{HOST}{shown}", f"localhost{shown}"
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Nothing: who asks wrongly, or goes away, is no matter of the user's."""
+
+    @property
     def address(self) -> str:
         """Where the page is."""
         return f"http://{HOST}:{self.server_address[1]}/"
 
 
 class _Handler(BaseHTTPRequestHandler):
+    timeout = PATIENCE
     server: PageServer  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def do_GET(self) -> None:
@@ -59,12 +83,16 @@ class _Handler(BaseHTTPRequestHandler):
         """Nothing: the terminal is the user's."""
 
     def _answer(self, body: bool) -> None:
+        if self.headers.get("Host", "").lower() not in self.server.names:
+            self.send_error(421, "asked for by another name")  # a page from elsewhere whose name was turned to us
+            return
         found = self.path.partition("?")[0] in ("/", "/index.html")
         content = self.server.content if found else b"not found\n"
         self.send_response(200 if found else 404)
         self.send_header("Content-Type", "text/html; charset=utf-8" if found else "text/plain")
         self.send_header("Content-Length", str(len(content)))
-        self.send_header("Cache-Control", "no-store")
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
         self.end_headers()
         if body:
             with contextlib.suppress(ConnectionError):
@@ -94,6 +122,8 @@ def serve(content: bytes, say: Callable[[str], None], *, port: int = 0, browser:
     """
     with PageServer(content, port) as server:
         say(f"{server.address} shows it until Ctrl-C.")
+        if unheard():  # nobody knows where the page is; the command says so
+            return
         if browser:
             webbrowser.open(server.address)
         with contextlib.suppress(KeyboardInterrupt):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tamp.data import check_writable
 from tamp.errors import InputError
+from tamp.outputs import check_outputs, check_writable
 from tamp.view.moving import check_suffix
 
 if TYPE_CHECKING:
@@ -52,6 +52,11 @@ class Wishes:
         return self.view or self.html is not None
 
     @property
+    def outputs(self) -> dict[str, Path | None]:
+        """What is written, by option."""
+        return {"--html": self.html, "--png": self.png, "--video": self.video}
+
+    @property
     def any(self) -> bool:
         """Whether anything is wanted."""
         return self.page or self.png is not None or self.video is not None
@@ -64,9 +69,10 @@ class Wishes:
         """
         from tamp.view.server import check_browser
 
-        for file in (self.html, self.png, self.video):
+        for option, file in self.outputs.items():
             if file is not None:
-                check_writable(file)
+                check_writable(file, option)
+        check_outputs(self.outputs)
         if self.png is not None and self.png.suffix.lower() != ".png":
             raise InputError("a picture is written as .png", file=self.png)
         if self.video is not None:
@@ -110,8 +116,8 @@ def fulfil(
         write_png(film, wishes.png, wishes.at, wishes.size or (800, 600))
         say(f"{wishes.png} written.")
     if wishes.video is not None:
-        write_video(film, wishes.video, wishes.speed, wishes.size or (480, 360))
-        say(f"{wishes.video} written.")
+        cut = write_video(film, wishes.video, wishes.speed, wishes.size or (480, 360))
+        say(f"{wishes.video} written{f', without {cut:,.0f} s of pauses' if cut else ''}.")
     if wishes.page:
         content = page_document(film, story, shots(document, film.scene, file))
         if wishes.html is not None:

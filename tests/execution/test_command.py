@@ -78,3 +78,22 @@ def test_bad_plans(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     changed.write_text(json.dumps(document), encoding="utf-8")
     Path(problem).write_text(Path(problem).read_text() + "# changed\n")
     assert "is not the one that the plan was made from" in error(changed)
+
+
+def test_pauses_of_hours_are_left_out(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plan = json.loads(plan_file.read_text(encoding="utf-8"))
+    segment = next(one for one in plan["actions"][1]["segments"] if one["part"] == "arm")
+    segment["times"].append(segment["times"][-1] + 20_000.0)
+    segment["positions"].append(segment["positions"][-1])
+    file = tmp_path / "plan.json"
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    assert exit_of(str(file), "--grasp", "constraint") == 0
+    assert "19,990 s of pauses in the plan were left out" in capsys.readouterr().out
+    segment["positions"][-1] = [angle + 0.1 for angle in segment["positions"][-1]]
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    assert exit_of(str(file)) == 2
+    assert "physics carries out at most 7,200 s" in capsys.readouterr().err
+    segment["times"][-1] = -1.0
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    assert exit_of(str(file)) == 2
+    assert "do not increase" in capsys.readouterr().err

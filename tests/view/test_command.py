@@ -164,3 +164,53 @@ def test_solve_refuses_early(
         assert solving.run(words) == solving.BAD_INPUT
         assert expected in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_meshes_from_elsewhere_are_given_away_only_when_that_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    corners = "".join(f"v {x} {y} {z}\n" for x in (0, 0.05) for y in (0, 0.05) for z in (0, 0.1))
+    faces = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+    (tmp_path / "hidden.obj").write_text(corners + faces, encoding="utf-8")
+    here = tmp_path / "here"
+    here.mkdir()
+    problem, page = here / "p.yaml", here / "p.html"
+    for mesh, inside in (("../hidden.obj", False), ("link.obj", False), ("pybullet_data/duck.obj", True)):
+        if mesh == "link.obj":
+            (here / mesh).symlink_to("../hidden.obj")
+        problem.write_text(
+            "domain: cupboard\nrobot: {model: panda_mobile, base: [0, 0, 0]}\n"
+            "room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}\nbodies:\n"
+            "  table: {furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0, 0]}\n"
+            f"  thing: {{mesh: {mesh}, on: table{', scale: 0.05' if inside else ''}}}\ngoal: (on thing table)\n",
+            encoding="utf-8",
+        )
+        assert main([str(problem), "--html", str(page)]) == (0 if inside else 2), capsys.readouterr().err
+        assert page.exists() == inside
+        if not inside:
+            assert "--allow-outside" in capsys.readouterr().err
+            assert solving.run([str(problem), "--html", str(page), "--out", str(here / "x.json")]) == 2
+            assert not page.exists() and not (here / "x.json").exists()
+            assert main([str(problem), "--html", str(page), "--allow-outside"]) == 0
+            page.unlink()
+
+
+def test_a_pause_of_hours_makes_no_endless_picture(
+    stored_plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = json.loads(stored_plan.read_text(encoding="utf-8"))
+    segment = plan["actions"][1]["segments"][-1]
+    rows = segment["opening"] if segment["part"] == "gripper" else segment["positions"]
+    segment["times"].append(segment["times"][-1] + 20_000.0)
+    rows.append(rows[-1])
+    file, picture = tmp_path / "plan.json", tmp_path / "x.gif"
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    words = [str(file), "--video", str(picture), *SMALL, "--speed", "20"]
+    assert main(words) == 0
+    assert "without 19,990 s of pauses" in capsys.readouterr().out
+    segment["times"][-1] = 1e11
+    rows[-1] = [number + 0.1 for number in rows[-1]] if isinstance(rows[-1], list) else rows[-1] + 0.01
+    file.write_text(json.dumps(plan), encoding="utf-8")
+    picture.unlink()
+    assert main(words) == 2 and not picture.exists()
+    assert "no moving picture can show" in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import http.client
 import json
 import re
 import urllib.error
@@ -151,3 +152,25 @@ def test_a_page_that_cannot_be_written(document: dict[str, Any], tmp_path: Path)
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError, match="cannot write the page"):
         write_page(document, tmp_path / "file" / "out.html")
+
+
+def test_a_name_may_be_a_mark_of_the_template(document: dict[str, Any]) -> None:
+    marks = "@DATA@ @SCRIPT@ </script><script>alert(1)</script> \u202e\x1b"
+    reader = read(page({**document, "title": marks}))
+    found = json.loads(next(script for script in reader.scripts if script.startswith("{")))
+    assert found["title"] == "@DATA@ @SCRIPT@ </script><script>alert(1)</script> \\u202e\\x1b"
+    assert len(reader.scripts) == 2 and found["bodies"] == document["bodies"]
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"])
+def test_the_server_is_asked_by_its_own_name_only(host: str) -> None:
+    with PageServer(b"<!DOCTYPE html>secret") as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        port = server.server_address[1]
+        for name, status in ((host.format(port=port), 421), (f"localhost:{port}", 200), (f"127.0.0.1:{port}", 200)):
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+            connection.request("GET", "/", headers={"Host": name})
+            answer = connection.getresponse()
+            assert answer.status == status and (b"secret" in answer.read()) == (status == 200)
+            connection.close()
+        server.shutdown()

@@ -1,0 +1,47 @@
+"""A plan's pauses, in which physics would stand still for as long as a file says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.verification.plan_file import PlanFile, Segment
+
+PAUSE = 10.0
+"""Seconds that nothing moves in a segment; what is longer is cut."""
+
+MOST_SECONDS = 7_200.0
+"""Of a plan's motion that is carried out."""
+
+
+def without_pauses(plan: PlanFile) -> tuple[PlanFile, float]:
+    """The plan with its long pauses cut, and the seconds that were left out.
+
+    Raises:
+        InputError: Times of a segment do not increase, or the plan moves for hours.
+    """
+    cut = moving = 0.0
+    actions = []
+    for action in plan.actions:
+        segments = [_shortened(segment, plan) for segment in action.segments]
+        cut += sum(float(a.times[-1] - b.times[-1]) for a, b in zip(action.segments, segments, strict=True))
+        moving += sum(float(segment.times[-1]) for segment in segments)
+        actions.append(replace(action, segments=tuple(segments)))
+    if moving > MOST_SECONDS:
+        what = f"its motions last {moving:,.0f} s; physics carries out at most {MOST_SECONDS:,.0f} s"
+        raise InputError(what, file=plan.file)
+    return (replace(plan, actions=tuple(actions)), cut) if cut else (plan, 0.0)
+
+
+def _shortened(segment: Segment, plan: PlanFile) -> Segment:
+    spans = np.diff(segment.times, prepend=0.0)
+    if (spans < 0.0).any():
+        raise InputError(f"times of the {segment.part} do not increase", file=plan.file)
+    rows = np.column_stack([segment.positions, segment.opening])
+    still = (np.diff(rows, axis=0, prepend=rows[:1]) == 0.0).all(axis=1)
+    if segment.part == "gripper":  # which takes the time that fingers take
+        still[:] = True
+    longer = np.where(still & (spans > PAUSE), spans - PAUSE, 0.0)
+    return replace(segment, times=segment.times - np.cumsum(longer)) if longer.any() else segment
