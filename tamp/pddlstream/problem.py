@@ -14,6 +14,7 @@ from tamp.algorithms.stream import BoundStream
 from tamp.errors import InputError, closest
 from tamp.pddl.complement import complement_name, negated_tests, with_complements
 from tamp.pddl.exogenous import without_waiting
+from tamp.pddl.files import read_pddl
 from tamp.pddl.formulas import RESERVED
 from tamp.pddl.lint import lint
 from tamp.pddl.nodes import Group, Node, Symbol, warning
@@ -186,12 +187,7 @@ def _constants(given: Mapping[str, Any], domain: Domain) -> tuple[dict[str, Any]
 
 
 def _text(source: str | Path) -> tuple[str, Path | None]:
-    if isinstance(source, str):
-        return source, None
-    try:
-        return source.read_text(encoding="utf-8"), source
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read it: {error}", file=source) from None
+    return (source, None) if isinstance(source, str) else (read_pddl(source), source)
 
 
 def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
