@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tamp.pddl.declarations import check_requirements, parse_functions, parse_objects, parse_predicates, parse_types
@@ -24,10 +24,17 @@ ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
 @dataclass(frozen=True)
 class Undeclared:
-    """Predicates and functions that may be used although the domain does not declare them."""
+    """Predicates and functions that may be used although the domain does not declare them.
+
+    Attributes:
+        predicates: By name.
+        functions: By name.
+        computed: Functions that a streams file computes: they have the arguments that it says.
+    """
 
     predicates: Mapping[str, Predicate]
     functions: Mapping[str, Predicate]
+    computed: Mapping[str, Predicate] = field(default_factory=dict[str, Predicate])
 
 
 def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclared | None = None) -> Domain:
@@ -43,7 +50,7 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     Raises:
         InputError: With file, line and column of what is wrong.
     """
-    name, sections = read_sections(text, "domain", SECTIONS, file)
+    title, sections = read_sections(text, "domain", SECTIONS, file)
     notes = list(check_requirements(items_of(sections, ":requirements")))
     declared = parse_types(items_of(sections, ":types"))
     types = declared.parents
@@ -57,6 +64,13 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     if undeclared is not None:
         predicates |= {n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)}
         functions |= {n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)}
+        for name, computed in undeclared.computed.items():
+            declared_as = functions.get(name)
+            if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
+                sizes = f"{len(declared_as.parameters)} arguments, computed of {len(computed.parameters)}"
+                notes.append(warning(declared_as.place or title.place, f"function '{name}' is declared with {sizes}"))
+            if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
+                functions[name] = computed
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
@@ -69,7 +83,7 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
         redefined = dict(entry for rule in rules for entry in redefinition(rule, predicates))
         notes += [note for _, note in redefined.values()]
         predicates |= {name: predicate for name, (predicate, _) in redefined.items()}
-    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents)
+    names = Domain(title.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents)
 
     derived_names = {rule_head(section, names) for section in rules}
     derived = tuple(parse_rule(section, names, notes) for section in rules)

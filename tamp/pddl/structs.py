@@ -200,6 +200,7 @@ class StreamFile:
         predicates: Static predicates that Python decides.
         rules: What follows from certified facts, as streams without outputs that always succeed.
         notes: Oddities that are no errors, each with its place.
+        uncalled: What only an optimizer would certify, which is never called, each with its place.
     """
 
     name: str
@@ -209,6 +210,7 @@ class StreamFile:
     predicates: tuple[Function, ...] = ()
     rules: tuple[Stream, ...] = ()
     notes: tuple[str, ...] = ()
+    uncalled: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
