@@ -14,6 +14,7 @@ from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
 from tamp.errors import InputError
 from tamp.initial import initial_state
+from tamp.pddl.files import read_pddl
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import StreamFile, Task
@@ -29,7 +30,7 @@ from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.overlaps import check_overlaps
 from tamp.world.robot import ROBOTS
 from tamp.world.scene import Scene
-from tamp.world.yaml_nodes import MAX_BYTES, read_yaml
+from tamp.world.yaml_nodes import read_yaml
 
 load_compiled_loops()
 
@@ -104,9 +105,9 @@ def load_problem(
     if scene is not None:
         loaded = replace(loaded, scene=scene)
     domain_path = _domain_path(loaded, domain)
-    parsed = parse_domain(_read(domain_path), domain_path)
+    parsed = parse_domain(read_pddl(domain_path), domain_path)
     streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
-    declared = parse_streams(_read(streams_path), parsed, streams_path)
+    declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
     start = initial_state(loaded.scene, parsed, holding)
     goal = parse_goal(
         loaded.goal.text, parsed, start.objects, loaded.path,
@@ -231,17 +232,6 @@ def _line(loaded: LoadedProblem, *keys: str) -> int:
     for key in keys:
         node = node.mapping()[key]
     return node.line
-
-
-def _read(path: Path) -> str:
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"no PDDL file is {size / 1e6:.1f} MB large", file=path)
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"cannot read it: {reason}", file=path) from error
 
 
 def _bind(

@@ -108,7 +108,7 @@ CASES = [
         2,
     ),
     Case("sampler-without-a-name", says=r"RELATION=NAME.*on=uniform", options=("--sampler", "uniform")),
-    Case("missing-streams", says=r"nowhere\.pddl: cannot read it: No such file", options=("--streams", "nowhere.pddl")),
+    Case("missing-streams", says=r"nowhere\.pddl: no such file", options=("--streams", "nowhere.pddl")),
     # The goal
     Case("goal-arity", "(on can table)", "(on can)", r"'on'.* 2 .*1", 8),
     Case("goal-type", "(on can table)", "(on table can)", r"'can'.*surface", 8),

@@ -19,6 +19,7 @@ from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
 from tamp.execution.truth import Observer, Truth
 from tamp.execution.watching import Watch
+from tamp.pddl.files import read_pddl
 from tamp.pddl.parser import parse_domain, parse_goal
 from tamp.simulation.actuated import Actuated
 from tamp.stored import Stored
@@ -90,7 +91,7 @@ class _Run:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
         with unquoted(stored.plan.file, plan_hashes(stored.plan)):
-            self._domain = parse_domain(file.read_text(encoding="utf-8"), file)
+            self._domain = parse_domain(read_pddl(file), file)
         self._player = Player(world, chosen.grasp)
         self._begin(stored.plan)
         loaded = stored.loaded

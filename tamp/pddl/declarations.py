@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from tamp.errors import closest
+from tamp.pddl.features import lacking
 from tamp.pddl.formulas import RESERVED
-from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, warning
-from tamp.pddl.structs import Predicate
-from tamp.pddl.typed import known_types, parameters, refuse_duplicates, typed_list
+from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, warning
+from tamp.pddl.structs import Parameter, Predicate
+from tamp.pddl.typed import known_types, placeholders, typed_list
 
 REQUIREMENTS = (
     ":strips", ":typing", ":negative-preconditions", ":disjunctive-preconditions", ":equality",
@@ -19,13 +20,20 @@ REQUIREMENTS = (
     ":constraints", ":action-costs", ":goal-utilities",
 )  # fmt: skip
 
+MAX_TYPE_DEPTH = 200
+"""Types above a type; an object is an instance of all of them, so a chain of thousands takes gigabytes."""
 
-def check_requirements(nodes: Sequence[Node]) -> None:
-    """Refuse words that are no requirement of any PDDL. What is used is checked where it is used."""
+
+def check_requirements(nodes: Sequence[Node]) -> tuple[str, ...]:
+    """Warn of words that are no requirement of any PDDL. What is used is checked where it is used."""
+    notes: list[str] = []
     for node in nodes:
         symbol = as_symbol(node, "a requirement such as :typing")
         if symbol.text not in REQUIREMENTS:
-            raise error(symbol, f"unknown requirement '{symbol.written}'", found=symbol.text, choices=REQUIREMENTS)
+            near = closest(symbol.text, REQUIREMENTS)
+            meant = f". Did you mean '{near}'?" if near else ""
+            notes.append(warning(symbol, f"unknown requirement '{symbol.written}'{meant}"))
+    return tuple(notes)
 
 
 @dataclass(frozen=True)
@@ -47,6 +55,8 @@ def parse_types(nodes: Sequence[Node]) -> Types:
         parents[name] = tuple(dict.fromkeys((*parents.get(name, ()), *above)))
         if name == "object" and parents[name] not in ((), ("object",)):
             raise error(entry.name, "'object' is the root of all types, it cannot stand below another one")
+        if name != "object":
+            parents[name] = tuple(parent for parent in parents[name] if parent != name)  # - itself: says nothing
     parents.setdefault("object", ())
     notes: list[str] = []
     for symbol in (symbol for entry in entries for symbol in entry.types):
@@ -55,35 +65,65 @@ def parse_types(nodes: Sequence[Node]) -> Types:
             meant = f". Did you mean '{near}'?" if near else ""
             notes.append(warning(symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"))
             parents[as_name(symbol, "a type").text] = ()
-    for entry in entries:
-        cycle = _cycle(entry.name.text, parents)
-        if cycle and entry.name.text != "object":
-            raise error(entry.name, f"types form a cycle: {' - '.join(cycle)}")
+    _check_depth({entry.name.text: entry.name for entry in entries}, parents)
     full = {name: tuple(t for t in above if t != "object") or ("object",) for name, above in parents.items()}
     first = {"object": "object", **{name: above[0] for name, above in full.items()}}
     return Types(first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes))
 
 
 def parse_objects(
-    nodes: Sequence[Node], types: Mapping[str, str], what: str, constants: Container[str] = ()
+    nodes: Sequence[Node],
+    types: Mapping[str, str],
+    what: str,
+    notes: list[str],
+    constants: Mapping[str, tuple[str, ...]] | None = None,
 ) -> dict[str, tuple[str, ...]]:
-    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of them."""
-    entries = typed_list(nodes, what)
-    for entry in entries:
-        as_name(entry.name, what)
-        if entry.name.text in constants:
-            raise error(entry.name, f"object '{entry.name.written}' is already a constant of the domain")
-    refuse_duplicates((entry.name for entry in entries), what.removeprefix("an ").removeprefix("a "))
-    return {entry.name.text: known_types(entry.types, types) or ("object",) for entry in entries}
+    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of them.
+
+    Args:
+        nodes: The typed list.
+        types: The declared ones.
+        what: What the names are: "an object".
+        notes: Gets a line for each name that is said again with the same types.
+        constants: Those of the domain, of which a problem may say one again.
+
+    Raises:
+        InputError: A name stands twice with different types, or a type is not known.
+    """
+    kind = what.removeprefix("an ").removeprefix("a ")
+    found: dict[str, tuple[str, ...]] = {}
+    lines: dict[str, int] = {}
+    for entry in typed_list(nodes, what):
+        name = as_name(entry.name, what)
+        own = known_types(entry.types, types) or ("object",)
+        before = found.get(name.text) or (constants or {}).get(name.text)
+        if before is None:
+            found[name.text], lines[name.text] = own, name.place.line
+            continue
+        message = f"{kind} '{name.written}' is already a constant of the domain"
+        if name.text in lines:
+            message = f"{kind} '{name.written}' stands twice; first in line {lines[name.text]}"
+        if set(own) != set(before):
+            raise error(name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}")
+        notes.append(warning(name, message))
+    return found
 
 
-def parse_predicates(nodes: Sequence[Node], types: Mapping[str, str]) -> dict[str, Predicate]:
-    """Read `:predicates`: `(name ?a - type ...)` each."""
+@dataclass(frozen=True)
+class Signatures:
+    """Declared predicates or functions by name, and oddities that are no errors."""
+
+    by_name: dict[str, Predicate]
+    notes: tuple[str, ...]
+
+
+def parse_predicates(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatures:
+    """Read `:predicates`: `(name ?a - type ...)` each. The same declaration may stand twice."""
     groups = [as_group(node, "a predicate such as (on ?a ?b)") for node in nodes]
     return _signatures(groups, types, "predicate")
 
 
-def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> dict[str, Predicate]:
+def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatures:
     """Read `:functions`: like predicates, each group optionally followed by `- number`."""
     groups: list[Group] = []
     position = 0
@@ -97,13 +137,15 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> dict[str
         if node.text != "-" or not groups or result is None:
             raise error(node, f"expected a function such as (distance ?a ?b), found '{node.written}'")
         symbol = as_symbol(result, "the type 'number'")
+        if symbol.text in types:
+            raise error(symbol, lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"))
         if symbol.text != "number":
             raise error(symbol, f"functions have numbers as values, found '{symbol.written}'", choices=("number",))
         position += 1
     return _signatures(groups, types, "function")
 
 
-def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) -> dict[str, Predicate]:
+def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) -> Signatures:
     for group in groups:
         if not group.items:
             raise error(group, f"expected a {what}, found '()'")
@@ -111,23 +153,49 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
     for name in names:
         if name.text in RESERVED:
             raise error(name, f"'{name.written}' is a word of PDDL and cannot name a {what}")
-    refuse_duplicates(names, what)
-    return {
-        name.text: Predicate(name.text, parameters(group.items[1:], types), group.place)
-        for name, group in zip(names, groups, strict=True)
-    }
+    found: dict[str, Predicate] = {}
+    notes: list[str] = []
+    for name, group in zip(names, groups, strict=True):
+        declared = Predicate(name.text, placeholders(group.items[1:], types), group.place)
+        before = found.setdefault(name.text, declared)
+        if before is declared:
+            continue
+        first = f"{what} '{name.written}' stands twice; first in line {before.place.line if before.place else 0}"
+        if len(before.parameters) != len(declared.parameters):
+            sizes = f"{len(before.parameters)} and {len(declared.parameters)}"
+            raise error(name, f"{first}, with other arguments ({sizes})")
+        notes.append(warning(name, first))
+        found[name.text] = replace(before, parameters=tuple(map(_either, before.parameters, declared.parameters)))
+    return Signatures(found, tuple(notes))
 
 
-def _cycle(start: str, parents: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """A way up from a type back to itself, or nothing."""
-    ways: list[tuple[str, ...]] = [(start,)]
-    seen: set[str] = set()
-    while ways:
-        way = ways.pop()
-        for parent in parents.get(way[-1], ()):
-            if parent == start:
-                return (*way, start)
-            if parent not in seen:
-                seen.add(parent)
-                ways.append((*way, parent))
-    return ()
+def _either(first: Parameter, second: Parameter) -> Parameter:
+    """A parameter that takes what either of two declarations says."""
+    return replace(first, types=tuple(dict.fromkeys((*first.types, *second.types))))
+
+
+def _check_depth(names: Mapping[str, Symbol], parents: Mapping[str, tuple[str, ...]]) -> None:
+    """Refuse types in a cycle, and a chain of more than MAX_TYPE_DEPTH of them."""
+    heights: dict[str, int] = {"object": 0}
+    order = {name: number for number, name in enumerate(names)}
+    for start in names:
+        way: list[str] = [start]  # from the start up to the type at hand, all with unknown heights
+        on_way = {start}
+        while way:
+            name = way[-1]
+            above = parents.get(name, ())
+            waiting = next((parent for parent in above if parent not in heights), None)
+            if waiting is None:
+                heights[name] = 1 + max((heights[parent] for parent in above), default=0)
+                if heights[name] > MAX_TYPE_DEPTH:
+                    raise error(names[start], f"type '{names[start].written}' stands below {MAX_TYPE_DEPTH} others")
+                on_way.discard(way.pop())
+            elif waiting in on_way:
+                cycle = way[way.index(waiting) :]
+                first = min(range(len(cycle)), key=lambda index: order[cycle[index]])
+                cycle = [*cycle[first:], *cycle[: first + 1]]
+                shown = " - ".join(cycle if len(cycle) < 10 else (*cycle[:5], "...", *cycle[-4:]))
+                raise error(names[cycle[0]], f"types form a cycle: {shown}")
+            else:
+                way.append(waiting)
+                on_way.add(waiting)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tamp.pddl.declarations import check_requirements, parse_functions, parse_objects, parse_predicates, parse_types
 from tamp.pddl.effects import TOTAL_COST, Effects, parse_effects
-from tamp.pddl.formulas import parse_formula, scope_of
-from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error
+from tamp.pddl.formulas import parse_formula, repeated, scope_of
+from tamp.pddl.nodes import Group, Node, as_group, as_name, error, warning
 from tamp.pddl.rules import parse_rule, redefinition, rule_head
 from tamp.pddl.sections import Section, items_of, keyword_values, read_sections
 from tamp.pddl.stratification import strata
 from tamp.pddl.structs import Action, And, Domain, Predicate
-from tamp.pddl.typed import parameters, refuse_duplicates
+from tamp.pddl.typed import parameters
 
 SECTIONS = (
     ":requirements", ":types", ":constants", ":predicates", ":functions", ":action", ":derived", ":axiom",
@@ -24,10 +24,17 @@ ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
 @dataclass(frozen=True)
 class Undeclared:
-    """Predicates and functions that may be used although the domain does not declare them."""
+    """Predicates and functions that may be used although the domain does not declare them.
+
+    Attributes:
+        predicates: By name.
+        functions: By name.
+        computed: Functions that a streams file computes: they have the arguments that it says.
+    """
 
     predicates: Mapping[str, Predicate]
     functions: Mapping[str, Predicate]
+    computed: Mapping[str, Predicate] = field(default_factory=dict[str, Predicate])
 
 
 def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclared | None = None) -> Domain:
@@ -43,17 +50,27 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     Raises:
         InputError: With file, line and column of what is wrong.
     """
-    name, sections = read_sections(text, "domain", SECTIONS, file)
-    check_requirements(items_of(sections, ":requirements"))
+    title, sections = read_sections(text, "domain", SECTIONS, file)
+    notes = list(check_requirements(items_of(sections, ":requirements")))
     declared = parse_types(items_of(sections, ":types"))
     types = declared.parents
-    constants = parse_objects(items_of(sections, ":constants"), types, "a constant")
-    predicates = parse_predicates(items_of(sections, ":predicates"), types)
-    functions = parse_functions(items_of(sections, ":functions"), types)
+    notes += declared.notes
+    constants = parse_objects(items_of(sections, ":constants"), types, "a constant", notes)
+    signatures = parse_predicates(items_of(sections, ":predicates"), types)
+    functional = parse_functions(items_of(sections, ":functions"), types)
+    predicates, functions = signatures.by_name, functional.by_name
+    notes += (*signatures.notes, *functional.notes)
     known = (types, predicates, functions)
     if undeclared is not None:
         predicates |= {n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)}
         functions |= {n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)}
+        for name, computed in undeclared.computed.items():
+            declared_as = functions.get(name)
+            if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
+                sizes = f"{len(declared_as.parameters)} arguments, computed of {len(computed.parameters)}"
+                notes.append(warning(declared_as.place or title.place, f"function '{name}' is declared with {sizes}"))
+            if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
+                functions[name] = computed
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
@@ -62,30 +79,51 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
-    notes = declared.notes
     if undeclared is not None:
         redefined = dict(entry for rule in rules for entry in redefinition(rule, predicates))
-        notes += tuple(note for _, note in redefined.values())
+        notes += [note for _, note in redefined.values()]
         predicates |= {name: predicate for name, (predicate, _) in redefined.items()}
-    names = Domain(name.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents, notes)
+    names = Domain(title.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents)
 
     derived_names = {rule_head(section, names) for section in rules}
-    derived = tuple(parse_rule(section, names) for section in rules)
+    derived = tuple(parse_rule(section, names, notes) for section in rules)
     strata(derived)
     acts = [section for section in sections if section.keyword.text == ":action"]
-    actions = tuple(_action(section, names, derived_names, counts_costs) for section in acts)
-    refuse_duplicates((as_symbol(section.items[0], "a name") for section in acts), "action")
-    return replace(names, actions=actions, derived=derived)
+    actions = [_action(section, names, derived_names, counts_costs, notes) for section in acts]
+    return replace(names, actions=_distinct(actions, notes), derived=derived, notes=tuple(notes))
 
 
-def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bool) -> Action:
+def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]:
+    """The actions under names of their own: the same one written twice is one, another one of its name is renamed.
+
+    Fast Downward keeps both under one name; a plan would not say which of them is meant.
+    """
+    found: dict[str, Action] = {}
+    for action in actions:
+        if found.get(action.name) == action:
+            if action.place is not None:
+                notes.append(warning(action.place, f"action '{action.name}' stands twice"))
+            continue
+        name, number = action.name, 2
+        while name in found:
+            name, number = f"{action.name}~{number}", number + 1
+        if name != action.name and action.place is not None:
+            notes.append(warning(action.place, f"another action '{action.name}': plans have it as '{name}'"))
+        found[name] = replace(action, name=name)
+    return tuple(found.values())
+
+
+def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bool, notes: list[str]) -> Action:
     if not section.items:
         raise error(section.group, "an action has no name")
     name = as_name(section.items[0], "an action's name")
     values = keyword_values(section.items[1:], f"action '{name.text}'", ACTION_KEYWORDS)
     listed = as_group(values[":parameters"], "a list of parameters").items if ":parameters" in values else ()
-    scope, bound = scope_of(names).with_variables(parameters(listed, names.types))
+    written = parameters(listed, names.types)
+    scope, bound = scope_of(names, notes=notes).with_variables(written)
     precondition = parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    same = repeated(written, bound)
+    precondition = And((precondition, *same)) if same else precondition
     effects = parse_effects(values[":effect"], scope, derived) if ":effect" in values else Effects()
     # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every action counts one.
     cost = effects.cost if effects.cost is not None else (0.0 if counts_costs else 1.0)

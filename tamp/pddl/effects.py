@@ -6,7 +6,16 @@ import math
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, field
 
-from tamp.pddl.formulas import CONNECTIVES, EFFECT_WORDS, Scope, parse_atom, parse_formula, parse_function_term
+from tamp.pddl.features import unsupported
+from tamp.pddl.formulas import (
+    CONNECTIVES,
+    EFFECT_WORDS,
+    Scope,
+    parse_atom,
+    parse_formula,
+    parse_function_term,
+    repeated,
+)
 from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_symbol, error, show
 from tamp.pddl.structs import And, Atom, Effect, Formula, Parameter
 from tamp.pddl.typed import parameters
@@ -72,13 +81,17 @@ def _collect(
             _expect(group, 2, "a list of variables and an effect")
             listed = parameters(as_group(rest[0], "a list of variables such as (?x - body)").items, scope.domain.types)
             inside, bound = scope.with_variables(listed)
-            _collect(rest[1], inside, derived, effects, condition, (*quantified, *bound))
+            same = repeated(listed, bound)
+            where = And((condition, *same)) if same else condition
+            _collect(rest[1], inside, derived, effects, where, (*quantified, *bound))
         case "increase":
             if quantified or condition != And(()):
                 raise error(head, "a cost inside 'when' or 'forall' is not supported")
             effects.cost = _added(effects.cost, _increase(group, rest, scope), head)
         case "decrease" | "assign" | "scale-up" | "scale-down":
-            raise error(head, f"'{head.text}' is not supported", remedy="Costs grow by (increase (total-cost) ...)")
+            raise error(head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)")
+        case "probabilistic" | "oneof" if head.text not in scope.domain.predicates:
+            raise error(head, unsupported(head.text))
         case "not":
             _expect(group, 1, "one fact")
             atom = _changed(rest[0], scope, derived)
@@ -107,7 +120,8 @@ def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
     _expect(group, 2, "(total-cost) and an amount")
     target = as_group(rest[0], "(total-cost)")
     if target.head != TOTAL_COST or len(target.items) != 1:
-        raise error(target, f"only (total-cost) can be increased, found {show(target)}")
+        what = f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
+        raise error(target, what)
     amount = rest[1]
     if isinstance(amount, Symbol):
         value = parse_number(amount)

@@ -79,7 +79,7 @@ def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: f
             streams=tuple(changed[stream.name] for stream in streams.streams),
             rules=tuple(changed[stream.name] for stream in streams.rules),
         ),
-        _renamed(goal, rewriting.now),
+        renamed(goal, rewriting.now),
         facts | rewriting.started,
     )
 
@@ -103,7 +103,7 @@ class _Rewriting:
         self.predicates: dict[str, Predicate] = {}
         self.now = {predicate: self._like(predicate, f"{predicate}-now") for predicate in resting}
         self.was = {predicate: self._like(predicate, f"was-{predicate}") for predicate in awaited}
-        self.rules = [replace(rule, body=_renamed(rule.body, self.now)) for rule in domain.derived]
+        self.rules = [replace(rule, body=renamed(rule.body, self.now)) for rule in domain.derived]
         self.started = {(self.was[fact[0]], *fact[1:]) for fact in facts if fact[0] in self.was}
         for predicate in resting:
             given = [fact for fact in facts if fact[0] == predicate]
@@ -128,13 +128,13 @@ class _Rewriting:
 
     def action(self, action: Action) -> Action:
         """The action over the rules; what it makes true is noted as having been true."""
-        effects = [replace(effect, condition=_renamed(effect.condition, self.now)) for effect in action.effects]
+        effects = [replace(effect, condition=renamed(effect.condition, self.now)) for effect in action.effects]
         noted = [
             replace(effect, atom=replace(effect.atom, predicate=self.was[effect.atom.predicate]))
             for effect in effects
             if effect.adds and effect.atom.predicate in self.was
         ]
-        return replace(action, precondition=_renamed(action.precondition, self.now), effects=(*effects, *noted))
+        return replace(action, precondition=renamed(action.precondition, self.now), effects=(*effects, *noted))
 
     def _awaited(self, atom: Atom) -> Atom | None:
         """What a rule asks in the place of a stream's domain; nothing of what never changes."""
@@ -180,13 +180,14 @@ def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived
     )
 
 
-def _renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+    """The formula with some of its predicates under other names."""
     match formula:
         case Atom(predicate):
             return replace(formula, predicate=names.get(predicate, predicate))
         case Not(body):
-            return Not(_renamed(body, names))
+            return Not(renamed(body, names))
         case And(parts) | Or(parts):
-            return type(formula)(tuple(_renamed(part, names) for part in parts))
+            return type(formula)(tuple(renamed(part, names) for part in parts))
         case Exists(parameters, body) | Forall(parameters, body):
-            return type(formula)(parameters, _renamed(body, names))
+            return type(formula)(parameters, renamed(body, names))

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite
 
-from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_symbol, error, show
+from tamp.pddl.features import FEATURES, lacking, unsupported
+from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_symbol, error, show, warning
 from tamp.pddl.structs import And, Atom, Domain, Exists, Forall, Formula, Not, Or, Parameter, Predicate
-from tamp.pddl.typed import parameters
+from tamp.pddl.typed import distinct, parameters
 
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
 UNSUPPORTED = ("<", ">", "<=", ">=", "preference")
+COMPOUND = frozenset(word for word in FEATURES if not word.startswith(":"))
+"""Words of features that are not supported, unless a predicate has the name: `(at truck depot)` is a fact."""
 EFFECT_WORDS = ("when", "increase", "decrease", "assign", "scale-up", "scale-down")
 RESERVED = frozenset((*CONNECTIVES, *EFFECT_WORDS, "=", "either", "define", *UNSUPPORTED))
 """Words that cannot name a predicate."""
@@ -25,30 +29,40 @@ class Scope:
         objects: Objects (and constants) with their types; an object has all of them.
         variables: What each written variable stands for; one that hides an outer one is renamed, so that in a parsed
             formula no name is bound twice.
+        notes: Collects oddities that are no errors, such as an object of a more general type than is declared, which
+            Fast Downward reads; None where that is an error.
     """
 
     domain: Domain
     objects: Mapping[str, tuple[str, ...]]
     variables: Mapping[str, Parameter]
+    notes: list[str] | None = field(default=None, compare=False)
 
     def with_variables(self, more: Iterable[Parameter]) -> tuple[Scope, tuple[Parameter, ...]]:
         """The scope inside a quantifier, and the quantifier's parameters under their final names."""
-        taken = {parameter.name for parameter in self.variables.values()}
-        variables = dict(self.variables)
-        renamed: list[Parameter] = []
-        for parameter in more:
-            name, number = parameter.name, 2
-            while name in taken:
-                name, number = f"{parameter.name}~{number}", number + 1
-            taken.add(name)
-            variables[parameter.name] = replace(parameter, name=name)
-            renamed.append(variables[parameter.name])
-        return replace(self, variables=variables), tuple(renamed)
+        listed = tuple(more)
+        renamed = distinct(listed, {parameter.name for parameter in self.variables.values()})
+        inside = {old.name: new for old, new in zip(listed, renamed, strict=True)}
+        return replace(self, variables={**self.variables, **inside}), renamed
 
 
-def scope_of(domain: Domain, objects: Mapping[str, tuple[str, ...]] | None = None) -> Scope:
-    """The scope outside of all quantifiers: the domain's constants and the given objects."""
-    return Scope(domain, {**domain.constants, **(objects or {})}, {})
+def scope_of(
+    domain: Domain, objects: Mapping[str, tuple[str, ...]] | None = None, notes: list[str] | None = None
+) -> Scope:
+    """The scope outside of all quantifiers: the domain's constants and the given objects; `notes` as in `Scope`."""
+    return Scope(domain, {**domain.constants, **(objects or {})}, {}, notes)
+
+
+def repeated(listed: Sequence[Parameter], bound: Sequence[Parameter]) -> tuple[Atom, ...]:
+    """What says that a variable written twice in one list is one: (= ?x ?x~2).
+
+    Args:
+        listed: The variables as they were written.
+        bound: The same under the names that `Scope.with_variables` gave them.
+    """
+    last = {old.name: new.name for old, new in zip(listed, bound, strict=True)}
+    pairs = ((new.name, last[old.name]) for old, new in zip(listed, bound, strict=True))
+    return tuple(Atom("=", pair) for pair in pairs if pair[0] != pair[1])
 
 
 def parse_formula(node: Node, scope: Scope) -> Formula:
@@ -73,10 +87,12 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
             _count(group, head, 2, "a list of variables and a condition")
             listed = parameters(as_group(rest[0], "a list of variables such as (?x - body)").items, scope.domain.types)
             inner, bound = scope.with_variables(listed)
-            body = parse_formula(rest[1], inner)
-            return Exists(bound, body) if head.text == "exists" else Forall(bound, body)
+            body, same = parse_formula(rest[1], inner), repeated(listed, bound)
+            if head.text == "exists":
+                return Exists(bound, And((body, *same)) if same else body)
+            return Forall(bound, Or((body, *map(Not, same))) if same else body)
         case word if word in UNSUPPORTED:
-            raise error(head, f"'{head.written}' is not supported")
+            raise error(head, unsupported(word, head.written))
         case word if word in EFFECT_WORDS:
             raise error(head, f"'{head.written}' belongs into an effect, not into a condition")
         case _:
@@ -89,12 +105,17 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
     head = _head(group, "a predicate")
     name, domain = head.text, scope.domain
     if name == "=":
+        for item in group.items[1:]:
+            if isinstance(item, Group) or _is_number(item):
+                raise error(item, lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"))
         return _applied(group, Predicate("=", (Parameter("?a"), Parameter("?b"))), scope)
     if name in domain.predicates:
         return _applied(group, domain.predicates[name], scope)
     if name in domain.types:
         return _applied(group, Predicate(name, (Parameter("?x"),)), scope)
     if any(isinstance(item, Group) for item in group.items[1:]):
+        if name in COMPOUND:
+            raise error(head, unsupported(name, head.written))
         raise error(head, f"unknown connective '{head.written}'", found=name, choices=CONNECTIVES)
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
@@ -153,9 +174,26 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
         choices = (*scope.variables, *(fitting or scope.objects))
         message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
         raise error(symbol, message, found=symbol.written, choices=choices)
+    if scope.notes is not None and _more_general(scope.objects[name], types, scope.domain):
+        own = " and ".join(scope.objects[name])
+        what = f"'{name}' is only said to be {_article(own)}, where {_article(' or '.join(types))} is declared"
+        scope.notes.append(warning(symbol, what))
+        return name
     own = " and ".join(scope.objects[name])
     message = f"'{name}' is {_article(own)}, not {_article(' or '.join(types))}"
     raise error(symbol, message + ("" if fitting else "; there is none"), choices=fitting)
+
+
+def _more_general(own: Iterable[str], wanted: Iterable[str], domain: Domain) -> bool:
+    """Whether an object of these types may be one of the wanted ones that are below them."""
+    return any(domain.is_a(want, one) for want in wanted for one in own)
+
+
+def _is_number(node: Node) -> bool:
+    try:
+        return isinstance(node, Symbol) and isfinite(float(node.text))
+    except ValueError:
+        return False
 
 
 def _object(symbol: Symbol, scope: Scope) -> str | None:

@@ -26,6 +26,7 @@ def lint(
     if streams is not None:
         found += _unused_streams(domain, streams, asked, goal is not None)
         found += _uncertified(streams)
+        found += _unused_functions(domain, streams)
     if goal is not None:
         found += _unachievable(domain, streams, goal, initial)
     found.sort(key=lambda row: (row[0].file or "", row[0].line, row[0].column, row[1]))
@@ -71,6 +72,14 @@ def _unused_streams(
         if stream.place is not None and stream not in streams.rules:
             facts = " or ".join(dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified))
             yield stream.place, f"stream '{stream.name}' is never used: nothing asks for {facts}"
+
+
+def _unused_functions(domain: Domain, streams: StreamFile) -> Iterator[tuple[Place, str]]:
+    """Functions that no action's cost names."""
+    used = {action.cost.predicate for action in domain.actions if isinstance(action.cost, Atom)}
+    for function in streams.functions:
+        if function.name not in used and function.place is not None:
+            yield function.place, f"function '{function.name}' is the cost of no action"
 
 
 def _uncertified(streams: StreamFile) -> Iterator[tuple[Place, str]]:

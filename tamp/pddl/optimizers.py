@@ -1,4 +1,4 @@
-"""PDDLStream's `:optimizer`: read, left aside where ordinary streams give the same, refused where they do not."""
+"""PDDLStream's `:optimizer`: read and left aside; where ordinary streams do not give the same, that is said."""
 
 from __future__ import annotations
 
@@ -10,19 +10,26 @@ from tamp.pddl.sections import Section, keyword_values
 from tamp.pddl.structs import Domain, Parameter, Stream
 
 PARTS = (":variables", ":constraint", ":objective")
+REMEDY = (
+    "tamp draws values stream by stream: write each (:variables ...) as a :stream, :graph as :certified, "
+    "and each (:constraint ...) as a test stream"
+)
 KEYWORDS = (":inputs", ":domain", ":graph", ":necessary", ":fluents")
 
 
-def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain) -> list[str]:
-    """Read one optimizer; what it would give must be certified by streams too, then it is noted and left aside.
+def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain) -> tuple[list[str], list[str]]:
+    """Read one optimizer: notes of it, and of them those of facts that nothing else certifies.
+
+    Initial facts may stand for those, or no plan need them.
 
     Raises:
-        InputError: It is malformed, or nothing but the optimizer certifies one of its facts.
+        InputError: It is malformed.
     """
     if not section.items:
         raise error(section.group, "an optimizer has no name")
     name = as_name(section.items[0], "an optimizer's name")
     certified = {atom.predicate for stream in streams for atom in stream.certified}
+    alone: dict[str, str] = {}
     for node in section.items[1:]:
         group = as_group(node, f"a part of the optimizer, one of {', '.join(PARTS)}")
         keyword = as_symbol(group.items[0], "a part's keyword") if group.items else None
@@ -31,13 +38,11 @@ def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain)
             raise error(group, f"unknown part {show(group)} of optimizer '{name.text}'", found=found, choices=PARTS)
         for predicate, where in _promised(group, keyword.text, domain):
             if predicate not in certified:
-                raise error(
-                    where,
-                    f"optimizer '{name.text}' is not called, and no stream certifies ({predicate} ...)",
-                    remedy="tamp draws values stream by stream: write each (:variables ...) as a :stream, :graph as "
-                    ":certified, and each (:constraint ...) as a test stream",
-                )
-    return [warning(section.group, f"optimizer '{name.text}' is left aside: streams certify all that it would")]
+                what = f"optimizer '{name.text}' is not called, and no stream certifies ({predicate} ...)"
+                alone.setdefault(predicate, warning(where, f"{what}. {REMEDY}"))
+    if alone:
+        return [*alone.values()], [*alone.values()]
+    return [warning(section.group, f"optimizer '{name.text}' is left aside: streams certify all that it would")], []
 
 
 def _promised(group: Group, keyword: str, domain: Domain) -> list[tuple[str, Group]]:

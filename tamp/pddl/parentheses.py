@@ -16,6 +16,9 @@ from tamp.pddl.structs import Place
 MAX_TRIES = 50
 """Suspects that are examined before the first of them is named; bounds the time on long broken files."""
 
+MAX_LOOK = 20_000
+"""Tokens that are looked at to see whether a ')' would mend it; a section of a sane file has fewer."""
+
 
 @dataclass(frozen=True, slots=True)
 class Token:
@@ -107,6 +110,8 @@ def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> b
 
 def _mends(tokens: Sequence[Token], start: int, depth: int) -> bool:
     """Whether a ')' before token `start` makes all well up to the next section, or the end of the text."""
+    if len(tokens) - start > MAX_LOOK:
+        tokens = tokens[: start + MAX_LOOK]
     for index in range(start, len(tokens)):
         if tokens[index].text == "(":
             if _starts_define(tokens, index):

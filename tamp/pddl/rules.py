@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from tamp.pddl.formulas import parse_formula, scope_of
+from tamp.pddl.formulas import parse_formula, repeated, scope_of
 from tamp.pddl.nodes import Group, Node, as_group, as_symbol, error, show, warning
 from tamp.pddl.sections import Section, keyword_values
-from tamp.pddl.structs import Atom, Derived, Domain, Parameter, Predicate
+from tamp.pddl.structs import And, Atom, Derived, Domain, Parameter, Predicate
 from tamp.pddl.typed import parameters, typed_list
 
 AXIOM_KEYWORDS = (":parameters", ":context", ":implies")
@@ -38,7 +38,7 @@ def redefinition(section: Section, predicates: Mapping[str, Predicate]) -> Itera
         yield declared.name, (replace(declared, parameters=tuple(map(Parameter, listed))), f"{note} arguments")
 
 
-def parse_rule(section: Section, names: Domain) -> Derived:
+def parse_rule(section: Section, names: Domain, notes: list[str] | None = None) -> Derived:
     """Read one rule. A variable without a type in the head has the type that the predicate declares for it."""
     head, body = _parts(section)
     predicate = names.predicates[rule_head(section, names)]
@@ -54,9 +54,10 @@ def parse_rule(section: Section, names: Domain) -> Derived:
         parameter if parameter.name in typed else replace(parameter, types=outer.get(parameter.name, declared.types))
         for parameter, declared in zip(listed, predicate.parameters, strict=True)
     )
-    scope, bound = scope_of(names).with_variables(own)
+    scope, bound = scope_of(names, notes=notes).with_variables(own)
     atom = Atom(predicate.name, tuple(parameter.name for parameter in bound), head.place)
-    return Derived(atom, bound, parse_formula(body, scope), section.group.place)
+    formula, same = parse_formula(body, scope), repeated(own, bound)
+    return Derived(atom, bound, And((formula, *same)) if same else formula, section.group.place)
 
 
 def _parts(section: Section) -> tuple[Group, Node]:

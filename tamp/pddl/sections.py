@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from tamp.pddl.features import FEATURES, unsupported
 from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, show
 from tamp.pddl.sexpr import read_one
-
-UNSUPPORTED = (":durative-action", ":event", ":process", ":constraints", ":preference")
-"""Sections of PDDL's larger levels: time, processes, preferences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +57,8 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
     position = 0
     while position < len(nodes):
         keyword = as_symbol(nodes[position], f"a keyword of {owner}: {', '.join(known)}")
+        if keyword.text not in known and keyword.text in FEATURES:
+            raise error(keyword, unsupported(keyword.text, keyword.written))
         if keyword.text not in known:
             raise error(keyword, f"unknown keyword '{keyword.written}' of {owner}", found=keyword.text, choices=known)
         if keyword.text in values:
@@ -76,8 +76,8 @@ def _section(node: Node, kind: str, known: Sequence[str]) -> Section:
     if not group.items:
         raise error(group, f"expected a section of the {kind}, found '()'", choices=known)
     keyword = as_symbol(group.items[0], f"a section's keyword, one of {', '.join(known)}")
-    if keyword.text in UNSUPPORTED:
-        raise error(keyword, f"'{keyword.written}' is not supported")
+    if keyword.text not in known and keyword.text in FEATURES:
+        raise error(keyword, unsupported(keyword.text, keyword.written))
     if keyword.text not in known:
         message = f"unknown section '{keyword.written}' of the {kind}"
         raise error(keyword, message, found=keyword.text, choices=known)

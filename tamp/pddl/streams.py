@@ -23,7 +23,8 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
         text: The streams file's.
         domain: Whose predicates they speak of.
         file: Where the text is from, for errors.
-        waiting: Whether what actions change may stand in a stream's :domain, see `tamp.pddl.exogenous`.
+        waiting: Whether what actions change may stand in a stream's :domain, see `tamp.pddl.exogenous`, and in its
+            :certified, see `tamp.pddl.started`.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -33,7 +34,7 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
     streamed = [section for section in sections if section.keyword.text in (":stream", ":wild-stream")]
     streams = [_stream(section, domain, waiting) for section in streamed]
     rules = [_rule(number, section, domain, waiting) for number, section in enumerate(by_keyword[":rule"], start=1)]
-    notes = [note for s in by_keyword[":optimizer"] for note in check_optimizer(s, [*streams, *rules], domain)]
+    read = [check_optimizer(section, [*streams, *rules], domain) for section in by_keyword[":optimizer"]]
     result = StreamFile(
         name.text,
         tuple(streams),
@@ -41,7 +42,8 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
         None if file is None else str(file),
         tuple(_function(section, domain, parse_atom) for section in by_keyword[":predicate"]),
         tuple(rules),
-        tuple(notes),
+        tuple(note for notes, _ in read for note in notes),
+        tuple(note for _, alone in read for note in alone),
     )
     refuse_duplicates((as_symbol(section.items[0], "a name") for section in streamed), "stream")
     for keyword in (":function", ":predicate"):
@@ -87,7 +89,8 @@ def _stream(section: Section, domain: Domain, waiting: bool) -> Stream:
     inputs, outputs = (_variables(values.get(key), key) for key in (":inputs", ":outputs"))
     refuse_duplicates((*inputs, *outputs), f"variable of {owner}:")
     condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
-    certified = _atoms(values.get(":certified"), _scope(domain, [*inputs, *outputs]), domain, f":certified of {owner}")
+    scope, where = _scope(domain, [*inputs, *outputs]), f":certified of {owner}"
+    certified = _atoms(values.get(":certified"), scope, domain, where, waiting, derived=False)
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
@@ -109,7 +112,8 @@ def _rule(number: int, section: Section, domain: Domain, waiting: bool) -> Strea
     values = keyword_values(section.items, owner, (":inputs", ":domain", ":certified"))
     inputs = _variables(values.get(":inputs"), ":inputs")
     condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
-    certified = _atoms(values.get(":certified"), _scope(domain, inputs), domain, f":certified of {owner}")
+    where = f":certified of {owner}"
+    certified = _atoms(values.get(":certified"), _scope(domain, inputs), domain, where, waiting, derived=False)
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
@@ -150,12 +154,23 @@ def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], A
     return Function(term.predicate, term.terms, condition, section.group.place)
 
 
-def _atoms(node: Node | None, scope: Scope, domain: Domain, where: str, may_change: bool = False) -> tuple[Atom, ...]:
-    """The facts of a conjunction, none of which an action may change: streams speak of what holds for ever."""
+def _atoms(
+    node: Node | None,
+    scope: Scope,
+    domain: Domain,
+    where: str,
+    may_change: bool = False,
+    *,
+    derived: bool = True,
+) -> tuple[Atom, ...]:
+    """The facts of a conjunction, none of which an action may change: streams speak of what holds for ever.
+
+    With `may_change` an action may, and with `derived` too, a rule may make them.
+    """
     atoms = parse_conjunction(node, scope) if node is not None else ()
-    for atom in () if may_change else atoms:
+    for atom in () if may_change and derived else atoms:
         kind = "derived" if atom.predicate in domain.derived_predicates else ""
-        kind = "changed by actions" if atom.predicate in domain.fluent_predicates else kind
+        kind = "changed by actions" if atom.predicate in domain.fluent_predicates and not may_change else kind
         if kind and atom.place:
             remedy = "Streams speak of what never changes; a function sees the state through :fluents"
             raise error(atom.place, f"'{atom.predicate}' is {kind}, it cannot stand in {where}", remedy=remedy)

@@ -138,14 +138,15 @@ class Domain:
 
     def is_a(self, type_: str, ancestor: str) -> bool:
         """Whether `type_` is `ancestor` or below it."""
-        while type_ != ancestor:
-            if any(self.is_a(other, ancestor) for other in self.more_parents.get(type_, ())):
+        waiting, seen = [type_], {type_}
+        while waiting:
+            one = waiting.pop()
+            if one == ancestor:
                 return True
-            parent = self.types.get(type_, "object")
-            if parent == type_:
-                return False
-            type_ = parent
-        return True
+            above = {self.types.get(one, "object"), *self.more_parents.get(one, ())} - seen
+            seen |= above
+            waiting += above
+        return False
 
     def fits(self, types: tuple[str, ...], wanted: tuple[str, ...]) -> bool:
         """Whether an object of all these types may stand where one of the `wanted` types is asked for."""
@@ -199,6 +200,7 @@ class StreamFile:
         predicates: Static predicates that Python decides.
         rules: What follows from certified facts, as streams without outputs that always succeed.
         notes: Oddities that are no errors, each with its place.
+        uncalled: What only an optimizer would certify, which is never called, each with its place.
     """
 
     name: str
@@ -208,6 +210,7 @@ class StreamFile:
     predicates: tuple[Function, ...] = ()
     rules: tuple[Stream, ...] = ()
     notes: tuple[str, ...] = ()
+    uncalled: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

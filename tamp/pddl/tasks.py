@@ -8,8 +8,9 @@ from pathlib import Path
 
 from tamp.pddl.declarations import check_requirements, parse_objects
 from tamp.pddl.effects import TOTAL_COST, parse_number
+from tamp.pddl.features import FEATURES, lacking, unsupported
 from tamp.pddl.formulas import Scope, parse_atom, parse_formula, parse_function_term, scope_of
-from tamp.pddl.nodes import Group, Node, as_group, as_name, as_symbol, error, show, warning
+from tamp.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, show, warning
 from tamp.pddl.sections import Section, items_of, read_sections, single
 from tamp.pddl.sexpr import read, read_one
 from tamp.pddl.structs import Domain, Fact, Formula, Task
@@ -68,20 +69,26 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
         InputError: With file, line and column of what is wrong.
     """
     name, sections = read_sections(text, "problem", SECTIONS, file)
-    check_requirements(items_of(sections, ":requirements"))
-    notes = _check_domain(single(sections, ":domain"), domain)
-    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", domain.constants)
-    scope = scope_of(domain, objects)
+    notes = [*check_requirements(items_of(sections, ":requirements"))]
+    notes += _check_domain(single(sections, ":domain"), domain)
+    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants)
+    scope = scope_of(domain, objects, notes)
     facts: set[Fact] = set()
+    denied: dict[Fact, Node] = {}
     costs: dict[Fact, float] = {}
     for node in items_of(sections, ":init"):
         if isinstance(node, Group) and node.head == "=":
             term, value = _cost(node, scope)
-            costs[term] = value
+            if costs.setdefault(term, value) != value:
+                shown = " ".join(term)
+                raise error(node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}")
         elif isinstance(node, Group) and node.head == "not":
-            _negative(node, scope)
+            denied[_negative(node, scope)] = node
         else:
             facts.add(_fact(node, scope))
+    for fact, node in denied.items():
+        if fact in facts:
+            raise error(node, f"({' '.join(fact)}) is said and denied at the start")
     goal = single(sections, ":goal")
     if goal is None or len(goal.items) != 1:
         raise error(goal.group if goal else name, "a problem has one (:goal CONDITION)")
@@ -90,15 +97,17 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     if metric is None and any(action.cost != 1.0 for action in domain.actions):
         domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
-        notes = (*notes, warning(name, what))
+        notes.append(warning(name, what))
     formula = parse_formula(goal.items[0], scope)
-    return Task(name.text, domain, scope.objects, frozenset(facts), formula, costs, notes)
+    return Task(name.text, domain, scope.objects, frozenset(facts), formula, costs, tuple(notes))
 
 
 def _fact(node: Node, scope: Scope) -> Fact:
     group = as_group(node, "a fact such as (on mug table)")
     if group.head in ("and", "or", "not", "exists", "forall", "imply", "="):
         raise error(group, f"expected a fact such as (on mug table), found {show(group)}")
+    if group.head == "at" and len(group.items) == 3 and isinstance(group.items[2], Group):
+        raise error(group, lacking("(at TIME FACT)", "timed initial literals"))
     atom = parse_atom(group, scope)
     if atom.predicate not in scope.domain.predicates:
         raise error(group, f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact")
@@ -113,17 +122,19 @@ def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
         raise error(node, "expected (= (FUNCTION object ...) NUMBER)")
     term = parse_function_term(node.items[1], scope)
     number = as_symbol(node.items[2], "a number")
+    if number.text in scope.objects:
+        raise error(number, lacking(f"(= ... {number.written})", "object fluents"))
     value = parse_number(number)
     if value < 0:
         raise error(number, f"a cost cannot be negative, found {number.written}")
     return (term.predicate, *term.terms), value
 
 
-def _negative(node: Group, scope: Scope) -> None:
-    """`(not FACT)` in :init says what is so anyhow; its names are checked."""
+def _negative(node: Group, scope: Scope) -> Fact:
+    """`(not FACT)` in :init says what is so anyhow: the fact."""
     if len(node.items) != 2:
         raise error(node, "'not' takes one fact")
-    _fact(node.items[1], scope)
+    return _fact(node.items[1], scope)
 
 
 def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
@@ -143,9 +154,19 @@ def _check_metric(section: Section | None) -> None:
     if section is None:
         return
     direction, *rest = section.items or (section.group,)
+    if isinstance(direction, Symbol) and direction.text == "maximize":
+        raise error(direction, lacking("maximize", "metrics to maximize"))
     if not (as_symbol(direction, "'minimize'").text == "minimize" and len(rest) == 1):
         raise error(direction, "expected (:metric minimize (total-cost))")
     target = rest[0]
     name = target.head if isinstance(target, Group) and len(target.items) == 1 else None
-    if (name or as_symbol(target, "(total-cost)").text) != TOTAL_COST:
-        raise error(target, f"the metric is (total-cost), found {show(target)}")
+    used = {word for word in _words(target) if word in FEATURES}
+    if used:
+        raise error(target, unsupported(min(used)))
+    if (name or (target.text if isinstance(target, Symbol) else "")) != TOTAL_COST:
+        what = f"the metric is (total-cost), found {show(target)}: tamp has no numeric fluents"
+        raise error(target, what)
+
+
+def _words(node: Node) -> set[str]:
+    return {node.text} if isinstance(node, Symbol) else {word for item in node.items for word in _words(item)}

@@ -1,9 +1,13 @@
-"""Typed lists: `?a ?b - body ?c - (either pose grasp)`."""
+"""Typed lists: `?a ?b - body ?c - (either pose grasp)`.
+
+As Fast Downward reads them: no names before a type are an empty list, and where names are mere placeholders, in
+declarations, one may stand twice.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from tamp.pddl.nodes import Node, Symbol, as_symbol, as_variable, error, show
 from tamp.pddl.structs import Parameter
@@ -28,8 +32,6 @@ def typed_list(nodes: Sequence[Node], what: str) -> list[Typed]:
         if symbol.text != "-":
             waiting.append(symbol)
             continue
-        if not waiting:
-            raise error(symbol, f"expected {what} before '-'")
         if position == len(nodes):
             raise error(symbol, "expected a type after '-', found the end of the list")
         types = _types(nodes[position])
@@ -40,12 +42,30 @@ def typed_list(nodes: Sequence[Node], what: str) -> list[Typed]:
 
 
 def parameters(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Parameter, ...]:
-    """Read a typed list of variables; every type is known, no variable stands twice."""
+    """Read a typed list of variables, every type known; a variable may stand twice."""
     entries = typed_list(nodes, "a variable such as ?x")
     for entry in entries:
         as_variable(entry.name)
-    refuse_duplicates((entry.name for entry in entries), "parameter")
     return tuple(Parameter(entry.name.text, known_types(entry.types, types) or ("object",)) for entry in entries)
+
+
+def placeholders(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Parameter, ...]:
+    """Read the parameters of a declaration, whose names mean nothing: one that stands twice is two parameters."""
+    return distinct(parameters(nodes, types))
+
+
+def distinct(listed: Sequence[Parameter], taken: Collection[str] = ()) -> tuple[Parameter, ...]:
+    """The parameters with a number behind each name that is taken or has stood before: ?x ?x~2 ?x~3."""
+    used, numbers = set(taken), dict[str, int]()
+    result: list[Parameter] = []
+    for parameter in listed:
+        name = parameter.name
+        while name in used:
+            numbers[parameter.name] = numbers.get(parameter.name, 1) + 1
+            name = f"{parameter.name}~{numbers[parameter.name]}"
+        used.add(name)
+        result.append(replace(parameter, name=name))
+    return tuple(result)
 
 
 def known_types(written: Iterable[Symbol], types: Mapping[str, str]) -> tuple[str, ...]:

@@ -14,13 +14,16 @@ from tamp.algorithms.stream import BoundStream
 from tamp.errors import InputError, closest
 from tamp.pddl.complement import complement_name, negated_tests, with_complements
 from tamp.pddl.exogenous import without_waiting
+from tamp.pddl.files import read_pddl
 from tamp.pddl.formulas import RESERVED
 from tamp.pddl.lint import lint
 from tamp.pddl.nodes import Group, Node, Symbol, warning
 from tamp.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
 from tamp.pddl.sexpr import read
+from tamp.pddl.started import without_started
 from tamp.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
 from tamp.pddlstream.adapters import stream_function
+from tamp.pddlstream.checks import check_parts
 from tamp.pddlstream.facts import Names, goal_formula, initial_facts, initial_functions
 from tamp.rejection import Rejection
 from tamp.wild import Wild
@@ -46,12 +49,29 @@ class PDDLProblem(NamedTuple):
     goal: Any
 
 
-def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask, tuple[str, ...]]:
-    """The task with its streams, and warnings.
+class Bound(NamedTuple):
+    """A problem as a task.
+
+    Attributes:
+        task: With its streams.
+        warnings: What looks odd.
+        uncalled: What only an optimizer would certify, which is never called: no plan is no proof then.
+        names: Predicates of the task to those that the user wrote, where they differ.
+    """
+
+    task: StreamTask
+    warnings: tuple[str, ...]
+    uncalled: tuple[str, ...]
+    names: Mapping[str, str]
+
+
+def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
+    """The task with its streams, and what there is to say of it.
 
     Raises:
         InputError: Anything wrong with the texts, the map or the facts.
     """
+    check_parts(problem)
     domain_text, domain_file = _text(problem.domain_pddl)
     listed = problem.stream_pddl
     sources = [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
@@ -61,7 +81,8 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
             undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     computed = _used(initial_functions(problem.init), domain_text)
-    domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed))
+    declared = {name: one for text, file in sources for name, one in stream_functions(read(text, file))}
+    domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed, declared))
     files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
     streams = _joined(files)
     constants, spare = _constants(problem.constant_map, domain)
@@ -71,7 +92,8 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     warnings = [*_undeclared(sources, domain), *streams.notes, *lint(domain, streams, goal, facts)]
     used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
     warnings += [*unused, *spare, *_check_map(functions, [one for group in used.values() for one in group])]
-    waiting = without_waiting(domain, streams, goal, facts)
+    started = without_started(domain, streams, goal)
+    waiting = without_waiting(started.domain, started.streams, started.goal, facts)
     domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
@@ -86,7 +108,8 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> tuple[StreamTask,
     objects = {name: types.get(name, ("object",)) for name in names.values if name not in domain.constants}
     task = Task(domain.name, rewritten, objects, facts, goal, costs)
     computed = tuple(BoundFunction(function, functions[function.name]) for function in streams.functions)
-    return StreamTask(task, tuple(bound), names.values, computed, by_value=True), tuple(warnings)
+    stream_task = StreamTask(task, tuple(bound), names.values, computed, by_value=True)
+    return Bound(stream_task, tuple(warnings), streams.uncalled, started.names)
 
 
 def _bound(stream: Stream, domain: Domain, function: Any) -> BoundStream:
@@ -141,6 +164,7 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
         tuple(one for file in files for one in file.predicates),
         tuple(one for file in files for one in file.rules),
         tuple(one for file in files for one in file.notes),
+        tuple(one for file in files for one in file.uncalled),
     )
 
 
@@ -186,12 +210,7 @@ def _constants(given: Mapping[str, Any], domain: Domain) -> tuple[dict[str, Any]
 
 
 def _text(source: str | Path) -> tuple[str, Path | None]:
-    if isinstance(source, str):
-        return source, None
-    try:
-        return source.read_text(encoding="utf-8"), source
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read it: {error}", file=source) from None
+    return (source, None) if isinstance(source, str) else (read_pddl(source), source)
 
 
 def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
@@ -214,6 +233,20 @@ def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
             yield from _heads(node.items[1:])
         elif head is not None and head[0] not in "?:" and head not in RESERVED:
             yield head, len(node.items) - 1, node
+
+
+def stream_functions(nodes: Sequence[Node]) -> Iterator[tuple[str, Predicate]]:
+    """The functions that a streams file computes, with as many arguments as it says."""
+    for node in nodes:
+        if not isinstance(node, Group):
+            continue
+        if node.head == "define":
+            yield from stream_functions(node.items[2:])
+        elif node.head == ":function" and len(node.items) > 1 and isinstance(node.items[1], Group):
+            head = node.items[1]
+            if head.head is not None:
+                parameters = tuple(Parameter(f"?x{i}") for i in range(len(head.items) - 1))
+                yield head.head, Predicate(head.head, parameters)
 
 
 def _lists(before: Node | None) -> bool:

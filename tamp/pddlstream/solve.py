@@ -90,7 +90,11 @@ def solve(
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
-    task, warnings = bind(PDDLProblem(*cast(tuple[Any, ...], problem)), unit_costs=unit_costs)
+    parts = cast(tuple[Any, ...], problem)
+    if not isinstance(cast(Any, problem), tuple | list) or len(parts) != len(PDDLProblem._fields):
+        what = f"a problem is a tuple of {len(PDDLProblem._fields)} parts: {', '.join(PDDLProblem._fields)}"
+        raise InputError(what, remedy="See PDDLProblem")
+    task, warnings, uncalled, names = bind(PDDLProblem(*parts), unit_costs=unit_costs)
     deadline = Deadline(max_time)
     alarm = Alarm(deadline)
     try:
@@ -104,13 +108,17 @@ def solve(
         alarm.disarm()
     values = result.objects.values
     solved = result.outcome is Outcome.SOLVED
+    outcome, explanation = result.outcome, result.explanation
+    if uncalled and not solved:  # an optimizer might have given what is missing
+        outcome = Outcome.EXHAUSTED if outcome is Outcome.INFEASIBLE else outcome
+        explanation = (*explanation, *uncalled)
     plan = [Action(action.name, tuple(values[word] for word in action.arguments)) for action in result.actions]
     return Solution(
-        result.outcome,
+        outcome,
         plan if solved else None,
         sum(action.cost for action in result.actions) if solved else float("inf"),
-        tuple((fact[0], *(values[word] for word in fact[1:])) for fact in result.certified),
-        result.explanation,
+        tuple((names.get(fact[0], fact[0]), *(values[word] for word in fact[1:])) for fact in result.certified),
+        explanation,
         (*warnings, *result.warnings),
         result.statistics,
         result.effort,

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.data import find_domain
-from tamp.errors import InputError
+from tamp.pddl.files import read_pddl
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import parse_domain, parse_task
 from tamp.pddl.structs import Task
-
-MAX_BYTES = 50_000_000
-"""The largest PDDL file that is read."""
 
 
 @dataclass(frozen=True)
@@ -53,21 +50,3 @@ def load_symbolic(domain: str | Path, problem: str | Path) -> SymbolicProblem:
     return SymbolicProblem(
         task, domain_file.resolve(), problem_file.resolve(), (*task.notes, *lint(parsed, None, task.goal, task.initial))
     )  # fmt: skip
-
-
-def read_pddl(path: Path) -> str:
-    """The text of a PDDL file.
-
-    Raises:
-        InputError: It cannot be read, is no text, or is far too large.
-    """
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"no PDDL file is {size / 1e6:.1f} MB large", file=path)
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise InputError("no such file", file=path) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise InputError(f"cannot read it: {reason}", file=path) from error

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
+from tamp.pddl.files import read_pddl
 from tamp.pddl.parser import parse_domain, parse_task
 from tamp.pddl.structs import Action, Atom, Fact, Task
 from tamp.reading import is_file, read_json
@@ -55,8 +56,8 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
         if sha256(files[role]) != source["sha256"].text():
             violations.append(Violation("hash", f"the {role} {files[role]} is not the one that the plan was made from"))
     with unquoted(file, hashes):
-        parsed = parse_domain(files["domain"].read_text(encoding="utf-8"), files["domain"])
-        task = parse_task(files["problem"].read_text(encoding="utf-8"), parsed, files["problem"])
+        parsed = parse_domain(read_pddl(files["domain"]), files["domain"])
+        task = parse_task(read_pddl(files["problem"]), parsed, files["problem"])
     actions = root["actions"].items()
     violations += _run(task, actions, root["cost"].number())
     return Report(

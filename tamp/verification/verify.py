@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
+from tamp.pddl.files import read_pddl
 from tamp.pddl.parser import parse_domain, parse_facts, parse_goal
 from tamp.pddl.structs import Domain, Fact
 from tamp.simulation.physics import World
@@ -51,7 +52,7 @@ def verify(
     )
     with unquoted(read.file, named):
         loaded = load_scene(problem_file)
-        parsed = parse_domain(domain_file.read_text(encoding="utf-8"), domain_file)
+        parsed = parse_domain(read_pddl(domain_file), domain_file)
     objects = _objects(read, parsed)
     given = _given(loaded, parsed, objects)
     goal = parse_goal(

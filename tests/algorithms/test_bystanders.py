@@ -53,7 +53,7 @@ class World:
         for peg, place in self.at.items():
             init += [("Peg", peg), ("Spot", peg, place), ("At", peg, place), ("In", place, place[0])]
         functions = {"spot": from_gen_fn(self.spot), "free": from_test(lambda b, p, o, q: p != q)}
-        task, _ = bind(PDDLProblem(DOMAIN, {}, STREAMS, functions, init, goal))
+        task = bind(PDDLProblem(DOMAIN, {}, STREAMS, functions, init, goal)).task
         run = Adaptive(task, random_streams(0), Deadline(20.0), lambda effort: None)
         return run, run.solve().outcome
 

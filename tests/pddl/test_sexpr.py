@@ -11,7 +11,8 @@ from tamp.pddl.structs import Place
 
 Nested = str | list["Nested"]
 
-words = st.text(st.characters(codec="utf-8", exclude_characters="();", exclude_categories=["Z", "C"]), min_size=1)
+letters = st.characters(codec="utf-8", exclude_characters="();?", exclude_categories=["Z", "C"])
+words = st.builds("{}{}".format, st.sampled_from(["", "?"]), st.text(letters, min_size=1))
 trees = st.recursive(words, lambda inner: st.lists(inner, max_size=4), max_leaves=30)
 blanks = st.sampled_from([" ", "\n", "\t", "\r\n", " ; a (comment\n", "\n\n  "])
 

@@ -107,7 +107,7 @@ def test_problem(domain: Domain) -> None:
     [
         ("(:objects", "(@@:object", "unknown section ':object'"),
         ("mug - movable", "@@depot - body mug - movable", "'depot' is already a constant"),
-        ("mug - movable", "mug @@mug - movable", "object 'mug' stands twice"),
+        ("mug - movable", "mug - movable @@mug - surface", "object 'mug' stands twice"),
         ("mug - movable", "mug - @@movabel", "unknown type 'movabel'"),
         ("(at-base b1) (", "(at-base @@b3) (", "unknown object 'b3'. Choices: b1, b2"),
         ("(= (distance b1 b2) 3)", "(= (@@distanc b1 b2) 3)", "unknown function 'distanc'"),
@@ -116,8 +116,10 @@ def test_problem(domain: Domain) -> None:
         ("(= (distance b1 b2) 3)", "@@(= (distance b1 b2))", "expected (= (FUNCTION"),
         ("(not (at-base b2))", "(not @@at-base)", "expected a fact"),
         ("(:goal (and", "@@(:goal) (:metric (and", "a problem has one (:goal CONDITION)"),
-        ("minimize", "@@maximize", "expected (:metric minimize (total-cost))"),
-        ("minimize (total-cost)", "minimize @@(total-time)", "the metric is (total-cost)"),
+        ("minimize", "@@maximize", "'maximize' is not supported"),
+        ("minimize", "@@minimise", "expected (:metric minimize (total-cost))"),
+        ("minimize (total-cost)", "minimize @@(total-time)", "tamp has no durations"),
+        ("minimize (total-cost)", "minimize @@(fuel-used)", "the metric is (total-cost)"),
     ],
 )
 def test_wrong_problem(old: str, new: str, message: str, domain: Domain, changed: Changed, raises_at: RaisesAt) -> None:
