@@ -8,6 +8,7 @@ import io
 import shlex
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -21,6 +22,7 @@ from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
     from tamp.execution.report import Execution
+    from tamp.observed import Classifier
     from tamp.solution import Solution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
@@ -113,7 +115,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         seed=arguments.seed,
         algorithm=arguments.algorithm,
         progress=shown.update,
-        accept=(lambda plan: _judge(plan_text(plan)).holds) if arguments.verify else None,
+        accept=(lambda plan: _judge(plan_text(plan), problem.classifiers).holds) if arguments.verify else None,
         improved=improved if arguments.optimize else None,
         record=arguments.record or wishes.page,
     )
@@ -126,7 +128,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
         because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
         shown.clear()
-    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
+    verdict = _judge(plan_text(solution), problem.classifiers) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None
     executed = _execute(written, arguments) if written is not None and arguments.execute else None
@@ -210,13 +212,13 @@ def _left(seconds: float, started: float) -> float:
     return max(seconds - (time.monotonic() - started), 0.5 * seconds)
 
 
-def _judge(text: str) -> Report:
-    """What the independent judge says about the plan file that would be written."""
+def _judge(text: str, classifiers: Mapping[str, Classifier] | None = None) -> Report:
+    """What the independent judge says about the plan file that would be written, asking the user's classifiers."""
     import json
 
     from tamp.verification.verify import verify
 
-    return verify(json.loads(text))
+    return verify(json.loads(text), classifiers=classifiers or {})
 
 
 if __name__ == "__main__":
