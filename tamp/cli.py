@@ -162,7 +162,7 @@ def _execute(plan: Path, arguments: Arguments) -> Execution:
     """The plan that was just written, carried out in physics."""
     from tamp.execution.command import Options, carry_out
 
-    return carry_out(plan, Options(grasp=arguments.grasp, seed=arguments.seed), registry())
+    return carry_out(plan, Options(grasp=arguments.grasp, seed=arguments.seed, sampler=arguments.sampler), registry())
 
 
 def _solve_symbolic(arguments: Arguments, started: float) -> int:

@@ -12,6 +12,7 @@ from tamp.execution.disturbance import DISTURBANCES
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.goal import classifiers_of
 from tamp.execution.grasps import GRASPS
+from tamp.execution.relations import named_classifiers
 from tamp.execution.replan import Replanner, is_given
 from tamp.execution.report import Execution
 from tamp.stored import Stored, open_plan
@@ -71,6 +72,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         disturbance=options.disturb,
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
+        own=named_classifiers(stored, names, objects, registry),
     )
     return execute(stored, circumstances)
 

@@ -189,10 +189,15 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
         positions |= {(one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types}
     if sample is not None:
         atoms = [(atom.predicate, at, term) for atom in sample.certified for at, term in enumerate(atom.terms)]
-        positions |= {(predicate, at) for predicate, at, term in atoms if term in sample.outputs}
+        positions |= {(one, at) for one, at, term in atoms if term in sample.outputs and _may_be_pose(domain, one, at)}
     atoms = [(atom.predicate, at, term) for atom in (*stream.domain, *stream.certified)
              for at, term in enumerate(atom.terms)]  # fmt: skip
     return {term for predicate, at, term in atoms if (predicate, at) in positions}
+
+
+def _may_be_pose(domain: Domain, predicate: str, at: int) -> bool:
+    declared = domain.predicates.get(predicate)
+    return declared is not None and any(one in ("object", POSE) for one in declared.parameters[at].types)
 
 
 def _wanted(
