@@ -62,7 +62,8 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
             that it needs for planning anew is not to be had.
     """
     check(options)
-    names, objects = given_by_files(sampler_choices(options.sampler))
+    chosen = sampler_choices(options.sampler)
+    names, objects = given_by_files(chosen)
     stored = open_plan(file, options.problem)
     if options.replan:
         _check_samplers(stored, names)
@@ -72,7 +73,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         disturbance=options.disturb,
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
-        own=named_classifiers(stored, names, objects, registry),
+        own=named_classifiers(stored, names, objects, registry, chosen),
     )
     return execute(stored, circumstances)
 

@@ -99,11 +99,22 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
 
 
 def named_classifiers(
-    stored: Stored, names: Mapping[str, str], objects: Mapping[str, Grounding], registry: Registry
+    stored: Stored,
+    names: Mapping[str, str],
+    objects: Mapping[str, Grounding],
+    registry: Registry,
+    files: Mapping[str, str],
 ) -> dict[str, tuple[str, Classifier]]:
     """The classifiers of the user's own relations: of files that the plan or the command line names, and of objects.
 
     What the plan names and is not there any more is left out; what the command line names must be there.
+
+    Args:
+        stored: The plan.
+        names: Samplers that the command line names, over the plan's.
+        objects: Those in Python.
+        registry: The learned ones.
+        files: By relation, the files that the objects are of.
 
     Raises:
         InputError: A sampler on the command line that there is not.
@@ -124,7 +135,7 @@ def named_classifiers(
             found[relation] = Path(choice.name).name, made
     for relation, item in objects.items():
         if relation not in SAMPLERS and isinstance(item, Classifier):
-            found[relation] = type(item).__name__, item
+            found[relation] = Path(files.get(relation, type(item).__name__)).name, item
     return found
 
 
