@@ -97,7 +97,7 @@ def verify(
         decided = {name for relation, _ in asked.values() for name in relation.predicates}
         stated = certified.known | decided | certifiable(parsed, declared)
         violations += check_initial(read, loaded.scene, parsed, given, stated)
-        static = [fact for fact in read.initial if fact[0] in certified.known and fact not in given]
+        static = [fact for fact in read.initial if fact[0] in stated and fact not in given]
         violations += certified.check([*read.certified, *static], trusted)
         for body in loaded.scene.bodies.values():
             world.place(body.name, body.pose.matrix)
