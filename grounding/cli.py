@@ -9,6 +9,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
+from grounding.certainty import cannot_tell
 from grounding.dataset import FORMAT as DATA
 from grounding.dataset import Dataset, read_dataset, write_dataset
 from grounding.mesh_folder import MeshFolder, read_folder
@@ -139,6 +140,10 @@ def _train(chosen: Train) -> None:
     _show("", last=True)
     write_weights(out, weights)
     out.with_suffix(".state").unlink(missing_ok=True)
+    why = cannot_tell(weights.card)
+    if why is not None:
+        text = f"it only proposes, and cannot tell yet where '{chosen.relation}' holds: {why}"
+        print(f"warning: {text}", file=sys.stderr)
     print(f"{out} written. Judge it: tamp-learn evaluate {out}")
 
 

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
+from grounding.certainty import cannot_tell
 from grounding.model import Model
-from grounding.runtime import Grounding
+from grounding.runtime import Grounding, Proposer
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 from tamp.streams.choice import ANY
@@ -126,12 +127,14 @@ def shipped_model(relation: str, name: str) -> Model:
     return load_model(path, model)
 
 
-def load_grounding(path: Path, model: str | None = None) -> Grounding:
-    """`load_model` for the planner."""
-    return _grounding(load_model(path, model))
+def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer:
+    """`load_model` for the planner; without a classifier where the card says that it cannot tell yet."""
+    grounding = _grounding(load_model(path, model))
+    why = cannot_tell(read_weights(path).card)
+    return grounding if why is None else Proposer(grounding, why)
 
 
-def file_grounding(relation: str, path: Path) -> Grounding:
+def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
     """`load_grounding` of a file that must be about this relation.
 
     Raises:

@@ -32,3 +32,19 @@ class Grounding:
         """The probability that the relation holds where the body is."""
         situation = situation_of(scene, arguments)
         return float(np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0))
+
+
+class Proposer:
+    """A grounding that proposes and has no classifier yet.
+
+    Args:
+        grounding: What proposes.
+        cannot_tell: Why it does not judge.
+    """
+
+    def __init__(self, grounding: Grounding, cannot_tell: str) -> None:
+        self._grounding, self.cannot_tell = grounding, cannot_tell
+
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+        """As the grounding's."""
+        return self._grounding.propose(scene, arguments, count, rng)

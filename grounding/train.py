@@ -8,13 +8,16 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from grounding.certainty import MANY, REASON, Labels, chance, no_better_than_chance, too_few
 from grounding.dataset import Dataset, Example
-from grounding.registry import BORROWED, UNTRAINED
+from grounding.registry import BORROWED, MODELS, UNTRAINED
 from grounding.relational.chart import Chart
 from grounding.relational.measures import Measures, View
 from grounding.relational.model import relational_weights
 from grounding.relational.proposals import Transfer
+from grounding.relational.ranker import Ranker
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
@@ -29,6 +32,9 @@ OPTIONS: Mapping[str, tuple[str, ...]] = {
     "encoder": ("mlp-pc", "gnn-pc", "tree-pc"),
 }
 """Fields of TrainArgs that only some models have."""
+
+SHOWN = 500
+"""Labels that one of the paper's classifiers is asked of again."""
 
 ITERATIONS = 30_000
 """Of the paper's networks: of the classifier, and then of the generator."""
@@ -152,9 +158,32 @@ def train_relational(
         "data": {name: data.card[name] for name in ("split", "seed", "count") if name in data.card},
         "validation accuracy": score,
         "ranks": ranks,
-        "classifies": ranks,
+        **_certainty(measured, holds, usable, ranks, score, args.seed),
     }
     return relational_weights(chart, proposals, rank, card)
+
+
+def _certainty(
+    measured: list[Measures], holds: Labels, usable: Labels, ranks: bool, score: float | None, seed: int
+) -> dict[str, object]:
+    """Whether the ranker may judge, for the card, and else why not."""
+    why = too_few(holds)
+    if why is None and ranks:
+        from grounding.relational.training import Args, train_ranker
+
+        seen = [one for one, good in zip(measured, usable, strict=True) if good]
+        labels = holds[usable]
+
+        def fit(train_rows: NDArray[np.intp], test_rows: NDArray[np.intp]) -> Labels:
+            rank, _ = train_ranker([seen[row] for row in train_rows], labels[train_rows], Args(seed=seed))
+            ranker = Ranker(rank)
+            return np.array([float(ranker.logits(seen[row])[0]) > 0.0 for row in test_rows], dtype=bool)
+
+        if len(labels) < MANY:
+            why = no_better_than_chance(labels, fit)
+        elif score is not None and score <= max(labels.mean(), 1 - labels.mean()):
+            why = f"on labels that it was not shown it is right about {100 * score:.0f} %, as saying the same always is"
+    return {"classifies": ranks and why is None, **({REASON: why} if why else {})}
 
 
 def measure(example: Example) -> Measures:
@@ -178,7 +207,7 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
         progress=progress,
         iterations=args.iterations or ITERATIONS,
     )
-    return _signed(weights, args)
+    return _signed(_checked(weights, data, args), args)
 
 
 def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
@@ -188,7 +217,20 @@ def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> 
     weights = tree_training.train_tree(
         data, model, samples=args.samples or len(data), seed=args.seed, encoder=_encoder(args), progress=progress
     )
-    return _signed(weights, args)
+    return _signed(_checked(weights, data, args), args)
+
+
+def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
+    """The weights with what their card says of their classifier; it is asked of the labels that it was shown."""
+    count = args.samples or len(data)
+    why = too_few(data.holds[:count])
+    if why is None and weights.card.get("classifies", True):
+        model = MODELS[str(weights.card["model"])](weights)
+        examples = [data[index] for index in range(min(count, SHOWN))]
+        bodies = [(one.situation, one.situation.body.matrix[None]) for one in examples]
+        said = np.array([float(model.classify(*body)[0]) > 0.5 for body in bodies], dtype=bool)
+        why = chance(data.holds[: len(said)], said)
+    return Weights(weights.arrays, {**weights.card, "classifies": False, REASON: why}) if why else weights
 
 
 def _encoder(args: TrainArgs) -> Weights | None:

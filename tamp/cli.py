@@ -7,6 +7,7 @@ import importlib.util
 import shlex
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -21,6 +22,7 @@ from tamp.terminal import spoken
 
 if TYPE_CHECKING:
     from tamp.execution.report import Execution
+    from tamp.observed import Classifier
     from tamp.solution import Solution
     from tamp.streams.choice import Registry
     from tamp.verification.report import Report
@@ -117,12 +119,12 @@ def _solve(arguments: Arguments, started: float) -> int:
         seed=arguments.seed,
         algorithm=arguments.algorithm,
         progress=shown.update,
-        accept=(lambda plan: _judge(plan_text(plan)).holds) if arguments.verify else None,
+        accept=(lambda plan: _judge(plan_text(plan), problem.classifiers).holds) if arguments.verify else None,
         improved=improved if arguments.optimize else None,
         record=arguments.record or wishes.page,
     )
     shown.clear()
-    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
+    verdict = _judge(plan_text(solution), problem.classifiers) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None  # first of all: what fails later loses no plan
     later = None
@@ -170,7 +172,7 @@ def _execute(plan: Path, arguments: Arguments) -> Execution:
     """The plan that was just written, carried out in physics."""
     from tamp.execution.command import Options, carry_out
 
-    return carry_out(plan, Options(grasp=arguments.grasp, seed=arguments.seed), registry())
+    return carry_out(plan, Options(grasp=arguments.grasp, seed=arguments.seed, sampler=arguments.sampler), registry())
 
 
 def _solve_symbolic(arguments: Arguments, started: float) -> int:
@@ -223,13 +225,13 @@ def _left(seconds: float, started: float) -> float:
     return max(seconds - (time.monotonic() - started), 0.5 * seconds)
 
 
-def _judge(text: str) -> Report:
-    """What the independent judge says about the plan file that would be written."""
+def _judge(text: str, classifiers: Mapping[str, Classifier] | None = None) -> Report:
+    """What the independent judge says about the plan file that would be written, asking the user's classifiers."""
     import json
 
     from tamp.verification.verify import verify
 
-    return verify(json.loads(text))
+    return verify(json.loads(text), classifiers=classifiers or {})
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,23 +14,23 @@ from tamp.algorithms.stream import BoundStream
 from tamp.data import find_domain
 from tamp.errors import InputError
 from tamp.initial import initial_state
+from tamp.observed import Classifier
+from tamp.own_relations import decided
 from tamp.pddl.files import read_pddl
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import StreamFile, Task
 from tamp.search.loops.tiers import load as load_compiled_loops
-from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, maker, mix, parse_choice
+from tamp.served import Served, line_of
+from tamp.streams.choice import Grounding, Registry, mix
 from tamp.streams.context import Context
-from tamp.streams.groundings import sample_relation, test_relation
 from tamp.streams.missing import without_function
-from tamp.streams.registry import SAMPLERS, STREAMS
-from tamp.streams.relations import Classifier, Generator
+from tamp.streams.registry import STREAMS
 from tamp.streams.values import Grasp
 from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.overlaps import check_overlaps
 from tamp.world.robot import ROBOTS
 from tamp.world.scene import Scene
-from tamp.world.yaml_nodes import read_yaml
 
 load_compiled_loops()
 
@@ -54,6 +54,8 @@ class Problem:
         files: Input files by role: "problem", "domain", "streams", and "mesh" ones.
         samplers: Which sampler serves which relation.
         warnings: What was repaired or looks odd.
+        classifiers: By relation of the user's own, what says whether it holds.
+        complements: Predicates of the task that the user's files do not have.
     """
 
     name: str
@@ -64,6 +66,8 @@ class Problem:
     files: Mapping[str, tuple[Path, ...]]
     samplers: Mapping[str, str]
     warnings: tuple[str, ...]
+    classifiers: Mapping[str, Classifier] = field(default_factory=dict[str, Classifier])
+    complements: frozenset[str] = frozenset()
 
 
 def load_problem(
@@ -119,25 +123,27 @@ def load_problem(
             line_offset=passage.line - 1, column_offset=passage.column - 1,
         )  # fmt: skip
     _check_metric(loaded)
-    served = _Served.of(loaded, samplers or {}, groundings or {}, registry or {})
+    served = Served.of(loaded, samplers or {}, groundings or {}, registry or {})
     mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
     context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering, holding)
     if scene is None:  # what is seen may touch
         check_overlaps(loaded)
     _check_start(loaded, context)
-    bound = _bind(declared, parsed, context, {**served.functions(), **(functions or {})})
+    bound = _bind(declared, parsed, context, {**served.functions(declared, parsed), **(functions or {})})
     _refuse_decided(declared)
+    known = decided(served, declared, parsed, goal, start.objects, start.facts, context)
     costs = tuple(
         BoundFunction(function, partial((functions or {})[function.name], context))
         for function in declared.functions
         if function.name in (functions or {})
     )
-    task = Task(loaded.scene.name, parsed, start.objects, frozenset(start.facts), goal, {})
+    initial = frozenset(start.facts) | known.facts
+    task = Task(loaded.scene.name, known.domain, start.objects, initial, known.goal, {})
     return Problem(
         name=loaded.scene.name,
         scene=loaded.scene,
         context=context,
-        stream_task=StreamTask(task, bound, start.values, costs),
+        stream_task=StreamTask(task, (*bound, *known.streams), start.values, costs),
         goal=" ".join(loaded.goal.text.split()),
         files={
             "problem": (loaded.path.resolve(),),
@@ -146,64 +152,15 @@ def load_problem(
             "meshes": tuple(path.resolve() for path in loaded.meshes),
         },
         samplers={relation: choice.text for relation, choice in served.choices.items()},
-        warnings=(*loaded.warnings, *_unused(functions or {}, declared), *lint(parsed, declared, goal, start.facts)),
+        warnings=(
+            *loaded.warnings,
+            *_unused(functions or {}, declared),
+            *lint(parsed, declared, goal, start.facts),
+            *known.warnings,
+        ),
+        classifiers=known.classifiers,
+        complements=known.complements,
     )
-
-
-@dataclass(frozen=True)
-class _Served:
-    """What serves the relations: the choices, and the objects by relation."""
-
-    choices: dict[str, Choice]
-    generators: dict[str, Generator]
-    classifiers: dict[str, Classifier]
-
-    @classmethod
-    def of(
-        cls,
-        loaded: LoadedProblem,
-        samplers: Mapping[str, str],
-        groundings: Mapping[str, Grounding],
-        registry: Registry,
-    ) -> _Served:
-        known: dict[str, dict[str, Callable[..., Grounding]]] = {}
-        given = {relation: {GIVEN: partial(_same, item)} for relation, item in groundings.items()}
-        for source in (SAMPLERS, registry, given):
-            for relation, makers in source.items():
-                known.setdefault(relation, {}).update(makers)
-        choices = {relation: Choice(next(iter(makers)), alone=True) for relation, makers in SAMPLERS.items()}
-        for relation, text in loaded.samplers.items():
-            try:
-                choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
-            except InputError as error:
-                raise error.at(loaded.path, _line(loaded, "samplers", relation)) from None
-        choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
-        for relation, item in groundings.items():
-            if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
-                choices[relation] = Choice(GIVEN, alone=False)
-        made: dict[str, Grounding] = {name: maker(name, choice, known)() for name, choice in choices.items()}
-        for relation, item in made.items():
-            if not isinstance(item, Generator):
-                what = f"sampler '{choices[relation].name}' for '{relation}' has no method propose"
-                raise InputError(what, remedy="tamp/streams/relations.py says what it is asked")
-        generators = {relation: item for relation, item in made.items() if isinstance(item, Generator)}
-        judging = {**made, **groundings}
-        classifiers = {relation: item for relation, item in judging.items() if isinstance(item, Classifier)}
-        return cls(choices, generators, classifiers)
-
-    def functions(self) -> dict[str, Callable[..., Any]]:
-        """The stream functions of relations that have no built-in ones."""
-        functions: dict[str, Callable[..., Any]] = {}
-        for relation, generator in self.generators.items():
-            if relation not in SAMPLERS:
-                functions[f"sample-{relation}"] = partial(sample_relation, relation=relation, generator=generator)
-        for relation, classifier in self.classifiers.items():
-            functions[f"test-{relation}"] = partial(test_relation, classifier=classifier)
-        return functions
-
-
-def _same(item: Grounding) -> Grounding:
-    return item
 
 
 def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
@@ -216,7 +173,7 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
     try:
         return find_domain(loaded.domain, loaded.path.parent)
     except InputError as error:
-        raise error.at(loaded.path, _line(loaded, "domain")) from None
+        raise error.at(loaded.path, line_of(loaded, "domain")) from None
 
 
 def _check_metric(loaded: LoadedProblem) -> None:
@@ -224,14 +181,6 @@ def _check_metric(loaded: LoadedProblem) -> None:
     if metric is not None and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC:
         remedy = "The one that there is: (minimize (total-cost))"
         raise InputError(f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy)
-
-
-def _line(loaded: LoadedProblem, *keys: str) -> int:
-    """Where an entry of the problem file stands: read again, for an error's sake only."""
-    node = read_yaml(loaded.path)
-    for key in keys:
-        node = node.mapping()[key]
-    return node.line
 
 
 def _bind(

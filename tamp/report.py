@@ -19,6 +19,9 @@ WIDTH = 110
 MOST = 8
 """Lines about what failed."""
 
+STANDING = ("supported", "contained")
+"""Predicates that say where a body is; one of the user's own may speak of a place where it is not."""
+
 PARTS = {
     "motion": ("plan-",),
     "ik": ("inverse-kinematics",),
@@ -121,7 +124,8 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     scene = problem.scene
     known = {place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)}
     places: dict[tuple[str, str], str] = {}
-    for fact in (*sorted(problem.stream_task.task.initial), *solution.certified):
+    facts = (*sorted(problem.stream_task.task.initial), *solution.certified)
+    for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
         if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
             name = known[fact[3]]
             places.setdefault((fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}")

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
+from grounding.certainty import MANY, REASON, Labels, no_better_than_chance, too_few
 from grounding.dataset import Dataset
 from grounding.paper.table import Table
 from grounding.paper.training import features_of
@@ -51,6 +53,7 @@ def train_tree(
     progress(f"a tree of {samples} scenes")
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if encoder else {}
     arrays = grown(table, samples, seed)
+    why = _chance(table, samples, seed) if samples < MANY else None
     return Weights(
         {**arrays, **extra},
         {
@@ -60,8 +63,22 @@ def train_tree(
             "seed": seed,
             "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
             "architecture": {"nodes": len(arrays["tree.feature"]), "features": table.features},
+            **({"classifies": False, REASON: why} if why else {}),
         },
     )
+
+
+def _chance(table: Table, samples: int, seed: int) -> str | None:
+    """Why trees of halves of the examples know no more than chance of the other halves."""
+    from sklearn.tree import DecisionTreeClassifier
+
+    arguments, holds = table.arguments[:samples], table.holds[:samples]
+
+    def fit(train: NDArray[np.intp], test: NDArray[np.intp]) -> Labels:
+        tree = DecisionTreeClassifier(random_state=seed).fit(arguments[train], holds[train])
+        return np.asarray(tree.predict(arguments[test]), dtype=bool)
+
+    return too_few(holds) or no_better_than_chance(holds, fit)
 
 
 def grown(table: Table, samples: int, seed: int) -> dict[str, np.ndarray]:

@@ -78,7 +78,8 @@ def _parser() -> Parser:
         action="append",
         default=[],
         metavar="RELATION=NAME",
-        help="for planning anew, over the plan's own: as for tamp-solve (repeatable)",
+        help="as for tamp-solve, over the plan's own: what says whether a relation of your own holds, and for planning "
+        "anew (repeatable)",
     )
     parser.add_argument("--problem", type=Path, metavar="FILE", help="the problem, instead of the one the plan names")
     parser.add_argument("--json", action="store_true", help="print one JSON document instead of text")

@@ -13,6 +13,7 @@ from tamp.execution.disturbance import DISTURBANCES
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.goal import classifiers_of
 from tamp.execution.grasps import GRASPS
+from tamp.execution.relations import named_classifiers
 from tamp.execution.replan import Replanner, is_given
 from tamp.execution.report import Execution
 from tamp.stored import Stored, open_plan
@@ -62,7 +63,8 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
             that it needs for planning anew is not to be had.
     """
     check(options)
-    names, objects = given_by_files(sampler_choices(options.sampler))
+    chosen = sampler_choices(options.sampler)
+    names, objects = given_by_files(chosen)
     stored = open_plan(file, options.problem)
     if options.replan:
         _check_options(stored, names)
@@ -72,6 +74,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         disturbance=options.disturb,
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
+        own=named_classifiers(stored, names, objects, registry, chosen),
     )
     return execute(stored, circumstances)
 

@@ -92,9 +92,9 @@ def deviations(
                 yield _elsewhere(name, T, seen.poses[name], name == active)
     if held is not None:
         told.add(held[0])
-    for predicate, body, place in sorted(facts - seen.facts):
-        if body not in {name.lower() for name in told}:
-            yield Deviation("fact", body, f"({predicate} {body} {place}) does not hold")
+    for fact in sorted(facts - seen.facts):
+        if not {name.lower() for name in told} & {*fact[1:]}:
+            yield Deviation("fact", fact[1] if fact[1:] else "", f"({' '.join(fact)}) does not hold")
 
 
 def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:

@@ -15,6 +15,7 @@ from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
 from tamp.execution.pauses import without_pauses
 from tamp.execution.playing import CLOSING, Player
+from tamp.execution.relations import Named, own_relations
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
 from tamp.execution.truth import Observer, Truth
@@ -55,13 +56,15 @@ class Circumstances:
         disturbance: What somebody does to the scene, one of DISTURBANCES.
         seed: Of the disturbance and of planning anew.
         classifiers: Relation to a classifier and its name, for their opinion of the goal.
+        own: The same of the user's own relations, which these decide.
     """
 
     grasp: str = "friction"
     replanner: Replanner | None = None
     disturbance: str | None = None
     seed: int = 0
-    classifiers: Mapping[str, tuple[str, Classifier]] = field(default_factory=dict[str, "tuple[str, Classifier]"])
+    classifiers: Named = field(default_factory=dict[str, "tuple[str, Classifier]"])
+    own: Named = field(default_factory=dict[str, "tuple[str, Classifier]"])
 
 
 def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execution:
@@ -72,7 +75,8 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours.
+        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours; a goal that
+            needs a relation not to hold that has no classifier.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
@@ -99,6 +103,7 @@ class _Run:
             loaded.goal.text, self._domain, self._expected.semantics.objects, loaded.path,
             line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
         )  # fmt: skip
+        self._own = own_relations(stored, self._domain, self._goal, chosen.own)
         self._rng = np.random.default_rng(chosen.seed)
         self._scheduled = schedule(chosen.disturbance, stored.plan, self._rng) if chosen.disturbance else None
         self._done: list[Done] = []
@@ -121,7 +126,7 @@ class _Run:
         """What came of it."""
         self._world.wait(SETTLE)
         truth = self._look()
-        goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers)
+        goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own)
         reached = all(part.holds for part in goal)
         return Execution(
             name=self._stored.loaded.scene.name,
@@ -130,6 +135,7 @@ class _Run:
             actions=tuple(self._done),
             goal=goal,
             reached=reached,
+            on_trust=self._own.trusted,
             replans=self._replans,
             kept=self._kept,
             disturbance=self._event,
@@ -217,6 +223,7 @@ class _Run:
         new = frozenset(world.scene.bodies) - self._known
         known = {name: T for name, T in expected.poses.items() if name in self._known}
         facts = frozenset(fact for fact in expected.facts if fact[1] in {name.lower() for name in known})
+        facts |= self._own.missed(truth, self._held(), expected)
         return list(deviations(known, expected.held, facts, seen, active, new))
 
     def _come_to_rest(self) -> None:

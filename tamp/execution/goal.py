@@ -2,42 +2,60 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 
 from tamp.errors import InputError
 from tamp.execution.deviation import FAR, TURNED
 from tamp.execution.expected import RELATIONS, Expected
+from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
 from tamp.execution.truth import Truth
-from tamp.pddl.structs import Atom, Fact, Formula
+from tamp.observed import Unanswered, probability
+from tamp.pddl.relations import POSE
+from tamp.pddl.structs import Atom, Formula, Not
 from tamp.streams.choice import ANY, Registry
 from tamp.streams.relations import Classifier
 from tamp.verification.formulas import flat, show
-from tamp.verification.semantics import State
+from tamp.verification.semantics import Semantics, State
 from tamp.verification.start import apart
+
+NONE = Own({})
 
 FLUENTS = frozenset({"holding", "hand-empty", "at-pose"})
 """Facts that are seen and not believed."""
 
 
 def judged(
-    goal: Formula, expected: Expected, truth: Truth, held: str | None, classifiers: Mapping[str, tuple[str, Classifier]]
+    goal: Formula,
+    expected: Expected,
+    truth: Truth,
+    held: str | None,
+    classifiers: Mapping[str, tuple[str, Classifier]],
+    own: Own = NONE,
 ) -> tuple[GoalFact, ...]:
     """Each part of the goal, by the geometry; and what the classifiers of its relations say.
 
-    Other relations than `on` and `inside` hold as the plan has them for bodies that are where the plan put them.
+    Classifiers of the user's own relations decide about these. Others than them, `on` and `inside` hold as the plan has
+    them for bodies that are where the plan put them.
     """
     facts = {(name, *row) for name, rows in expected.state.facts.items() for row in rows if name not in FLUENTS}
     facts |= {("hand-empty",)} if held is None else set()
     facts |= {fact for fact in expected.state.facts.get("holding", set()) if held and fact[0] == held.lower()}
-    facts |= {("at-pose", body, pose) for body, pose in _in_place(expected, truth, held)}
+    there = dict(_in_place(expected, truth, held))
+    standing = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
+    at = {body: f"{body} seen" for body in standing} | there
+    facts |= {("at-pose", body, pose) for body, pose in at.items()}
+    for seen in own.observe(truth, held, expected, at).values():
+        facts = (facts - seen.fails) | seen.holds
     state = State.of(facts | truth.facts)
-    semantics = expected.semantics.without(RELATIONS)
+    semantics = _with_poses(expected.semantics, at).without(RELATIONS)
+    said = {**classifiers, **{name: (called, classifier) for name, (_, called, classifier) in own.asked.items()}}
     found: list[GoalFact] = []
     for part in flat(goal):
         holds = semantics.holds(part, state)
-        name, probability = _classified(part, truth, classifiers)
-        why = None if holds else _reason(part, truth, held) or _moved(part, facts, expected)
+        name, probability = _classified(part, truth, held, said)
+        why = None if holds else _reason(part, truth, held) or _moved(part, there, expected, own)
         found.append(GoalFact(show(part), holds, why, name, probability))
     return tuple(found)
 
@@ -65,16 +83,30 @@ def _made(make: Callable[[], object]) -> Classifier | None:
 
 
 def _classified(
-    part: Formula, truth: Truth, classifiers: Mapping[str, tuple[str, Classifier]]
+    part: Formula, truth: Truth, held: str | None, classifiers: Mapping[str, tuple[str, Classifier]]
 ) -> tuple[str | None, float | None]:
+    if isinstance(part, Not):
+        part = part.body
     if not isinstance(part, Atom) or part.predicate not in classifiers:
         return None, None
     name, classifier = classifiers[part.predicate]
     scene = truth.scene
     names = {one.lower(): one for one in (*scene.bodies, *scene.surfaces, *scene.cavities)}
-    if not all(term in names for term in part.terms):
+    if not all(term in names and names[term] != held for term in part.terms):
         return None, None
-    return name, float(classifier.classify(scene, [names[term] for term in part.terms]))
+    try:
+        number = probability(classifier, scene, [names[term] for term in part.terms])
+    except Unanswered:
+        return None, None
+    return (None, None) if math.isnan(number) else (name, number)
+
+
+def _with_poses(semantics: Semantics, at: Mapping[str, str]) -> Semantics:
+    """The same with names for the poses that bodies are seen at."""
+    domain = semantics.domain
+    kind = POSE if POSE in domain.types else "object"
+    new = {pose: (kind,) for pose in at.values() if pose not in semantics.objects}
+    return Semantics(domain, {**semantics.objects, **new}) if new else semantics
 
 
 def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tuple[str, str]]:
@@ -89,13 +121,12 @@ def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tu
             yield terms[0], terms[1]
 
 
-def _moved(part: Formula, facts: set[Fact], expected: Expected) -> str | None:
-    """That a body of a relation of the user's own is elsewhere than the plan has it."""
-    if not isinstance(part, Atom) or part.predicate in RELATIONS:
+def _moved(part: Formula, there: Mapping[str, str], expected: Expected, own: Own) -> str | None:
+    """That a body of a relation of the user's own is elsewhere than the plan has it, where no classifier decides."""
+    if not isinstance(part, Atom) or part.predicate in RELATIONS or part.predicate in own.asked:
         return None
     placed = {terms[0] for terms in expected.state.all("at-pose")}
-    seen = {fact[1] for fact in facts if fact[0] == "at-pose"}
-    gone = [body for body in part.terms if body in placed - seen]
+    gone = [body for body in part.terms if body in placed - there.keys()]
     return f"{gone[0]} is not where the plan put it" if gone else None
 
 

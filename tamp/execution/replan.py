@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -15,14 +15,14 @@ from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.truth import Truth
-from tamp.pddl.structs import Atom, Formula
+from tamp.pddl.complement import signed_atoms
+from tamp.pddl.structs import Formula
 from tamp.plan_file import plan_text
 from tamp.problem import Problem, load_problem
 from tamp.stored import Stored
 from tamp.streams.choice import GIVEN, Grounding, Registry
 from tamp.streams.values import Grasp
 from tamp.verification.files import source_file
-from tamp.verification.formulas import flat
 from tamp.verification.plan_file import PlanFile, TimedAction, read_plan
 from tamp.verification.start import apart
 from tamp.world.pose import Array, Pose
@@ -136,7 +136,7 @@ class Replanner:
         if any(fact[1] in there for fact in expected.facts - truth.facts):
             return False
         later = {segment.attach.body.lower() for action in rest for segment in action.segments if segment.attach}
-        if {one.body.lower() for one in found} & _placed_so(problem.stream_task.task.goal) - later:
+        if {one.body.lower() for one in found} & _placed_so(problem.stream_task.task.goal, there) - later:
             return False
         context = problem.context
         poses = {name: body.pose for name, body in truth.scene.bodies.items() if body.movable}
@@ -171,10 +171,10 @@ class Replanner:
         return True
 
 
-def _placed_so(goal: Formula) -> set[str]:
-    """Bodies, in PDDL's names, of which the goal asks what only the plan's own poses are known to give."""
-    parts = [part for part in flat(goal) if isinstance(part, Atom) and part.predicate not in RELATIONS]
-    return {term for part in parts for term in part.terms}
+def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
+    """Bodies, in PDDL's names, of which the goal asks what another pose may not give; all of them for a variable."""
+    terms = {term for atom, _ in signed_atoms(goal) if atom.predicate not in RELATIONS for term in atom.terms}
+    return {*bodies} if any(term.startswith("?") for term in terms) else terms
 
 
 def _same(first: Array, second: Array) -> bool:

@@ -78,6 +78,7 @@ class Execution:
         kept: How often the rest of the plan was good enough after a deviation.
         disturbance: What was done to the scene, and when.
         explanation: Why the goal was not reached.
+        on_trust: Relations of the goal without a classifier: they hold where the plan put their bodies, as it says.
         simulated: Seconds in physics.
         notes: What was not done as the plan says.
         seconds: Seconds that it took.
@@ -93,6 +94,7 @@ class Execution:
     kept: int = 0
     disturbance: str | None = None
     explanation: tuple[str, ...] = ()
+    on_trust: tuple[str, ...] = ()
     simulated: float = 0.0
     notes: tuple[str, ...] = ()
     seconds: float = field(default=0.0, compare=False)
@@ -115,6 +117,7 @@ class Execution:
         facts += [f"went on after {self.kept} deviations"] if self.kept else []
         facts += [", ".join(f"{count} {kind}" for kind, count in self.kinds.items())] if self.kinds else []
         verdict = "Goal reached" if self.reached else "Goal not reached"
+        verdict += f", on trust: {', '.join(self.on_trust)}" if self.reached and self.on_trust else ""
         lines.append(f"{verdict}: {', '.join(facts)}, in {self.seconds:.1f} s")
         return "\n".join(lines)
 

@@ -154,6 +154,11 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
                     stack += _atoms(rule.body, sign)
 
 
+def signed_atoms(formula: Formula, sign: bool = True) -> Iterator[tuple[Atom, bool]]:
+    """The atoms of a formula that is needed to hold, or not to, each with whether it helps by holding."""
+    return _atoms(formula, sign)
+
+
 def _rewrite(formula: Formula, sign: bool, twins: _Twins, helps: bool) -> Formula:
     """`helps`: whether the formula as a whole is needed to hold; `sign`: whether we are under no negation in it."""
     match formula:

@@ -168,8 +168,6 @@ class Negation:
         head = self._choices[key] = (name,)
         words = [("" if sign else "not ") + " ".join(fact) for sign, fact in key[0]]
         self.meanings[name] = " or ".join([*words, *(" ".join(fact) for fact in lifts)])
-        for lift in lifts:
-            self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((lift,))))
         for sign, fact in key[0]:
             if sign:
                 self.axioms.append(Axiom(head, frozenset((fact,)), frozenset()))
@@ -179,6 +177,8 @@ class Negation:
                 needs = self.refute(fact, guards=False)
                 if not needs.impossible:
                     self.axioms.append(Axiom(head, frozenset(needs.positive), frozenset(needs.negative)))
+        for lift in lifts:  # last: what holds without a test needs none
+            self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((lift,))))
         self._vocabulary.relations.add(name, [()])
         return head
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 from tamp.errors import InputError
+from tamp.python_object import NAME, python_object
 from tamp.streams.choice import GIVEN, MODES, Grounding
 from tamp.streams.relations import Classifier, Generator
 
 SUFFIX = ".py"
-
-NAME = "grounding"
-"""What the object is called in the file."""
 
 
 def given_by_files(samplers: dict[str, str]) -> tuple[dict[str, str], dict[str, Grounding]]:
@@ -43,18 +40,7 @@ def python_grounding(path: Path) -> Grounding:
     Raises:
         InputError: There is no such file, it fails, or it has no such object with `propose` or `classify`.
     """
-    if not path.is_file():
-        raise InputError("no such file", file=path)
-    spec = importlib.util.spec_from_file_location(f"_own_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise InputError("this is no Python file", file=path)
-    module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        line = error.lineno if isinstance(error, SyntaxError) else None
-        raise InputError(f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line) from error
-    found = vars(module).get(NAME)
+    found = python_object(path)
     if isinstance(found, type) or not isinstance(found, Generator | Classifier):
         what = f"'{NAME}' has neither propose nor classify" if found is not None else f"it defines no '{NAME}'"
         what = f"'{NAME}' is a class, not an object" if isinstance(found, type) else what

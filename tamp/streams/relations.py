@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from numpy.random import Generator as Random
 
+from tamp.observed import Classifier as Classifier
 from tamp.world.pose import Pose
 from tamp.world.scene import Scene
 
@@ -30,13 +31,4 @@ class Generator(Protocol):
             count: How many are wanted.
             rng: The only source of randomness.
         """
-        ...
-
-
-@runtime_checkable
-class Classifier(Protocol):
-    """Judges whether a relation holds in a scene."""
-
-    def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
-        """The probability in [0, 1] that the relation holds for these arguments."""
         ...

@@ -17,6 +17,7 @@ from tamp.verification.formulas import show
 from tamp.verification.limits import excesses
 from tamp.verification.log import Log
 from tamp.verification.plan_file import Hold, PlanFile, Segment, TimedAction
+from tamp.verification.relations import Relations
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.standing import Standing
 from tamp.verification.start import apart, base_apart
@@ -34,12 +35,20 @@ class Replay:
     """Carries out a plan once, from the bodies' poses in the world, and keeps a `log`, `findings` and a `course`."""
 
     def __init__(
-        self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, semantics: Semantics, certified: Certified
+        self,
+        plan: PlanFile,
+        world: World,
+        robot: Robot,
+        sweeper: Sweeper,
+        semantics: Semantics,
+        certified: Certified,
+        relations: Relations,
+        log: Log,
     ) -> None:
         self._plan, self._world, self._robot, self._sweeper = plan, world, robot, sweeper
-        self._semantics, self._certified = semantics, certified
+        self._semantics, self._certified, self._relations = semantics, certified, relations
         self._bodies = {name.lower(): name for name in world.scene.bodies}
-        self.log = Log()
+        self.log = log
         self.findings = Findings()
         self._agreement = Agreement(plan, world, semantics.domain, self.log)
         self._standing = Standing(plan, world, semantics, certified.known, self.log)
@@ -55,6 +64,7 @@ class Replay:
     def run(self, goal: Formula) -> None:
         """From the start to the goal."""
         state = State.of((*self._plan.initial, *self._plan.certified))
+        state = self._relations.observed(state, self.course.in_hand)
         self._check_bodies_apart()
         self._standing.check_relations(state, None)
         for index, action in enumerate(self._plan.actions):
@@ -64,6 +74,7 @@ class Replay:
             self._agreement.follows(action)
             self._agreement.compare(state, self.course)
             self._standing.check_relations(state, self.course.in_hand)
+            state = self._relations.observed(state, self.course.in_hand)
         self.log.action = self.log.time = None
         if abs(self._plan.duration - self.course.time) > CLOCK:
             self.log.add("time", f"the plan lasts {self.course.time:.3f} s, not {self._plan.duration:.3f} s")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from tamp.errors import one_line, printable
@@ -72,6 +72,9 @@ class Report:
         trusted: How many facts of each predicate could only be taken on trust.
         notes: Oddities that are not the plan's fault.
         seconds: That the verification took.
+        on_trust: Relations on which the verdict rests, and of which nobody but the plan says where they hold.
+        other_files: Domain and streams by which was judged, where they are not the problem's.
+        asked: How many answers each relation's classifier gave.
     """
 
     name: str
@@ -83,11 +86,19 @@ class Report:
     trusted: dict[str, int]
     notes: tuple[str, ...]
     seconds: float
+    on_trust: tuple[str, ...] = ()
+    other_files: tuple[str, ...] = ()
+    asked: dict[str, int] = field(default_factory=dict[str, int])
 
     @property
     def holds(self) -> bool:
         """Whether nothing is wrong."""
         return not self.violations
+
+    @property
+    def checked(self) -> bool:
+        """Whether the verdict rests on nothing that could not be checked."""
+        return not self.on_trust and not self.other_files
 
     def text(self) -> str:
         """For people: a line a violation and a summary."""
@@ -98,9 +109,10 @@ class Report:
         if self.nearest:
             pair = f"{self.nearest.first} - {self.nearest.second}"
             facts.append(f"least clearance {1000 * self.nearest.distance:.1f} mm ({pair})")
-        if self.trusted:
-            facts.append("on trust: " + " ".join(f"{name} ({count})" for name, count in self.trusted.items()))
+        facts += [f"{name} asked {count} times" for name, count in self.asked.items()]
         verdict = "holds" if self.holds else f"does not hold, {_counted(self.violations)}"
+        trust = [f"on trust: {', '.join(self.on_trust)}"] if self.on_trust else []
+        verdict = ", ".join([verdict, *trust, *self.other_files])
         lines.append(f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
         return "\n".join(lines)
 
@@ -115,6 +127,10 @@ class Report:
             "states": self.states,
             "clearance": asdict(self.nearest) if self.nearest else None,
             "trusted": self.trusted,
+            "checked": self.checked,
+            "on_trust": list(self.on_trust),
+            "other_files": list(self.other_files),
+            "asked": self.asked,
             "notes": self.notes,
             "seconds": self.seconds,
         }

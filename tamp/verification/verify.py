@@ -4,30 +4,44 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from tamp.errors import InputError
+from tamp.observed import Classifier
 from tamp.pddl.files import read_pddl
 from tamp.pddl.parser import parse_domain, parse_facts, parse_goal
-from tamp.pddl.structs import Domain, Fact
+from tamp.pddl.relations import Relation, relation_names, relation_of
+from tamp.pddl.structs import Domain, Fact, StreamFile
 from tamp.simulation.physics import World
 from tamp.verification.certified import Certified
 from tamp.verification.files import plan_hashes, source_file, unquoted
 from tamp.verification.formulas import substitute
+from tamp.verification.log import Log
 from tamp.verification.plan_file import PlanFile, read_plan
+from tamp.verification.relations import Relations
 from tamp.verification.replay import Replay
 from tamp.verification.report import Report, Violation
 from tamp.verification.semantics import Semantics
 from tamp.verification.start import check_files, check_initial, check_objects
 from tamp.verification.sweep import Sweeper
 from tamp.verification.symbolic import is_symbolic, verify_symbolic
+from tamp.verification.trust import certifiable, other_files, read_streams, streams_file, trusted_relations
 from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.robot import ROBOTS
 
+NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
+
 
 def verify(
-    plan: dict[str, Any] | str | Path, problem: str | Path | None = None, domain: str | Path | None = None
+    plan: dict[str, Any] | str | Path,
+    problem: str | Path | None = None,
+    domain: str | Path | None = None,
+    *,
+    streams: str | Path | None = None,
+    classifiers: Mapping[str, Classifier] = NO_CLASSIFIERS,
 ) -> Report:
     """Replay a plan with PDDL's semantics and pybullet's kinematics and collision detection.
 
@@ -35,13 +49,21 @@ def verify(
         plan: A plan file, or its content.
         problem: The problem's file, instead of the one that the plan names.
         domain: The domain's file, instead of the one that the plan names.
+        streams: The streams' file, instead of the one that the plan names.
+        classifiers: What says whether a relation of the user's own holds, by the relation; without it the plan's word
+            is taken, and the report says so.
 
     Raises:
-        InputError: The plan file is malformed, or a file that it was made from is missing or malformed.
+        InputError: The plan file is malformed, or a file that it was made from is missing or malformed; a classifier of
+            a relation that there is not.
     """
     began = time.monotonic()
     document = plan if isinstance(plan, dict) else Path(plan)
     if is_symbolic(document):
+        if classifiers or streams is not None:
+            raise InputError(
+                "a plan of a problem in PDDL alone has no streams, and no relation of a scene to ask about"
+            )
         given = [None if file is None else Path(file) for file in (problem, domain)]
         return verify_symbolic(document, *given)
     read = read_plan(document)
@@ -59,6 +81,9 @@ def verify(
         loaded.goal.text, parsed, objects, loaded.path,
         line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
     )  # fmt: skip
+    own_streams = streams_file(read, None if streams is None else Path(streams))
+    declared = read_streams(read, own_streams, parsed)
+    asked = _asked(classifiers, declared, parsed)
     robot = ROBOTS[loaded.scene.robot.model]()
     semantics = Semantics(parsed, objects)
     violations = [
@@ -74,14 +99,23 @@ def verify(
     with World(loaded.scene, robot) as world:
         sweeper = Sweeper(world, robot)
         certified = Certified(read, world, robot, sweeper, parsed)
-        violations += check_initial(read, loaded.scene, parsed, given, certified.known)
-        static = [fact for fact in read.initial if fact[0] in certified.known and fact not in given]
+        decided = {name for relation, _ in asked.values() for name in relation.predicates}
+        stated = certified.known | decided | certifiable(parsed, declared)
+        violations += check_initial(read, loaded.scene, parsed, given, stated)
+        static = [fact for fact in read.initial if fact[0] in stated and fact not in given]
         violations += certified.check([*read.certified, *static], trusted)
         for body in loaded.scene.bodies.values():
             world.place(body.name, body.pose.matrix)
-        replay = Replay(read, world, robot, sweeper, semantics, certified)
+        log = Log()
+        relations = Relations(read, world, parsed, asked, log)
+        replay = Replay(read, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(goal)
-        violations += replay.log.violations
+        violations += log.violations
+        settled = certified.known | decided
+        on_trust = {*trusted_relations(read, parsed, goal, declared, settled, given), *relations.silent}
+        unsaid = [f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())]
+        others = {"domain": domain, "streams": streams}
+        given_files = {role: None if file is None else Path(file) for role, file in others.items()}
         return Report(
             name=read.file.name if read.file else "the plan",
             violations=tuple(violations),
@@ -89,10 +123,39 @@ def verify(
             duration=replay.course.time,
             states=replay.findings.states,
             nearest=replay.findings.nearest,
-            trusted=dict(sorted(trusted.items())),
-            notes=tuple(replay.notes),
+            trusted={name: count for name, count in sorted(trusted.items()) if name not in decided},
+            notes=(*replay.notes, *unsaid),
+            on_trust=tuple(sorted(on_trust)),
+            other_files=other_files(read, loaded, domain_file, own_streams, given_files),
+            asked=dict(sorted(relations.answers.items())),
             seconds=time.monotonic() - began,
         )
+
+
+def _asked(
+    classifiers: Mapping[str, Classifier], streams: StreamFile | None, domain: Domain
+) -> dict[str, tuple[Relation, Classifier]]:
+    """The relations of the classifiers.
+
+    Raises:
+        InputError: There is no such relation, or its facts do not say of what it is to be asked.
+    """
+    found: dict[str, tuple[Relation, Classifier]] = {}
+    for name, classifier in classifiers.items():
+        if streams is None:
+            remedy = "Give them: --streams FILE"
+            raise InputError(f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy)
+        names = relation_names(streams)
+        if name not in names:
+            raise InputError(f"the streams have no relation '{name}'", file=streams.file, found=name, choices=names)
+        relation = relation_of(streams, domain, name)
+        if relation is None:
+            what = f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
+            raise InputError(
+                what, file=streams.file, remedy="docs/adding-a-predicate.md says what its streams are like"
+            )
+        found[name] = relation, classifier
+    return found
 
 
 def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:

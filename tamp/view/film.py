@@ -104,7 +104,9 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
 
 def _where(action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene) -> str:
     """What a fact such as (supported mug p1 table) says of a body and a pose among the action's arguments."""
-    names = {name for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments} for name in fact[3:]}
+    said = [fact for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments}]
+    firm = [fact for fact in said if fact[0] in ("supported", "contained")]  # others may speak of another place
+    names = {fact[3] for fact in firm or said}
     place = next((places[name] for name in sorted(names) if name in places and name not in action.arguments), None)
     if place is None:
         return ""

@@ -1,0 +1,151 @@
+"""Relations of the user's own in what is seen: their classifiers decide, where there are any."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tamp.errors import InputError
+from tamp.execution.expected import Expected
+from tamp.execution.truth import Truth
+from tamp.observed import LIKELY, Classifier, Observation, moved, observe
+from tamp.pddl.complement import atoms_of_conditions
+from tamp.pddl.relations import Relation, needed_false, relation_names, relation_of
+from tamp.pddl.structs import Domain, Fact, Formula, StreamFile
+from tamp.stored import Stored
+from tamp.streams.choice import GIVEN, Grounding, Registry, maker, parse_choice
+from tamp.streams.registry import SAMPLERS
+from tamp.verification.trust import read_streams, streams_file
+
+Named = Mapping[str, tuple[str, Classifier]]
+"""Relation to a classifier and what it is called."""
+
+
+@dataclass(frozen=True)
+class Own:
+    """The user's own relations of a plan.
+
+    Attributes:
+        asked: Those with a classifier: the relation, what the classifier is called, and itself.
+        trusted: Those on which the goal rests without one: what the plan certified holds while its bodies are there.
+    """
+
+    asked: Mapping[str, tuple[Relation, str, Classifier]]
+    trusted: tuple[str, ...] = ()
+
+    def observe(
+        self, truth: Truth, held: str | None, expected: Expected, at: Mapping[str, str]
+    ) -> dict[str, Observation]:
+        """What the classifiers say of what is seen, by relation; `at` names the poses of bodies that stand."""
+        scene = moved(truth.scene, {}, held)
+        facts = expected.plan.initial
+        return {
+            name: observe(relation, classifier, scene, expected.domain, expected.plan.objects, facts, at)
+            for name, (relation, _, classifier) in self.asked.items()
+        }
+
+    def missed(self, truth: Truth, held: str | None, expected: Expected) -> frozenset[Fact]:
+        """Relations that should hold by the plan and do not, as (relation, *arguments) in PDDL's names."""
+        at = {row[0]: row[1] for row in expected.state.all("at-pose") if len(row) == 2}
+        standing = {name.lower() for name in truth.scene.movable if name != held}
+        there = {body: pose for body, pose in at.items() if body in standing}
+        seen = self.observe(truth, held, expected, there)
+        return frozenset(
+            (name, *words)
+            for name, (relation, _, _) in self.asked.items()
+            for words, answer in seen[name].answers.items()
+            if not math.isnan(answer)
+            and answer < LIKELY
+            and all(
+                fact in expected.state
+                for fact in relation.ground(dict(zip(relation.arguments, words, strict=True)), there)
+            )
+        )
+
+
+def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Named) -> Own:
+    """The user's own relations that a plan's goal rests on, or its actions.
+
+    Args:
+        stored: The plan.
+        domain: Its domain.
+        goal: Its goal.
+        classifiers: Those that there are.
+
+    Raises:
+        InputError: The goal needs to know that a relation does not hold, and it has no classifier.
+    """
+    streams = read_streams(stored.plan, streams_file(stored.plan, None), domain)
+    if streams is None:
+        return Own({})
+    asked: dict[str, tuple[Relation, str, Classifier]] = {}
+    trusted: list[str] = []
+    bare = replace(domain, actions=())
+    rests = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
+    for name in _own_names(stored, streams, classifiers):
+        relation = relation_of(streams, domain, name)
+        if relation is None:
+            continue
+        if name in classifiers:
+            asked[name] = (relation, *classifiers[name])
+        elif relation.predicates & rests:
+            atom = needed_false(bare, goal, relation.predicates)
+            if atom is not None:
+                raise _unknown(name, f"({' '.join((atom.predicate, *atom.terms))})", stored.loaded.path)
+            trusted.append(name)
+    return Own(asked, tuple(sorted(trusted)))
+
+
+def named_classifiers(
+    stored: Stored,
+    names: Mapping[str, str],
+    objects: Mapping[str, Grounding],
+    registry: Registry,
+    files: Mapping[str, str],
+) -> dict[str, tuple[str, Classifier]]:
+    """The classifiers of the user's own relations: of files that the plan or the command line names, and of objects.
+
+    What the plan names and is not there any more is left out; what the command line names must be there.
+
+    Args:
+        stored: The plan.
+        names: Samplers that the command line names, over the plan's.
+        objects: Those in Python.
+        registry: The learned ones.
+        files: By relation, the files that the objects are of.
+
+    Raises:
+        InputError: A sampler on the command line that there is not.
+    """
+    found: dict[str, tuple[str, Classifier]] = {}
+    planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
+    for relation, text in {**planned, **names}.items():
+        if relation in SAMPLERS or text.partition(":")[0] == GIVEN:
+            continue
+        try:
+            choice = parse_choice(relation, text, registry)
+            made = maker(relation, choice, registry)()
+        except InputError:
+            if relation in names:
+                raise
+            continue
+        if isinstance(made, Classifier):
+            found[relation] = Path(choice.name).name, made
+    for relation, item in objects.items():
+        if relation not in SAMPLERS and isinstance(item, Classifier):
+            found[relation] = Path(files.get(relation, type(item).__name__)).name, item
+    return found
+
+
+def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Iterable[str]:
+    planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
+    sampled = [stream.name.removeprefix("sample-") for stream in streams.streams if stream.outputs]
+    known = {*planned, *classifiers, *sampled}
+    return [name for name in relation_names(streams) if name in known and name not in SAMPLERS]
+
+
+def _unknown(name: str, said: str, file: Path) -> InputError:
+    what = f"whether {said} does not hold has to be known at the end, and '{name}' has no classifier here"
+    return InputError(what, file=file, remedy=f"Name its file: --sampler {name}=FILE.py, or FILE.safetensors")

@@ -1,0 +1,169 @@
+"""What a verdict rests on that the judge could not check: relations on trust, files that are not the problem's."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+
+from tamp.data import find_domain
+from tamp.errors import InputError
+from tamp.pddl.complement import signed_atoms
+from tamp.pddl.parser import parse_streams
+from tamp.pddl.relations import relation_names, relation_of
+from tamp.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
+from tamp.verification.files import sha256
+from tamp.verification.plan_file import PlanFile
+from tamp.verification.start import KINDS_OF_OBJECTS
+from tamp.world.load import LoadedProblem
+
+STREAMS = ".streams.pddl"
+"""What a domain's streams file ends with, beside the domain."""
+
+
+def streams_file(plan: PlanFile, override: Path | None) -> Path | None:
+    """The streams that the user names, else those that the plan names or that lie of that name beside it.
+
+    Raises:
+        InputError: The user names none that there are.
+    """
+    if override is not None:
+        if not override.is_file():
+            raise InputError(f"no such file: {override}")
+        return override
+    source = plan.source("streams")
+    if source is None:
+        return None
+    beside = [plan.file.parent / source.path.name] if plan.file else []
+    return next((file for file in (source.path, *beside) if file.is_file()), None)
+
+
+def read_streams(plan: PlanFile, file: Path | None, domain: Domain) -> StreamFile | None:
+    """The streams of a plan; None where there are none, or others by now that do not fit its domain.
+
+    Raises:
+        InputError: The file is malformed, and it is that of the plan or the user names it.
+    """
+    if file is None:
+        return None
+    source = plan.source("streams")
+    try:
+        return parse_streams(file.read_text(encoding="utf-8"), domain, file)
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read: {error}", file=file) from None
+    except InputError:
+        if source is not None and source.sha256 != sha256(file):
+            return None
+        raise
+
+
+def other_files(
+    plan: PlanFile, loaded: LoadedProblem, domain: Path, streams: Path | None, given: Mapping[str, Path | None]
+) -> tuple[str, ...]:
+    """The domain and streams by which is judged, where they are not those of the problem, or no longer the plan's.
+
+    Args:
+        plan: The plan.
+        loaded: The problem.
+        domain: By which is judged.
+        streams: By which is judged, if there are any.
+        given: "domain" and "streams", where the user names them.
+    """
+    found: list[str] = []
+    own = _own_domain(loaded)
+    if loaded.domain is not None:
+        named = Path(loaded.domain).name
+        if own is None:
+            found.append(f"by the domain {domain.name}; the problem's {named} is not there")
+        elif sha256(own) != sha256(domain):
+            found.append(f"by the domain {domain.name}, not the problem's {own.name}")
+    beside = (own or domain).with_suffix(STREAMS)
+    source = plan.source("streams")
+    if streams is None:
+        if source is not None:
+            found.append(f"without the streams {source.path.name}, which are not there")
+    elif source is not None and source.sha256 != sha256(streams):
+        found.append(f"by the streams {streams.name}, which are not those that the plan was made with")
+    elif beside.is_file() and sha256(beside) != sha256(streams):
+        found.append(f"by the streams {streams.name}, not the problem's {beside.name}")
+    elif not beside.is_file() and given["streams"] is None and streams.with_suffix("").stem != domain.stem:
+        found.append(f"by the streams {streams.name}, as the plan says")
+    return tuple(found)
+
+
+def trusted_relations(
+    plan: PlanFile,
+    domain: Domain,
+    goal: Formula,
+    streams: StreamFile | None,
+    known: Collection[str],
+    given: Collection[Fact],
+) -> tuple[str, ...]:
+    """The relations on which goal and actions rest, and about which only the plan says what holds.
+
+    One that has to hold is meant where the plan states facts of it; one that must not hold also where it states none.
+
+    Args:
+        plan: The plan.
+        domain: Its domain.
+        goal: Its goal.
+        streams: Its streams, where they are known.
+        known: Predicates that the judge decides by itself.
+        given: The initial facts that the problem states.
+    """
+    names = _names(streams, domain)
+    stated = {fact[0] for fact in plan.certified} | {fact[0] for fact in plan.initial if fact not in given}
+    certified = {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
+    settled = {*known, *domain.fluent_predicates, *domain.derived_predicates, *KINDS_OF_OBJECTS, "=", *domain.types}
+    found = {
+        names.get(predicate, predicate)
+        for predicate, sign in _rested_on(plan, domain, goal)
+        if predicate not in settled and predicate in (stated if sign else certified)
+    }
+    return tuple(sorted(found))
+
+
+def certifiable(domain: Domain, streams: StreamFile | None) -> frozenset[str]:
+    """The static predicates that streams certify; without the streams, all of them."""
+    static = domain.predicates.keys() - domain.fluent_predicates - domain.derived_predicates - KINDS_OF_OBJECTS
+    if streams is None:
+        return frozenset(static)
+    return frozenset(atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified) & static
+
+
+def _own_domain(loaded: LoadedProblem) -> Path | None:
+    if loaded.domain is None:
+        return None
+    try:
+        return find_domain(loaded.domain, loaded.path.parent)
+    except InputError:
+        return None
+
+
+def _names(streams: StreamFile | None, domain: Domain) -> dict[str, str]:
+    """The relation that a certified predicate speaks of."""
+    found: dict[str, str] = {}
+    for name in relation_names(streams) if streams else ():
+        relation = relation_of(streams, domain, name) if streams else None
+        if relation is not None:
+            found |= dict.fromkeys(relation.predicates, name)
+    return found
+
+
+def _rested_on(plan: PlanFile, domain: Domain, goal: Formula) -> Iterator[tuple[str, bool]]:
+    """The predicates that the goal and the plan's actions ask for, through rules, each with whether it helps."""
+    used = {action.name for action in plan.actions}
+    stack: list[tuple[Atom, bool]] = [*signed_atoms(goal)]
+    for action in (one for one in domain.actions if one.name in used):
+        stack += signed_atoms(action.precondition)
+        for effect in action.effects:
+            stack += [(atom, sign) for atom, one in signed_atoms(effect.condition) for sign in (one, not one)]
+    seen: set[tuple[str, bool]] = set()
+    while stack:
+        atom, sign = stack.pop()
+        if (atom.predicate, sign) in seen:
+            continue
+        seen.add((atom.predicate, sign))
+        yield atom.predicate, sign
+        for rule in domain.derived:
+            if rule.head.predicate == atom.predicate:
+                stack += signed_atoms(rule.body, sign)
