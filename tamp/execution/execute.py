@@ -23,6 +23,7 @@ from tamp.simulation.actuated import Actuated
 from tamp.stored import Stored
 from tamp.streams.relations import Classifier
 from tamp.verification.files import source_file
+from tamp.verification.limits import check_ranges
 from tamp.verification.plan_file import PlanFile, TimedAction
 from tamp.verification.start import apart
 from tamp.world.pose import Array
@@ -70,11 +71,12 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed.
+        InputError: An unknown grasp; a domain that is missing or malformed; motions out of the robot's ranges.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
     scene = stored.loaded.scene
+    check_ranges(stored.plan, stored.robot, scene.room)
     with Actuated(scene, stored.robot) as world, Observer(scene) as observer:
         run = _Run(stored, chosen, world, observer)
         run.all()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.verification.plan_file import Segment
+from tamp.errors import InputError
+from tamp.verification.plan_file import PlanFile, Segment
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
 from tamp.world.scene import Room
@@ -57,6 +59,24 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     harsh = np.abs(np.diff(speeds, axis=0)) / apart
     allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
     yield from _worst("acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh")
+
+
+def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
+    """Refuse a plan whose motions leave the robot's ranges, before anybody carries it out.
+
+    Raises:
+        InputError: The first of them: the action, its time, the joint and by how much.
+    """
+    for index, action in enumerate(plan.actions):
+        offset = action.start
+        for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
+            segments = list(group)
+            for excess in excesses(segments, robot, room):
+                if excess.kind == "limit":
+                    where = f"{index + 1} {action.name}, {offset + excess.time:.2f} s"
+                    what = f"{where}: {excess.message}: the robot cannot go there"
+                    raise InputError(what, file=plan.file, remedy="tamp-verify says all that is wrong with it")
+            offset += sum(float(segment.times[-1]) for segment in segments)
 
 
 def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:

@@ -78,3 +78,14 @@ def test_bad_plans(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     changed.write_text(json.dumps(document), encoding="utf-8")
     Path(problem).write_text(Path(problem).read_text() + "# changed\n")
     assert "is not the one that the plan was made from" in error(changed)
+
+
+def test_motions_out_of_range_are_refused_at_once(
+    plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = json.loads(plan_file.read_text(encoding="utf-8"))
+    arm = document["actions"][1]["segments"][0]
+    arm["positions"] = [[5.0 * (-1) ** k] * 7 for k in range(200)]
+    arm["times"] = [20.0 * k for k in range(200)]
+    assert exit_of(str(copy(plan_file, tmp_path, actions=document["actions"]))) == 2
+    assert "panda_joint1 is out of range: 5" in capsys.readouterr().err

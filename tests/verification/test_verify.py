@@ -237,3 +237,37 @@ def test_a_spoilt_plan_is_rejected(plan: Plan, name: str) -> None:
     found = [violation for violation in report.violations if violation.kind == kind and fragment in str(violation)]
     assert found, report.text()
     assert kind in report.text()
+
+
+def test_a_base_that_turned_often_is_judged_where_it_is(plan: Plan) -> None:
+    spun = segment(plan, MOVE_LOADED, 0)
+    rows = np.array(spun["positions"])
+    rows[:, 0] += 0.12 * np.sin(np.linspace(0, np.pi, len(rows))) ** 2
+    for whole in (0, 40):  # 40 turns are 251 rad
+        turned = rows.copy()
+        turned[:, 2] += 2 * np.pi * whole
+        spun["positions"] = turned.tolist()
+        retime(plan, MOVE_LOADED, 0, lambda times: 10 * times)
+        assert any(one.kind == "collision" for one in verify(plan).violations), whole
+
+
+def test_a_plan_far_beyond_the_limits_gets_its_verdict_soon(plan: Plan) -> None:
+    wild = segment(plan, PICK, 0)
+    rows = [[5.0 * (-1) ** k] * 7 for k in range(2000)]
+    wild["positions"] = [wild["positions"][0], *rows, wild["positions"][-1]]
+    wild["times"] = np.linspace(0.0, 40_000.0, len(wild["positions"])).tolist()
+    report = verify(plan)
+    assert any(one.kind == "limit" for one in report.violations)
+    assert report.states < 20_000
+
+
+def test_a_motion_longer_than_the_judge_looks_at_does_not_hold(plan: Plan) -> None:
+    long = segment(plan, MOVE_LOADED, 0)
+    start, end = np.array(long["positions"][0]), np.array(long["positions"][-1])
+    # To and fro in the free part of the room, ever turning.
+    wild = [[start[0] - 0.5 * (k % 2), start[1], 2000.0 * k] for k in range(60)]
+    long["positions"] = [start.tolist(), *wild[1:], end.tolist()]
+    long["times"] = [2100.0 * k for k in range(len(long["positions"]))]
+    long["times"][-1] += 2e5
+    report = verify(plan)
+    assert any(one.kind == "unchecked" for one in report.violations)
