@@ -11,6 +11,8 @@ import numpy as np
 from tamp.pddl.structs import Domain, Fact
 from tamp.simulation.physics import World
 from tamp.verification.course import Held
+from tamp.verification.limits import SLACK
+from tamp.verification.makers_limits import limits_of
 from tamp.verification.plan_file import Hold, PlanFile
 from tamp.verification.report import Violation
 from tamp.verification.start import apart, base_apart
@@ -162,7 +164,8 @@ class Certified:
 
     def _beyond(self, *paths: Array) -> bool:
         """Whether joint angles (n, 7) are out of the limits."""
-        lower, upper = np.array(self._robot.lower) - 1e-4, np.array(self._robot.upper) + 1e-4
+        limits = limits_of(self._robot)
+        lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
 
     def _base_motion(self, terms: list[str]) -> str | None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tamp.errors import InputError
+from tamp.verification.makers_limits import limits_of
 from tamp.verification.plan_file import PlanFile, Segment
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
@@ -93,15 +94,15 @@ def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
 
 
 def _limits(part: str, robot: Robot, room: Room) -> tuple[list[str], Array, Array, Array, Array]:
-    velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
+    limits = limits_of(robot)
+    velocity, acceleration = np.array(limits.velocity), np.array(limits.acceleration)
     if part == "base":
         lower, upper = np.array([room.x[0], room.y[0], -np.inf]), np.array([room.x[1], room.y[1], np.inf])
         return ["base x", "base y", "base yaw"], lower, upper, velocity[:3], acceleration[:3]
     if part == "arm":
         names = [joint.name for joint in robot.joints]
-        return names, np.array(robot.lower), np.array(robot.upper), velocity[3:], acceleration[3:]
-    fastest = sum(finger.velocity for finger in robot.fingers)
-    return ["opening"], np.zeros(1), np.array([robot.opening]), np.array([fastest]), np.array([np.inf])
+        return names, np.array(limits.lower), np.array(limits.upper), velocity[3:], acceleration[3:]
+    return ["opening"], np.zeros(1), np.array([limits.opening]), np.array([2 * limits.finger]), np.array([np.inf])
 
 
 def _worst(

@@ -9,6 +9,7 @@ import numpy as np
 
 from tamp.simulation.physics import Solid, World
 from tamp.verification.course import Held
+from tamp.verification.makers_limits import limits_of
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
 
@@ -51,7 +52,7 @@ class Sampler:
 
         The yaw has no limits: it stays as it is.
         """
-        room, robot = self._world.scene.room, self._robot
+        room, robot = self._world.scene.room, limits_of(self._robot)
         low = np.array([room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0])
         high = np.array([room.x[1] + 1, room.y[1] + 1, np.inf, *(limit + 1 for limit in robot.upper), robot.opening])
         return np.clip(rows, low, high)

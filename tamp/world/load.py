@@ -120,7 +120,7 @@ def _arm(node: Node, model: str) -> tuple[float, ...]:
     angles = tuple(joint.angle() for joint in joints)
     for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):
         if not low <= angle <= high:
-            raise joint.error(f"{angle:g} rad is outside of the joint's limits [{low:g}, {high:g}]")
+            raise joint.error(f"{angle:g} rad is outside of the joint's range in plans, {low:.5g} to {high:.5g} rad")
     return angles
 
 

@@ -271,3 +271,15 @@ def test_a_motion_longer_than_the_judge_looks_at_does_not_hold(plan: Plan) -> No
     long["times"][-1] += 2e5
     report = verify(plan)
     assert any(one.kind == "unchecked" for one in report.violations)
+
+
+def test_the_makers_limits_bind_and_not_the_urdfs(plan: Plan) -> None:
+    rows = np.array(segment(plan, PICK, 0)["positions"])
+    detour(plan, PICK, 0, 1, -1.80 - float(rows[len(rows) // 2, 1]))
+    worst = [one.message for one in verify(plan).violations if one.kind == "limit"]
+    assert worst and worst[0].startswith("panda_joint2 is out of range: -1.8")
+
+
+def test_fingers_faster_than_the_hands_own_are_noticed(plan: Plan) -> None:
+    retime(plan, PICK, 1, lambda times: 0.5 * times)  # 30 mm in a quarter of a second; the hand opens 100 mm a second
+    assert any(one.kind == "velocity" and "opening" in one.message for one in verify(plan).violations)
