@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from tamp.errors import InputError
+from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 
@@ -31,9 +32,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="tamp-verify",
-        description="Judge a plan file independently of the planner: its facts by PDDL's semantics, its motions by "
-        "pybullet's kinematics and collision detection.",
-        epilog="Exit status: 0 the plan holds, 1 it does not, 2 bad input.",
+        description="Judge a plan file independently of the planner: its facts by PDDL's semantics, its motions by\n"
+        "pybullet's kinematics and collision detection, its limits by the robot's maker.",
+        epilog="tolerances:\n"
+        + "".join(f"  {what:<48}  {much}\n" for what, much in tolerances())
+        + "\nExit status: 0 the plan holds, 1 it does not, 2 bad input.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("plan", help="the plan file that tamp-solve wrote")
     parser.add_argument("--problem", metavar="FILE", help="the problem, instead of the file that the plan names")

@@ -5,12 +5,16 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tamp.verification.cli import main
+from tamp.verification.replay import LOOKS, LOOKS_BEYOND
 from tamp.verification.report import KINDS
+from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 Plan = dict[str, Any]
@@ -283,3 +287,17 @@ def test_the_makers_limits_bind_and_not_the_urdfs(plan: Plan) -> None:
 def test_fingers_faster_than_the_hands_own_are_noticed(plan: Plan) -> None:
     retime(plan, PICK, 1, lambda times: 0.5 * times)  # 30 mm in a quarter of a second; the hand opens 100 mm a second
     assert any(one.kind == "velocity" and "opening" in one.message for one in verify(plan).violations)
+
+
+def test_the_tolerances_are_said_in_the_help_and_in_the_documentation(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    said, written = capsys.readouterr().out, (root / "docs" / "how-it-works.md").read_text(encoding="utf-8")
+    rows = tolerances()
+    assert len(rows) > 8
+    for what, much in rows:
+        assert what in said and much in said
+        assert f"| {what} | {much} |" in written
+    assert f"{LOOKS:,} states" in written and f"{LOOKS_BEYOND:,}" in written
