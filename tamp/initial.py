@@ -54,15 +54,17 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         word = name.lower()
         pose = _value(state, domain, f"{word}_start", "pose", body.pose)
         facts += [("pose", word, pose), ("at-pose", word, pose)]
-        if body.support is None:
-            continue
-        if body.support in scene.surfaces:
-            facts.append(("supported", word, pose, body.support.lower()))
-        if body.support in scene.cavities:
-            facts.append(("contained", word, pose, body.support.lower()))
-        carrier = scene.surfaces[body.support].body if body.support in scene.surfaces else body.support
-        if carrier in scene.bodies and scene.bodies[carrier].movable:
-            facts.append(("rests-on", word, pose, carrier.lower()))
+        below = body.support or ""
+        if below in scene.surfaces:
+            facts.append(("supported", word, pose, below.lower()))
+        if below in scene.cavities:
+            facts.append(("contained", word, pose, below.lower()))
+        carriers = (scene.surfaces[below].body if below in scene.surfaces else below, *body.carriers)
+        facts += [
+            ("rests-on", word, pose, carrier.lower())
+            for carrier in dict.fromkeys(carriers)
+            if carrier in scene.bodies and scene.bodies[carrier].movable
+        ]
     state.facts.update(fact for fact in facts if _fits(domain, fact))
     return state
 

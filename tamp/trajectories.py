@@ -15,7 +15,7 @@ from tamp.streams.values import Grasp, Grip, Motion, Path
 from tamp.world.pose import Array, Pose
 
 GRIP_TIME = 0.5
-"""Seconds that the fingers take to open or close."""
+"""Seconds that the fingers take to open or close, at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,9 +110,9 @@ class _Replay:
             self._poses[self._held.body] = tool @ self._held.T_tool_body
             self._held = None
         positions = np.array(grip.opening)[:, None]
-        return Segment(
-            "gripper", np.array([0.0, GRIP_TIME]), positions, grip.opening[1], None, grip.attach, grip.detach
-        )  # fmt: skip
+        speed = sum(finger.velocity for finger in self._context.robot.fingers)
+        times = np.array([0.0, max(GRIP_TIME, abs(grip.opening[1] - grip.opening[0]) / speed)])
+        return Segment("gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach)
 
     def _path(self, path: Path) -> Segment:
         """The path timed, or what it was timed to before in the same circumstances."""

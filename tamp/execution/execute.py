@@ -26,6 +26,7 @@ from tamp.simulation.actuated import Actuated
 from tamp.stored import Stored
 from tamp.streams.relations import Classifier
 from tamp.verification.files import plan_hashes, source_file, unquoted
+from tamp.verification.limits import check_ranges
 from tamp.verification.plan_file import PlanFile, TimedAction
 from tamp.verification.start import apart
 from tamp.world.pose import Array
@@ -75,12 +76,13 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours; a goal that
-            needs a relation not to hold that has no classifier.
+        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours, or out of the
+            robot's ranges; a goal that needs a relation not to hold that has no classifier.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
     scene = stored.loaded.scene
+    check_ranges(stored.plan, stored.robot, scene.room)
     plan, cut = without_pauses(stored.plan)
     stored = replace(stored, plan=plan)
     notes = (f"{cut:,.0f} s of pauses in the plan were left out",) if cut else ()

@@ -14,7 +14,7 @@ from tamp.execution.watching import EVERY, Watch
 from tamp.simulation.actuated import RATE, Actuated
 from tamp.verification.plan_file import Segment
 
-CLOSING = 0.7
+CLOSING = 0.9
 """The least that closing or opening takes, seconds: the fingers meet the body and come to rest."""
 
 REST = 0.15

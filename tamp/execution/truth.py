@@ -78,9 +78,9 @@ class Observer:
             stand = self._supports.stand(name)
             support = self._feel(name, stand, facts, reasons)
             pose = Pose.from_matrix(self._world.pose(name))
-            bodies[name] = replace(bodies[name], pose=pose, support=support)
+            bodies[name] = replace(bodies[name], pose=pose, support=support, carriers=())
         if held is not None:
-            bodies[held] = replace(bodies[held], support=None)
+            bodies[held] = replace(bodies[held], support=None, carriers=())
         x, y, yaw = (float(value) for value in base)
         robot = replace(self._scene.robot, base=(x, y, yaw))
         scene = replace(self._scene, bodies=MappingProxyType(bodies), robot=robot)

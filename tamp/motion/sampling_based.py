@@ -6,6 +6,7 @@ OMPL's states are read by explicit slices: iterating over one crashes the proces
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -77,9 +78,10 @@ class PlaneSpace:
         return state.getX(), state.getY(), state.getYaw()
 
     def write(self, state: Any, conf: Array) -> None:
-        """Put the numbers into a state, the yaw wrapped into [-pi, pi]."""
+        """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's bounds."""
         state.setXY(float(conf[0]), float(conf[1]))
-        state.setYaw(float(np.arctan2(np.sin(conf[2]), np.cos(conf[2]))))
+        yaw = math.atan2(math.sin(conf[2]), math.cos(conf[2]))
+        state.setYaw(-math.pi if yaw >= math.pi else yaw)
 
 
 class _WholeEdges(ob.MotionValidator):
@@ -125,7 +127,8 @@ def connect(
 
     Returns:
         The vertices of the path (n, d), from exactly `start` to exactly one of `goals` (in a PlaneSpace: yaws in
-        [-pi, pi]), or None; and the number of edges asked for.
+        [-pi, pi)), or None; and the number of edges asked for. None at once when the space's bounds leave out the
+        start or all goals: OMPL would wait for others until the time is up.
     """
     ou.setLogLevel(ou.LOG_NONE)  # setSeed logs an error that is none: the generators made below are all seeded by it
     ou.RNG.setSeed(seed)
@@ -138,10 +141,14 @@ def connect(
     problem = ob.ProblemDefinition(information)
     # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree of the first has
     # grown, which it never does where the first is shut in.
-    for goal in goals:
-        problem.addStartState(_state(built, space, goal))
+    first, ends = _state(built, space, start), [_state(built, space, goal) for goal in goals if _finite(goal)]
+    inside = [state for state in ends if built.satisfiesBounds(state)]
+    if not inside or not _finite(start) or not built.satisfiesBounds(first):
+        return None, 0
+    for state in inside:
+        problem.addStartState(state)
     root = ob.GoalStates(information)
-    root.addState(_state(built, space, start))
+    root.addState(first)
     problem.setGoal(root)
     planner = og.RRTConnect(information)
     planner.setRange(reach)
@@ -176,6 +183,11 @@ def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
         built.interpolate(first, last, i / count, between)
         rows.append(np.array(plane.read(between)))
     return np.array([*rows, np.array(end, dtype=float)])
+
+
+def _finite(conf: Array) -> bool:
+    """Whether all numbers are: OMPL holds what is none to be within any bounds."""
+    return bool(np.isfinite(conf).all())
 
 
 def _state(built: Any, space: JointSpace | PlaneSpace, conf: Array) -> Any:

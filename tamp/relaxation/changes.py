@@ -122,7 +122,8 @@ def _on(scene: Scene, body: Body) -> list[str]:
     found: list[str] = []
     waiting = {body.name, *(place.name for place in (*body.surfaces, *body.cavities))}
     for name, other in scene.bodies.items():
-        if other.support in waiting or (other is not body and not other.movable and _below(scene, other) in waiting):
+        carried = other.support in waiting or body.name in other.carriers
+        if carried or (other is not body and not other.movable and _below(scene, other) in waiting):
             found += [name, *_on(scene, other)]
     return list(dict.fromkeys(found))
 

@@ -34,7 +34,7 @@ touches it. With seven bodies at rest a step costs a quarter of what it costs ot
 NEAR = 0.004
 """Metres from both fingers within which a body counts as between them."""
 
-FINGER_SPEED = 0.1
+FINGER_SPEED = 0.05
 """Metres a second of each finger."""
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from tamp.pddl.structs import Domain, Fact
 from tamp.simulation.physics import World
 from tamp.verification.course import Held
+from tamp.verification.limits import SLACK
+from tamp.verification.makers_limits import limits_of
 from tamp.verification.plan_file import Hold, PlanFile
 from tamp.verification.report import Violation
 from tamp.verification.start import apart, base_apart
@@ -151,9 +153,7 @@ class Certified:
 
     def _kinematics(self, terms: list[str]) -> str | None:
         pose, hold, base, (approach, lift) = (self._plan.values[term].data for term in terms[1:5])
-        lower, upper = np.array(self._robot.lower) - 1e-4, np.array(self._robot.upper) + 1e-4
-        path = np.concatenate([approach, lift])
-        if ((path < lower) | (path > upper)).any():
+        if self._beyond(approach, lift):
             return "the path leaves the joints' limits"
         for joints in (approach[-1], lift[0]):
             T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
@@ -161,6 +161,12 @@ class Certified:
             if moved > CLOSE or turned > ALIKE:
                 return f"the hand would hold it {1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg from there"
         return None
+
+    def _beyond(self, *paths: Array) -> bool:
+        """Whether joint angles (n, 7) are out of the limits."""
+        limits = limits_of(self._robot)
+        lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
+        return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
 
     def _base_motion(self, terms: list[str]) -> str | None:
         paths = [path for path in self._plan.values[terms[1]].data or () if path[0] == "base"]
@@ -208,6 +214,8 @@ class Certified:
         if self._bodies[terms[0]] == other:
             return None
         hold, base, (approach, lift) = (self._plan.values[term].data for term in terms[2:5])
+        if self._beyond(approach, lift):
+            return "the path leaves the joints' limits"
         self._world.place(other, self._plan.values[terms[6]].data)
         findings = Findings()
         held = Held(self._bodies[terms[0]], hold.T_tool_body)

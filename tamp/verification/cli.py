@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from tamp.command_line import Parser
 from tamp.errors import InputError
 from tamp.terminal import spoken
 from tamp.verification.classifiers import classifiers_of
+from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 
@@ -41,10 +43,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> Parser:
     parser = Parser(
         prog="tamp-verify",
-        description="Judge a plan file independently of the planner: its facts by PDDL's semantics, its motions by "
-        "pybullet's kinematics and collision detection.",
-        epilog="Exit status: 0 the plan holds, 1 it does not (with --strict: or it rests on what could not be "
-        "checked), 2 bad input. docs/adding-a-predicate.md says more of relations of one's own.",
+        description="Judge a plan file independently of the planner: its facts by PDDL's semantics, its motions by\n"
+        "pybullet's kinematics and collision detection, its limits by the robot's maker.",
+        epilog="tolerances:\n"
+        + "".join(f"  {what:<48}  {much}\n" for what, much in tolerances())
+        + "\nExit status: 0 the plan holds, 1 it does not (with --strict: or it rests on what could not be checked),\n"
+        "2 bad input. docs/adding-a-predicate.md says more of relations of one's own.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("plan", help="the plan file that tamp-solve wrote")
     parser.add_argument("--problem", metavar="FILE", help="the problem, instead of the file that the plan names")

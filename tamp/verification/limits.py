@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.verification.plan_file import Segment
+from tamp.errors import InputError
+from tamp.verification.makers_limits import limits_of
+from tamp.verification.plan_file import PlanFile, Segment
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
 from tamp.world.scene import Room
@@ -59,6 +62,24 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     yield from _worst("acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh")
 
 
+def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
+    """Refuse a plan whose motions leave the robot's ranges, before anybody carries it out.
+
+    Raises:
+        InputError: The first of them: the action, its time, the joint and by how much.
+    """
+    for index, action in enumerate(plan.actions):
+        offset = action.start
+        for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
+            segments = list(group)
+            for excess in excesses(segments, robot, room):
+                if excess.kind == "limit":
+                    where = f"{index + 1} {action.name}, {offset + excess.time:.2f} s"
+                    what = f"{where}: {excess.message}: the robot cannot go there"
+                    raise InputError(what, file=plan.file, remedy="tamp-verify says all that is wrong with it")
+            offset += sum(float(segment.times[-1]) for segment in segments)
+
+
 def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
     """Times and rows of segments one after the other; the gripper's row is its opening."""
     times, rows = [], []
@@ -73,15 +94,15 @@ def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
 
 
 def _limits(part: str, robot: Robot, room: Room) -> tuple[list[str], Array, Array, Array, Array]:
-    velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
+    limits = limits_of(robot)
+    velocity, acceleration = np.array(limits.velocity), np.array(limits.acceleration)
     if part == "base":
         lower, upper = np.array([room.x[0], room.y[0], -np.inf]), np.array([room.x[1], room.y[1], np.inf])
         return ["base x", "base y", "base yaw"], lower, upper, velocity[:3], acceleration[:3]
     if part == "arm":
         names = [joint.name for joint in robot.joints]
-        return names, np.array(robot.lower), np.array(robot.upper), velocity[3:], acceleration[3:]
-    fastest = sum(finger.velocity for finger in robot.fingers)
-    return ["opening"], np.zeros(1), np.array([robot.opening]), np.array([fastest]), np.array([np.inf])
+        return names, np.array(limits.lower), np.array(limits.upper), velocity[3:], acceleration[3:]
+    return ["opening"], np.zeros(1), np.array([limits.opening]), np.array([2 * limits.finger]), np.array([np.inf])
 
 
 def _worst(

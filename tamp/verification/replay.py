@@ -29,6 +29,14 @@ JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""
 CLOCK = 1e-4
 """Seconds by which times that should meet may differ."""
+BOUNDING = frozenset({"time", "limit", "velocity"})
+"""Violations of an action after which its motions may be of any length."""
+LOOKS = 200_000
+"""States of a plan that are looked at, at most, to begin with,"""
+LOOKS_A_ROW = 200
+"""and for each row of its motions: tamp-solve's plans need 5 to 30 a row."""
+LOOKS_BEYOND = 5_000
+"""States that are looked at in motions that leave the robot's limits: such a plan does not hold anyway."""
 
 
 class Replay:
@@ -50,6 +58,8 @@ class Replay:
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self.log = log
         self.findings = Findings()
+        rows = sum(len(segment.times) for action in plan.actions for segment in action.segments)
+        self._looks, self._looks_beyond = LOOKS + LOOKS_A_ROW * rows, LOOKS_BEYOND
         self._agreement = Agreement(plan, world, semantics.domain, self.log)
         self._standing = Standing(plan, world, semantics, certified.known, self.log)
         start = world.scene.robot
@@ -114,9 +124,9 @@ class Replay:
         if action.start < course.time - CLOCK:
             self.log.add("time", f"it starts at {action.start:.3f} s, before {course.time:.3f} s")
         course.time = self.log.time = action.start
-        self._check_limits(action)
+        kept = self._check_limits(action)
         natural = self._natural(action)
-        findings = Findings(nearest=self.findings.nearest)
+        findings = Findings(nearest=self.findings.nearest, most=self._looks if kept else self._looks_beyond)
         for segment in action.segments:
             self._carry_out(segment, natural, findings)
         for contact in findings.worst.values():
@@ -124,17 +134,28 @@ class Replay:
             pair = (contact.first, contact.second)
             self.log.add("collision", message, *pair, time=contact.time, depth=-contact.distance)
         self.findings.nearest, self.findings.states = findings.nearest, self.findings.states + findings.states
+        if kept:
+            self._looks -= findings.states
+        else:
+            self._looks_beyond -= findings.states
+        if kept and findings.full:
+            self.log.add(
+                "unchecked", f"its motions are longer than the judge looks at: {LOOKS} states and {LOOKS_A_ROW} a row"
+            )
         lasts = course.time - action.start
         if abs(lasts - action.duration) > CLOCK:
             self.log.add("time", f"it lasts {lasts:.3f} s, not {action.duration:.3f} s")
 
-    def _check_limits(self, action: TimedAction) -> None:
-        offset = action.start
+    def _check_limits(self, action: TimedAction) -> bool:
+        """Whether an action keeps the limits that bound its motions."""
+        offset, kept = action.start, True
         for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
             segments = list(group)
             for excess in excesses(segments, self._robot, self._world.scene.room):
                 self.log.add(excess.kind, excess.message, time=offset + excess.time, depth=excess.amount)
+                kept = kept and excess.kind not in BOUNDING
             offset += sum(float(segment.times[-1]) for segment in segments)
+        return kept
 
     def _carry_out(self, segment: Segment, natural: Natural, findings: Findings) -> None:
         course = self.course

@@ -23,6 +23,7 @@ KINDS = {
     "velocity": "faster than the limit",
     "acceleration": "harsher than the limit",
     "collision": "two things penetrate",
+    "unchecked": "a motion is too long to be looked at to its end",
     "grasp": "the hand does not hold what it should",
     "support": "a body that is not held does not stand on anything, or not still",
 }

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from tamp.simulation.physics import Solid, World
 from tamp.verification.course import Held
+from tamp.verification.makers_limits import limits_of
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
 
@@ -20,6 +22,12 @@ COARSE = 0.2
 SPARE = 1.1
 """How much finer than the chords ask for."""
 PASSES = 4
+REACH = 2.0
+"""Metres from any joint to any point of the robot and what it holds, roughly: for the size of a piece only."""
+PIECE = 4096
+"""Samples of a piece of a motion that are made at once, at most, by a rough count."""
+STRETCH = 64
+"""Rows of a piece, at most."""
 
 
 class Sampler:
@@ -40,11 +48,34 @@ class Sampler:
         return frames[:, -3] @ (self._T_hand_tool @ held.T_tool_body)
 
     def clipped(self, rows: Array) -> Array:
-        """Rows no farther out of the limits than matters; that they are out of them is reported elsewhere."""
-        room, robot = self._world.scene.room, self._robot
-        low = np.array([room.x[0] - 1, room.y[0] - 1, -100.0, *(limit - 1 for limit in robot.lower), 0.0])
-        high = np.array([room.x[1] + 1, room.y[1] + 1, 100.0, *(limit + 1 for limit in robot.upper), robot.opening])
+        """Rows no farther out of the limits than matters; that they are out of them is reported elsewhere.
+
+        The yaw has no limits: it stays as it is.
+        """
+        room, robot = self._world.scene.room, limits_of(self._robot)
+        low = np.array([room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0])
+        high = np.array([room.x[1] + 1, room.y[1] + 1, np.inf, *(limit + 1 for limit in robot.upper), robot.opening])
         return np.clip(rows, low, high)
+
+    def pieces(self, rows: Array, times: Array) -> Iterator[tuple[Array, Array]]:
+        """A motion's rows and times in pieces that fit into memory, however far apart its rows are."""
+        rows = _unwound(self.clipped(rows))
+        if len(rows) == 1:
+            yield rows, times
+            return
+        change = np.abs(np.diff(rows, axis=0))
+        ways = np.linalg.norm(change[:, :2], axis=1) + REACH * change[:, 2:10].sum(axis=1)
+        first, cost = 0, 0.0
+        for edge, needs in enumerate((ways / STEP).tolist()):
+            if edge > first and (cost + needs > PIECE or edge - first >= STRETCH):
+                yield rows[first : edge + 1], times[first : edge + 1]
+                first, cost = edge, 0.0
+            cost += needs
+            if needs > PIECE:
+                yield from _cut(rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE))
+                first, cost = edge + 1, 0.0
+        if first < len(rows) - 1:
+            yield rows[first:], times[first:]
 
     def sampled(self, rows: Array, times: Array, held: Held | None) -> tuple[Array, Array, Array]:
         """Rows and times with samples between, and the links' frames at each, shape (n, links, 4, 4)."""
@@ -97,6 +128,28 @@ def _divided(rows: Array, times: Array, parts: Array) -> tuple[Array, Array]:
     index = np.arange(len(rows))
     columns = [np.interp(positions, index, column) for column in (times, *rows.T)]
     return np.column_stack(columns[1:]), columns[0]
+
+
+def _unwound(rows: Array) -> Array:
+    """The same motion with yaws near zero, and with no more turns than make a difference.
+
+    A base that turns on the spot is everywhere after one turn; one that moves on by less than STEP in a turn is, after
+    as many turns as it goes STEPs, within STEP of wherever it was.
+    """
+    turning = np.diff(rows[:, 2])
+    moved = np.linalg.norm(np.diff(rows[:, :2], axis=0), axis=1)
+    kept = math.tau * np.maximum(1.0, np.ceil(moved / STEP))
+    turning = np.where(np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning)
+    rows = rows.copy()
+    rows[:, 2] = rows[0, 2] % math.tau + np.concatenate([[0.0], np.cumsum(turning)])
+    return rows
+
+
+def _cut(edge: Array, times: Array, count: int) -> Iterator[tuple[Array, Array]]:
+    """An edge of two rows in equal pieces."""
+    for piece in range(count):
+        share = np.array([[piece / count], [(piece + 1) / count]])
+        yield edge[0] + share * (edge[1] - edge[0]), times[0] + share[:, 0] * (times[1] - times[0])
 
 
 def _base_frames(rows: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,8 +20,6 @@ TOLERANCE = 0.001
 """Metres of penetration that are not yet a collision."""
 REACH = 0.02
 """Metres up to which clearance is measured."""
-STRETCH = 64
-"""Rows of a motion that are sampled together."""
 BLOCK = 512
 """Samples that are looked at together."""
 
@@ -63,11 +62,15 @@ class _Block:
 
 @dataclass
 class Findings:
-    """What a sweep met: the deepest penetration of each pair, the nearest miss, and how many states were looked at."""
+    """What a sweep met: the deepest penetration of each pair, the nearest miss, and how many states were looked at.
+
+    It ends, somewhere in the motion, when they are more than `most`.
+    """
 
     worst: dict[tuple[str, str], Contact] = field(default_factory=dict)
     nearest: Contact | None = None
     states: int = 0
+    most: float = math.inf
 
     def met(self, contact: Contact, counts_as_clearance: bool) -> None:
         """Take note of a contact or near miss."""
@@ -76,6 +79,11 @@ class Findings:
             self.worst[pair] = contact
         if counts_as_clearance and (self.nearest is None or contact.distance < self.nearest.distance):
             self.nearest = contact
+
+    @property
+    def full(self) -> bool:
+        """Whether as many states as wanted were looked at."""
+        return self.states > self.most
 
     @property
     def margin(self) -> float:
@@ -119,9 +127,10 @@ class Sweeper:
             natural: Nearness that is no matter of clearance, and contact that is no collision.
             against: Look only at these bodies, and not at the robot itself.
         """
-        for start in range(0, max(len(rows) - 1, 1), STRETCH):  # a file may hold any number of rows, however far apart
-            some = slice(start, start + STRETCH + 1)
-            self._sweep(self._sampler.clipped(rows[some]), times[some], held, findings, natural, against)
+        for some, then in self._sampler.pieces(rows, times):
+            if findings.full:
+                return
+            self._sweep(some, then, held, findings, natural, against)
 
     def _sweep(
         self, rows: Array, times: Array, held: Held | None, findings: Findings, natural: Natural,

@@ -12,6 +12,7 @@ from tamp.errors import InputError
 from tamp.world.bodies import Draft, read_body
 from tamp.world.placing import FLOOR, place_bodies
 from tamp.world.scene import RobotStart, Room, Scene
+from tamp.world.steadying import steady
 from tamp.world.yaml_nodes import Node, Passage, read_yaml
 
 _KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
@@ -69,7 +70,8 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         body: read_body(body, node, path.parent) for body, node in entries["bodies"].mapping().items()
     }  # fmt: skip
     _check_names(drafts)
-    bodies, warnings = place_bodies(drafts)
+    placed, warnings = place_bodies(drafts)
+    bodies, unsteady = steady(placed, drafts)
     meshes = [(body, draft.mesh) for body, draft in drafts.items() if draft.mesh]
     samplers = entries["samplers"].mapping() if "samplers" in entries else {}
     return LoadedProblem(
@@ -81,7 +83,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         metric=entries["metric"].passage() if "metric" in entries else None,
         samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
-        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings),
+        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
         lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
     )
 
@@ -120,7 +122,8 @@ def _arm(node: Node, model: str) -> tuple[float, ...]:
     angles = tuple(joint.angle() for joint in joints)
     for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):
         if not low <= angle <= high:
-            raise joint.error(f"{angle:g} rad is outside of the joint's limits [{low:g}, {high:g}]")
+            what = f"{angle:g} rad is outside of the joint's limits [{low:.5g}, {high:.5g}]"
+            raise joint.error(f"{what}, the maker's less a margin")
     return angles
 
 

@@ -162,10 +162,7 @@ class _Placing:
             for index, place in enumerate(places)
             if abs(low[2] - place.pose.position[2]) <= _SNAP and place.outside(base) == 0
         ]
-        if not under:
-            self.warnings.append(
-                f"{body.name} hangs in the air: no surface is within 2 mm under it (say 'on:', or 'fixed: true')"
-            )
+        if not under:  # in the air, or on several bodies: `steady` asks
             return body
         _, _, place = min(under)
         return replace(body, pose=_on(body, body.pose, place.pose.position[2]), support=place.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +37,7 @@ class Robot:
         T_flange_hand: The hand in the last arm link's frame.
         T_hand_tool: The tool in the hand's frame: between the pads, z along the fingers, y the closing direction.
         fingers: The left and the right finger's prismatic joint; at opening w each stands at w / 2.
-        lower, upper: The arm's joint limits, radians.
+        lower, upper: The range of the arm's joints in plans, radians: the maker's, MARGIN less on both sides.
         velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second (squared).
         home: The arm's compact carrying configuration, in which the base drives.
         opening: The largest opening of the fingers, metres.
@@ -62,12 +62,28 @@ class Robot:
     urdf: Path
 
 
+MARGIN = math.radians(0.5)
+"""Radians that plans keep from the limits of the arm's joints."""
+
+PANDA_LOWER = (-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973)
+"""The Panda's joints by its maker, radians, at least,"""
+
+PANDA_UPPER = (2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973)
+"""and at most."""
+
+
+FINGER_SPEED = 0.05
+"""Metres a second of each finger of Franka's hand, by its data sheet."""
+
+
 def panda_mobile() -> Robot:
     """Our box-shaped base with pybullet_data's Franka Panda and its hand, mounted near the base's front edge.
 
     There, rather than 5 cm further back, twice as many base poses reach the middle of a table from above.
-    The collision hulls are precomputed by benchmarks/build_robot_hulls.py; velocities are the URDF's (and the
-    datasheet's), accelerations a third of the datasheet's, so that a held object is not shaken.
+    The collision hulls are precomputed by benchmarks/build_robot_hulls.py. Ranges and velocities of the joints are the
+    maker's ("Robot and interface specifications" of the Franka Control Interface), not the URDF's, whose ranges are
+    wider; accelerations are a third of the maker's, so that a held object is not shaken. The maker's limits of the jerk
+    (3,750 to 10,000 rad/s3) are not looked at: accelerations change in steps, which the arm's controller rounds off.
 
     Raises:
         InputError: pybullet_data is not installed.
@@ -88,10 +104,13 @@ def panda_mobile() -> Robot:
         joints=joints,
         T_flange_hand=named["panda_joint8"].origin @ named["panda_hand_joint"].origin,
         T_hand_tool=Pose((0.0, 0.0, 0.1034)),
-        fingers=(named["panda_finger_joint1"], named["panda_finger_joint2"]),
-        lower=tuple(joint.lower for joint in joints),
-        upper=tuple(joint.upper for joint in joints),
-        velocity=(0.6, 0.6, 1.0, *(joint.velocity for joint in joints)),
+        fingers=(
+            replace(named["panda_finger_joint1"], velocity=FINGER_SPEED),
+            replace(named["panda_finger_joint2"], velocity=FINGER_SPEED),
+        ),
+        lower=tuple(low + MARGIN for low in PANDA_LOWER),
+        upper=tuple(high - MARGIN for high in PANDA_UPPER),
+        velocity=(0.6, 0.6, 1.0, 2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61),
         acceleration=(0.8, 0.8, 1.5, 5.0, 2.5, 3.3, 4.1, 5.0, 6.6, 6.6),
         home=(0.0, -1.0, 0.0, -2.0, 0.0, 1.0, math.pi / 4),
         opening=0.08,

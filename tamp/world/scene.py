@@ -103,6 +103,7 @@ class Body:
         movable: Whether the robot may move it.
         support: The surface or cavity that it was declared to stand on (`on:`), or rests on by geometry, or the movable
             body that carries it; None when it floats or is fixed.
+        carriers: The movable bodies that it rests on, one or several.
         visual: The mesh file to draw, when there is one.
         visual_scale: Factors by which the file's x, y, z are multiplied to be metres.
         visual_pose: Pose of the scaled mesh's frame in the body's (a URDF's visual origin).
@@ -118,6 +119,7 @@ class Body:
     surfaces: tuple[Surface, ...] = ()
     cavities: tuple[Cavity, ...] = ()
     support: str | None = None
+    carriers: tuple[str, ...] = ()
     visual: Path | None = None
     visual_scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     visual_pose: Pose = Pose()

@@ -97,3 +97,14 @@ def test_pauses_of_hours_are_left_out(plan_file: Path, tmp_path: Path, capsys: p
     file.write_text(json.dumps(plan), encoding="utf-8")
     assert exit_of(str(file)) == 2
     assert "do not increase" in capsys.readouterr().err
+
+
+def test_motions_out_of_range_are_refused_at_once(
+    plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    document = json.loads(plan_file.read_text(encoding="utf-8"))
+    arm = document["actions"][1]["segments"][0]
+    arm["positions"] = [[5.0 * (-1) ** k] * 7 for k in range(200)]
+    arm["times"] = [20.0 * k for k in range(200)]
+    assert exit_of(str(copy(plan_file, tmp_path, actions=document["actions"]))) == 2
+    assert "panda_joint1 is out of range: 5" in capsys.readouterr().err

@@ -87,3 +87,14 @@ def test_the_seed_decides(steering: str) -> None:
     first, second = (_plan(Sampled(round_table, 0.05), seed=4, steering=steering) for _ in range(2))
     assert first.path is not None and second.path is not None
     assert np.array_equal(first.path, second.path) and first.checks == second.checks
+
+
+@pytest.mark.parametrize("steering", ["se2", "reeds-shepp"])
+@pytest.mark.parametrize("yaw", [np.pi, -np.pi, 3 * np.pi, np.radians(179.99999)])
+def test_a_start_turned_round_drives_off(steering: str, yaw: float) -> None:
+    checker = Sampled(round_table, 0.05)
+    for start, goal in (((-2.0, 0.0, yaw), GOAL), (START, (2.0, 0.0, yaw)), ((-2.0, 0.0, yaw), (2.0, 0.0, yaw))):
+        planned = _plan(checker, np.array(start), np.array(goal), steering=steering)
+        assert planned.path is not None and len(planned.path) > 2
+        assert np.array_equal(planned.path[0], start) and _same_place(planned.path[-1], np.array(goal))
+        assert _certified(checker, planned.path)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
@@ -139,3 +140,38 @@ def test_a_curve_keeps_its_turning_radius() -> None:
         assert np.all(travelled <= 0.02 + 1e-9)
         looked += 1
     assert looked == 20
+
+
+TURNS = [math.pi, -math.pi, 3 * math.pi, math.radians(179.99999), math.nextafter(math.pi, 0.0), -3 * math.pi, 0.0]
+
+
+@pytest.mark.parametrize("radius", [None, 0.5])
+@pytest.mark.parametrize("yaw", TURNS)
+def test_no_yaw_makes_the_planner_wait(radius: float | None, yaw: float) -> None:
+    plane = PlaneSpace((-2.0, 2.0), (-2.0, 2.0), radius)
+    pillar = np.array([0.0, 0.0])
+
+    def edge_free(a: Array, b: Array) -> bool:
+        return all(float(np.linalg.norm(a[:2] + t * (b - a)[:2] - pillar)) > 0.5 for t in np.linspace(0.0, 1.0, 30))
+
+    for start, goal in ((yaw, 1.0), (1.0, yaw), (yaw, yaw)):
+        began = time.monotonic()
+        ends = np.array([-1.5, 0.0, start]), np.array([1.5, 0.1, goal])
+        path, checks = connect(
+            plane, ends[0], [ends[1]], edge_free, seed=1, checks=3000, deadline=Deadline(20), reach=1.0
+        )  # fmt: skip
+        assert path is not None and checks > 0
+        assert np.all(path[:, 2] >= -math.pi) and np.all(path[:, 2] < math.pi)
+        assert time.monotonic() - began < 10
+
+
+def test_ends_out_of_the_bounds_are_no_reason_to_wait() -> None:
+    outside = np.array([3.5, *[0.0] * 6])
+    nowhere = np.full(7, np.nan)
+    for start, goals in ((outside, [GOAL]), (START, [outside]), (START, [nowhere]), (nowhere, [GOAL])):
+        began = time.monotonic()
+        path, checks = connect(SPACE, start, goals, _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
+        assert path is None and checks == 0
+        assert time.monotonic() - began < 5
+    path, _ = connect(SPACE, START, [outside, GOAL], _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
+    assert path is not None and np.array_equal(path[-1], GOAL)

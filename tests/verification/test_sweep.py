@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -104,3 +105,45 @@ def test_fingers_may_touch_what_they_close_on(world: World) -> None:
     sweeper.sweep(narrow[None], np.zeros(1), None, findings)
     assert ("panda_leftfinger", "stick") in findings.worst
     world.place("stick", STICK.pose.matrix)
+
+
+@pytest.mark.parametrize("turns", [3, 17, 400, 10**6, 1e15])
+def test_a_base_that_turns_on_and_on_is_looked_at_where_it_is(world: World, turns: float) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings()
+    # The post is beside the base, where only a turned base reaches: at its corner's radius from the centre.
+    rows = np.array([row(1.53), row(1.53, yaw=2 * math.pi * turns + 0.1)])
+    sweeper.sweep(rows, np.array([0.0, 100.0]), None, findings)
+    assert ("base", "post") in findings.worst
+    assert findings.states < 10_000
+
+
+def test_a_base_that_turns_while_it_drives_is_looked_at_along_its_way(world: World) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings()
+    rows = np.array([row(0.0, 0.5), row(2.0, 0.5, yaw=1e4)])
+    sweeper.sweep(rows, np.array([0.0, 1e4]), None, findings)
+    assert ("base", "post") in findings.worst
+    assert findings.states < 500_000
+
+
+def test_a_sweep_ends_when_it_has_looked_enough(world: World, rng: np.random.Generator) -> None:
+    sweeper, findings = Sweeper(world, ROBOT), Findings(most=3_000)
+    arms = rng.uniform(ROBOT.lower, ROBOT.upper, (500, 7))
+    rows = np.array([row(arm=arm) for arm in arms])
+    sweeper.sweep(rows, np.arange(500.0), None, findings)
+    assert findings.full
+    assert findings.states < 30_000
+
+
+def test_pieces_of_a_motion_join_to_the_motion(world: World, rng: np.random.Generator) -> None:
+    sampler = Sampler(world, ROBOT)
+    yaws = np.cumsum(rng.uniform(-40.0, 40.0, 200))
+    rows = np.array([row(float(rng.uniform(-2, 2)), 0.0, yaw) for yaw in yaws])
+    times = np.arange(200.0)
+    pieces = list(sampler.pieces(rows, times))
+    assert len(pieces) > 3
+    for (before, at), (after, then) in itertools.pairwise(pieces):
+        assert np.allclose(before[-1], after[0])
+        assert at[-1] == pytest.approx(then[0])
+    assert np.allclose(pieces[-1][0][-1, :2], rows[-1, :2])
+    turned = pieces[-1][0][-1, 2] - rows[-1, 2]
+    assert math.sin(turned / 2) == pytest.approx(0.0, abs=1e-9)

@@ -5,12 +5,16 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tamp.verification.cli import main
+from tamp.verification.replay import LOOKS, LOOKS_BEYOND
 from tamp.verification.report import KINDS
+from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 Plan = dict[str, Any]
@@ -237,3 +241,63 @@ def test_a_spoilt_plan_is_rejected(plan: Plan, name: str) -> None:
     found = [violation for violation in report.violations if violation.kind == kind and fragment in str(violation)]
     assert found, report.text()
     assert kind in report.text()
+
+
+def test_a_base_that_turned_often_is_judged_where_it_is(plan: Plan) -> None:
+    spun = segment(plan, MOVE_LOADED, 0)
+    rows = np.array(spun["positions"])
+    rows[:, 0] += 0.12 * np.sin(np.linspace(0, np.pi, len(rows))) ** 2
+    for whole in (0, 40):  # 40 turns are 251 rad
+        turned = rows.copy()
+        turned[:, 2] += 2 * np.pi * whole
+        spun["positions"] = turned.tolist()
+        retime(plan, MOVE_LOADED, 0, lambda times: 10 * times)
+        assert any(one.kind == "collision" for one in verify(plan).violations), whole
+
+
+def test_a_plan_far_beyond_the_limits_gets_its_verdict_soon(plan: Plan) -> None:
+    wild = segment(plan, PICK, 0)
+    rows = [[5.0 * (-1) ** k] * 7 for k in range(2000)]
+    wild["positions"] = [wild["positions"][0], *rows, wild["positions"][-1]]
+    wild["times"] = np.linspace(0.0, 40_000.0, len(wild["positions"])).tolist()
+    report = verify(plan)
+    assert any(one.kind == "limit" for one in report.violations)
+    assert report.states < 20_000
+
+
+def test_a_motion_longer_than_the_judge_looks_at_does_not_hold(plan: Plan) -> None:
+    long = segment(plan, MOVE_LOADED, 0)
+    start, end = np.array(long["positions"][0]), np.array(long["positions"][-1])
+    # To and fro in the free part of the room, ever turning.
+    wild = [[start[0] - 0.5 * (k % 2), start[1], 2000.0 * k] for k in range(60)]
+    long["positions"] = [start.tolist(), *wild[1:], end.tolist()]
+    long["times"] = [2100.0 * k for k in range(len(long["positions"]))]
+    long["times"][-1] += 2e5
+    report = verify(plan)
+    assert any(one.kind == "unchecked" for one in report.violations)
+
+
+def test_the_makers_limits_bind_and_not_the_urdfs(plan: Plan) -> None:
+    rows = np.array(segment(plan, PICK, 0)["positions"])
+    detour(plan, PICK, 0, 1, -1.80 - float(rows[len(rows) // 2, 1]))
+    worst = [one.message for one in verify(plan).violations if one.kind == "limit"]
+    assert worst and worst[0].startswith("panda_joint2 is out of range: -1.8")
+
+
+def test_fingers_faster_than_the_hands_own_are_noticed(plan: Plan) -> None:
+    retime(plan, PICK, 1, lambda times: 0.5 * times)  # 30 mm in a quarter of a second; the hand opens 100 mm a second
+    assert any(one.kind == "velocity" and "opening" in one.message for one in verify(plan).violations)
+
+
+def test_the_tolerances_are_said_in_the_help_and_in_the_documentation(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    said, written = capsys.readouterr().out, (root / "docs" / "how-it-works.md").read_text(encoding="utf-8")
+    rows = tolerances()
+    assert len(rows) > 8
+    for what, much in rows:
+        assert what in said and much in said
+        assert f"| {what} | {much} |" in written
+    assert f"{LOOKS:,} states" in written and f"{LOOKS_BEYOND:,}" in written

@@ -55,7 +55,12 @@ def test_the_base_is_above_the_floor_and_of_the_asked_size(robot: Robot) -> None
 
 
 def test_limits(robot: Robot) -> None:
-    assert robot.lower[3] == -3.1416 and robot.upper[5] == 3.8223  # the URDF's
+    margin = np.radians(0.5)
+    maker = [(-2.8973, 2.8973), (-1.7628, 1.7628), (-2.8973, 2.8973), (-3.0718, -0.0698), (-2.8973, 2.8973),
+             (-0.0175, 3.7525), (-2.8973, 2.8973)]  # fmt: skip
+    assert np.allclose(np.column_stack([robot.lower, robot.upper]), np.array(maker) + np.array([margin, -margin]))
+    assert robot.velocity[3:] == (2.175,) * 4 + (2.61,) * 3
+    assert all(j.lower < lo and up < j.upper for j, lo, up in zip(robot.joints, robot.lower, robot.upper, strict=True))
     assert all(lo < q < up for lo, q, up in zip(robot.lower, robot.home, robot.upper, strict=True))
     assert len(robot.velocity) == len(robot.acceleration) == 10 and min(robot.velocity + robot.acceleration) > 0
 
