@@ -119,6 +119,7 @@ class Adaptive(Run):
         if found.plan is None:
             if self.deadline.passed:
                 raise OutOfTime
+            self.doubtful = True
             return None if self.recall() or self.deepen() else self.hopeless()
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
