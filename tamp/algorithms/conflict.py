@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import combinations
 
+from tamp.algorithms.optimistic import MARK
 from tamp.clock import Deadline
 from tamp.pddl.structs import And, Fact, Formula
 from tamp.search.forward import Reason, search
-from tamp.search.mutex import excluded, goal_parts
+from tamp.search.goal_ways import goal_parts
+from tamp.search.mutex import excluded
 from tamp.search.normal import show
 from tamp.search.operators import Goal, Grounded
 
@@ -36,9 +38,14 @@ def conflict(grounded: Grounded, deadline: Deadline, goal: Formula, ground: Grou
         ground: Grounds the task with another goal.
     """
     found = excluded(grounded, deadline)
-    if found is not None and any(literal[0][0] in grounded.meanings for literal in found):
+    if found is not None and any(_is_odd(fact, grounded) for fact, _ in found):
         return _conjuncts(goal, ground, deadline) or _texts(grounded, found)
     return _texts(grounded, found or _searched(grounded, deadline))
+
+
+def _is_odd(fact: Fact, grounded: Grounded) -> bool:
+    """Whether nobody wrote it so: an auxiliary fact, or one about a placeholder."""
+    return fact[0] in grounded.meanings or any(word.startswith(MARK) for word in fact)
 
 
 def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, ...]:

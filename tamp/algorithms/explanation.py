@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from tamp.algorithms.conflict import Ground, conflict
+from tamp.algorithms.kept import kept_from
 from tamp.algorithms.missing import Missing
 from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Node, Skeleton
@@ -80,6 +81,11 @@ def explain_infeasible(
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
     what = goals[0] if goals else "the goal"
+    calls = {_call(problem, *key): (frozenset(_names(problem, key[1])), why.reason) for key, why in dead.items()}
+    forbidding = kept_from(problem, grounded, calls, what)
+    kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
+    if kept:
+        return tuple(dict.fromkeys((*kept, *lines)))
     return tuple(dict.fromkeys((*lines, f"every way to {what} was searched, and none leads there")))
 
 

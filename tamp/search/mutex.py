@@ -7,15 +7,14 @@ The h2 reachability of Haslum and Geffner (AIPS 2000), each fact's partners in o
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import combinations
 
 from tamp.clock import Deadline
 from tamp.pddl.structs import Fact
-from tamp.search.operators import Axiom, Grounded, Operator
-
-ALTERNATIVES = 512
-"""Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
+from tamp.search.goal_ways import Literal, Part, goal_parts
+from tamp.search.lasting import lasting
+from tamp.search.operators import Grounded, Operator
 
 STEPS = 20_000
 """Choices looked at in the attempt to let all goals hold together."""
@@ -23,23 +22,9 @@ STEPS = 20_000
 MOST_PAIRS = 4_000_000
 """Pairs of facts of the largest task that is looked at: 2,000 facts take some seconds."""
 
-Literal = tuple[Fact, bool]
-"""A fact, and whether it is to hold."""
-
-Way = frozenset[Literal]
-"""Literals over fluents that together make a goal hold."""
-
 
 class Undecided(Exception):
     """The task is too large, or the time is up: nothing is known."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of the goal: the literal that names it, and all ways in which it can hold."""
-
-    literal: Literal
-    ways: tuple[Way, ...]
 
 
 def excluded(grounded: Grounded, deadline: Deadline) -> tuple[Literal, ...] | None:
@@ -51,21 +36,9 @@ def excluded(grounded: Grounded, deadline: Deadline) -> tuple[Literal, ...] | No
     """
     try:
         parts = goal_parts(grounded)
-        return Mutexes(grounded, parts, deadline).conflict()
+        return Mutexes(replace(grounded, operators=lasting(grounded).operators), parts, deadline).conflict()
     except Undecided:
         return None
-
-
-def goal_parts(grounded: Grounded) -> list[Part]:
-    """The goal's conjuncts, universal ones taken apart, each with its ways to hold."""
-    rules = _by_head(grounded.axioms)
-    literals = [(fact, True) for fact in sorted(grounded.goal.positive)]
-    literals += [(fact, False) for fact in sorted(grounded.goal.negative)]
-    opened: dict[Literal, None] = {}
-    for literal in literals:
-        for part in _opened(literal, rules, grounded.meanings.keys(), ()):
-            opened[part] = None
-    return [Part(literal, tuple(_ways(literal, rules, frozenset()))) for literal in opened]
 
 
 class Mutexes:
@@ -256,68 +229,3 @@ class Mutexes:
     def _look(self) -> None:
         if self._deadline.passed:
             raise Undecided
-
-
-Rules = dict[Fact, list[Axiom]]
-
-
-def _by_head(axioms: Iterable[Axiom]) -> Rules:
-    rules: Rules = {}
-    for axiom in axioms:
-        rules.setdefault(axiom.head, []).append(axiom)
-    return rules
-
-
-def _body(axiom: Axiom) -> list[Literal]:
-    return [*((fact, True) for fact in sorted(axiom.positive)), *((fact, False) for fact in sorted(axiom.negative))]
-
-
-def _opened(literal: Literal, rules: Rules, auxiliary: Iterable[str], above: tuple[Fact, ...]) -> Iterator[Literal]:
-    """The conjuncts that an auxiliary fact stands for; the literal itself where it stands for something else."""
-    fact, wanted = literal
-    made = rules.get(fact, [])
-    if fact[0] in auxiliary and fact not in above:
-        if wanted and len(made) == 1:
-            for part in _body(made[0]):
-                yield from _opened(part, rules, auxiliary, (*above, fact))
-            return
-        if not wanted and made and all(len(_body(axiom)) == 1 for axiom in made):
-            for axiom in made:
-                ((part, sign),) = _body(axiom)
-                yield from _opened((part, not sign), rules, auxiliary, (*above, fact))
-            return
-    yield literal
-
-
-ANY: list[Way] = [frozenset()]
-"""How a literal holds of which nothing is known."""
-
-
-def _ways(literal: Literal, rules: Rules, above: frozenset[Fact]) -> list[Way]:
-    """Conjunctions of fluent literals of which one holds wherever the literal does."""
-    fact, wanted = literal
-    if fact not in rules:
-        return [frozenset((literal,))]
-    if fact in above:
-        return ANY
-    above |= {fact}
-    if wanted:
-        ways: list[Way] = []
-        for axiom in rules[fact]:
-            ways += _product([_ways(part, rules, above) for part in _body(axiom)])
-        return ways if len(ways) <= ALTERNATIVES else ANY
-    failing: list[list[Way]] = []
-    for axiom in rules[fact]:
-        failing.append([way for part, sign in _body(axiom) for way in _ways((part, not sign), rules, above)])
-    return _product(failing)
-
-
-def _product(choices: list[list[Way]]) -> list[Way]:
-    """One of each, joined; without those that contradict themselves. Choices beyond ALTERNATIVES are left open."""
-    ways = ANY
-    for choice in sorted(choices, key=len):
-        if len(ways) * len(choice) > ALTERNATIVES:
-            continue
-        joined = (a | b for a in ways for b in choice)
-        ways = [way for way in joined if not any((fact, not sign) in way for fact, sign in way)]
-    return ways
