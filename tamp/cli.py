@@ -50,11 +50,24 @@ def run(arguments: list[str], started: float | None = None) -> int:
     try:
         return _solve(parsed(arguments), time.monotonic() if started is None else started)
     except InputError as error:
+        _hush()
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        _hush()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    finally:
+        _hush()
+
+
+_SHOWN: list[Progress] = []
+"""What speaks while the command works."""
+
+
+def _hush() -> None:
+    while _SHOWN:
+        _SHOWN.pop().end()
 
 
 def _solve(arguments: Arguments, started: float) -> int:
@@ -92,6 +105,9 @@ def _solve(arguments: Arguments, started: float) -> int:
         registry=registry(),
         steering=arguments.steering,
     )
+    shown = Progress(quiet=arguments.quiet or arguments.json)
+    _SHOWN.append(shown)
+    shown.begin("loading")
     problem = load()
     known = {}
     domain_name = problem.stream_task.task.domain.name
@@ -99,8 +115,9 @@ def _solve(arguments: Arguments, started: float) -> int:
         check_writable(arguments.statistics)
         known = read_statistics(arguments.statistics, domain_name)
         problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
-    shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
+    shown.begin("searching")
+    loading = time.monotonic() - started
 
     def improved(plan: Solution) -> None:
         shown.clear()
@@ -123,12 +140,18 @@ def _solve(arguments: Arguments, started: float) -> int:
     asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
     because = None
     if asked:
-        shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
-        because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
-        shown.clear()
+        shown.line(f"{summary(solution, loading)}\n\n  looking for changes that would make it solvable ...")
+        because = why(
+            solution, lambda scene: load(scene=scene), max_time=arguments.time,
+            progress=shown.update, trying=shown.begin,
+        )  # fmt: skip
+    shown.begin("judging")
     verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
+    shown.begin("writing")
     written = write_plan(solution, arguments.out) if holds else None
+    if written is not None and arguments.execute:
+        shown.begin("executing")
     executed = _execute(written, arguments) if written is not None and arguments.execute else None
     if arguments.json:
         import json
@@ -143,13 +166,14 @@ def _solve(arguments: Arguments, started: float) -> int:
             document["execution"] = executed.json()
         say(json.dumps(document, indent=2))
     else:
-        shown.line(summary(solution) if because is None else because.text())
+        shown.line(summary(solution, loading) if because is None else because.text())
         _conclude(shown, arguments, written, verdict)
         if executed is not None:
             shown.line(f"\n{executed.text()}")
     if wishes.any:
         from tamp.view.open import film_of_solution
 
+        shown.begin("drawing")
         fulfil(wishes, *film_of_solution(solution), None, shown.line)
     if solution.outcome is Outcome.INTERRUPTED:
         return INTERRUPTED
@@ -168,6 +192,8 @@ def _solve_symbolic(arguments: Arguments, started: float) -> int:
     from tamp.symbolic.command import plan_files
 
     shown = Progress(quiet=arguments.quiet or arguments.json)
+    _SHOWN.append(shown)
+    shown.begin("searching")
     ended = plan_files(
         arguments.files,
         search=arguments.search,

@@ -221,9 +221,11 @@ class Run(Imagination):
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
         """What the run ends with; by default the explanation is what failed most."""
+        started = time.perf_counter()
         rows = () if outcome is Outcome.SOLVED else self.tallies()
         if explanation is None:
             explanation = explain_failures(self.problem, self.streams, rows, self.latest is not None)
+        self.effort.explaining_seconds += time.perf_counter() - started
         self.effort.draws = self.binder.units
         return Result(
             outcome=outcome,
