@@ -122,10 +122,8 @@ def tight_door(rng: Random) -> Case:
 def on_a_tray(rng: Random) -> Case:
     """The body shall stand on one that may be moved itself."""
     name = name_of(rng)
-    text = (
-        box(rng, name, "table")
-        + "  tray: {box: [0.3, 0.2, 0.02], on: table, at: [0.3, 0.0], surfaces: {tray_top: {at: [0.0, 0.0, 0.01], size: [0.3, 0.2]}}}\n"
-    )
+    top = "surfaces: {tray_top: {at: [0.0, 0.0, 0.01], size: [0.3, 0.2]}}"
+    text = box(rng, name, "table") + f"  tray: {{box: [0.3, 0.2, 0.02], on: table, at: [0.3, 0.0], {top}}}\n"
     return case("on_a_tray", rng, text, f"(on {name} tray_top)", (("tray",), ("may be moved",)))
 
 

@@ -19,10 +19,7 @@ WITHOUT_NEWS = 0.5
 """and while there is none."""
 
 _PRINTING = threading.RLock()  # held over a fork, so that no child begins with the other thread's half line
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(
-        before=_PRINTING.acquire, after_in_parent=_PRINTING.release, after_in_child=_PRINTING.release
-    )  # fmt: skip
+os.register_at_fork(before=_PRINTING.acquire, after_in_parent=_PRINTING.release, after_in_child=_PRINTING.release)
 
 
 def say(text: str) -> None:

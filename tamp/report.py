@@ -77,7 +77,7 @@ def _no_plan(solution: Solution, total: float) -> list[str]:
     sentence = {
         Outcome.TIMEOUT: f"No plan in {total:.1f} s",
         Outcome.INTERRUPTED: f"Interrupted after {total:.1f} s, no plan yet",
-    }.get(solution.outcome, f"{solution.outcome.value} ({total:.1f} s)")
+    }.get(solution.outcome, solution.outcome.value)
     if len(solution.explanation) == 1:
         mark = "." if solution.outcome is Outcome.INFEASIBLE else ":"
         return [f"{sentence}{mark} {solution.explanation[0]}"]
