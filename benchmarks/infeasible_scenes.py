@@ -37,7 +37,7 @@ class Case:
     cause: tuple[tuple[str, ...], ...]
 
 
-def _case(kind: str, rng: Random, bodies: str, goal: str, cause: tuple[tuple[str, ...], ...]) -> Case:
+def case(kind: str, rng: Random, bodies: str, goal: str, cause: tuple[tuple[str, ...], ...]) -> Case:
     """A case with some bodies that have nothing to do with it."""
     others = "".join(
         f"  other_{i}: {{box: [0.06, 0.06, {rng.uniform(0.08, 0.15):.3f}], on: table, "
@@ -47,74 +47,74 @@ def _case(kind: str, rng: Random, bodies: str, goal: str, cause: tuple[tuple[str
     return Case(kind, f"{HEAD.format(name=kind)}{bodies}{others}\ngoal: {goal}\n", cause)
 
 
-def _name(rng: Random) -> str:
+def name_of(rng: Random) -> str:
     return str(rng.choice(CANDIDATES))
 
 
-def _box(rng: Random, name: str, place: str, size: tuple[float, float, float] | None = None, at: str = "") -> str:
+def box(rng: Random, name: str, place: str, size: tuple[float, float, float] | None = None, at: str = "") -> str:
     x, y, z = size or (rng.uniform(0.04, 0.06), rng.uniform(0.04, 0.06), rng.uniform(0.08, 0.16))
     where = at or f"[{rng.uniform(-0.2, 0.2):.3f}, {rng.uniform(-0.15, 0.1):.3f}]"
     return f"  {name}: {{box: [{x:.3f}, {y:.3f}, {z:.3f}], on: {place}, at: {where}}}\n"
 
 
-def _cupboard(size: str = "[0.9, 0.42, 0.9]", options: str = "compartments: 2") -> str:
+def cupboard(size: str = "[0.9, 0.42, 0.9]", options: str = "compartments: 2") -> str:
     return f"  cupboard: {{furniture: cupboard, size: {size}, {options}, at: [-1.6, 0.3, 0.0], yaw: 90 deg}}\n"
 
 
 def start_too_high(rng: Random) -> Case:
     """The body stands on a board that no arm gets up to."""
-    name, height = _name(rng), rng.uniform(2.2, 2.6)
+    name, height = name_of(rng), rng.uniform(2.2, 2.6)
     board = f"  board: {{box: [0.8, 0.3, 0.03], at: [-1.6, 0.4, {height:.2f}], yaw: 90 deg, fixed: true}}\n"
-    bodies = board + _box(rng, name, "board", at="[0.0, 0.0]")
-    return _case("start_too_high", rng, bodies, f"(on {name} table)", ((name,), ("out of reach",)))
+    bodies = board + box(rng, name, "board", at="[0.0, 0.0]")
+    return case("start_too_high", rng, bodies, f"(on {name} table)", ((name,), ("out of reach",)))
 
 
 def start_outside(rng: Random) -> Case:
     """The body stands on a table far outside of the room."""
-    name = _name(rng)
+    name = name_of(rng)
     far = f"  far_table: {{furniture: table, size: [0.6, 0.6, 0.7], at: [{rng.uniform(4.6, 6):.2f}, 0.0, 0.0]}}\n"
-    bodies = far + _box(rng, name, "far_table", at="[0.0, 0.0]")
-    return _case("start_outside", rng, bodies, f"(on {name} table)", ((name,), ("outside of the room",)))
+    bodies = far + box(rng, name, "far_table", at="[0.0, 0.0]")
+    return case("start_outside", rng, bodies, f"(on {name} table)", ((name,), ("outside of the room",)))
 
 
 def goal_too_high(rng: Random) -> Case:
     """The surface that the goal names is out of the arm's reach."""
-    name, height = _name(rng), rng.uniform(2.2, 2.6)
+    name, height = name_of(rng), rng.uniform(2.2, 2.6)
     board = f"  loft: {{box: [0.8, 0.3, 0.03], at: [-1.6, 0.4, {height:.2f}], yaw: 90 deg, fixed: true}}\n"
-    bodies = board + _box(rng, name, "table")
-    return _case("goal_too_high", rng, bodies, f"(on {name} loft)", (("loft",), ("out of reach",)))
+    bodies = board + box(rng, name, "table")
+    return case("goal_too_high", rng, bodies, f"(on {name} loft)", (("loft",), ("out of reach",)))
 
 
 def too_tall(rng: Random) -> Case:
     """The body fits into the compartment neither upright nor lying."""
-    name, side = _name(rng), rng.uniform(0.2, 0.23)
-    bodies = _cupboard(f"[0.46, {side:.2f}, 0.86]", "compartments: [2, 2], plinth: 0.4")
-    bodies += _box(rng, name, "table", (0.07, rng.uniform(0.24, 0.28), rng.uniform(0.26, 0.32)))
-    return _case("too_tall", rng, bodies, f"(inside {name} cupboard_1)", ((name,), ("cupboard_1",), ("protrudes",)))
+    name, side = name_of(rng), rng.uniform(0.2, 0.23)
+    bodies = cupboard(f"[0.46, {side:.2f}, 0.86]", "compartments: [2, 2], plinth: 0.4")
+    bodies += box(rng, name, "table", (0.07, rng.uniform(0.24, 0.28), rng.uniform(0.26, 0.32)))
+    return case("too_tall", rng, bodies, f"(inside {name} cupboard_1)", ((name,), ("cupboard_1",), ("protrudes",)))
 
 
 def too_wide(rng: Random) -> Case:
     """No edge of the body is narrower than the open hand."""
-    name = _name(rng)
+    name = name_of(rng)
     size = (rng.uniform(0.1, 0.2), rng.uniform(0.1, 0.2), rng.uniform(0.1, 0.2))
-    bodies = _cupboard() + _box(rng, name, "table", size)
-    return _case("too_wide", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("no grasp",)))
+    bodies = cupboard() + box(rng, name, "table", size)
+    return case("too_wide", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("no grasp",)))
 
 
 def fixed(rng: Random) -> Case:
     """The goal wants a fixed body elsewhere."""
-    name = _name(rng)
+    name = name_of(rng)
     size = f"[{rng.uniform(0.05, 0.07):.3f}, 0.06, 0.12]"
-    bodies = _cupboard() + f"  {name}: {{box: {size}, on: table, at: [0.0, 0.0], fixed: true}}\n"
-    return _case("fixed", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("fixed",)))
+    bodies = cupboard() + f"  {name}: {{box: {size}, on: table, at: [0.0, 0.0], fixed: true}}\n"
+    return case("fixed", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("fixed",)))
 
 
 def two_places(rng: Random) -> Case:
     """The goal wants one body in two places."""
-    name, compartment = _name(rng), int(rng.integers(1, 3))
-    bodies = _cupboard() + _box(rng, name, "table")
+    name, compartment = name_of(rng), int(rng.integers(1, 3))
+    bodies = cupboard() + box(rng, name, "table")
     goal = f"(and (on {name} cupboard_top) (inside {name} cupboard_{compartment}))"
-    return _case("two_places", rng, bodies, goal, ((name,), ("cannot both", "exclude", "at once")))
+    return case("two_places", rng, bodies, goal, ((name,), ("cannot both", "exclude", "at once")))
 
 
 def too_small_for_all(rng: Random) -> Case:
@@ -124,27 +124,27 @@ def too_small_for_all(rng: Random) -> Case:
     bodies = f"  pedestal: {{box: [{side:.3f}, {side:.3f}, 0.7], at: [-1.4, 0.3, 0.35], fixed: true}}\n"
     names = [str(name) for name in rng.permutation(CANDIDATES)[:3]]
     for name, x in zip(names, (-0.4, -0.1, 0.2), strict=True):
-        bodies += _box(rng, name, "table", (width, width, 0.1), at=f"[{x}, 0.0]")
+        bodies += box(rng, name, "table", (width, width, 0.1), at=f"[{x}, 0.0]")
     goal = f"(and {' '.join(f'(on {name} pedestal)' for name in names)})"
     others = tuple(f"hits {name}" for name in names)
-    return _case("too_small_for_all", rng, bodies, goal, (("pedestal",), others))
+    return case("too_small_for_all", rng, bodies, goal, (("pedestal",), others))
 
 
 def covered(rng: Random) -> Case:
     """A fixed body covers the surface that the goal names."""
-    name = _name(rng)
+    name = name_of(rng)
     bodies = "  stand: {box: [0.4, 0.4, 0.6], at: [-1.4, 0.3, 0.3], fixed: true}\n"
     height = rng.uniform(0.2, 0.4)
     bodies += (
         f"  monitor: {{box: [0.39, 0.39, {height:.2f}], on: stand, at: [0.0, 0.0], fixed: true, surfaces: {{}}}}\n"
     )
-    bodies += _box(rng, name, "table")
-    return _case("covered", rng, bodies, f"(on {name} stand)", ((name,), ("stand",), ("hits monitor",)))
+    bodies += box(rng, name, "table")
+    return case("covered", rng, bodies, f"(on {name} stand)", ((name,), ("stand",), ("hits monitor",)))
 
 
 def caged(rng: Random) -> Case:
     """Fixed walls around the body leave no room for the hand."""
-    name = _name(rng)
+    name = name_of(rng)
     inner, height = rng.uniform(0.085, 0.1), rng.uniform(0.3, 0.4)
     at = (inner + 0.024) / 2
     bodies = ""
@@ -156,28 +156,28 @@ def caged(rng: Random) -> Case:
             f"yaw: {90 * i} deg, fixed: true, surfaces: {{}}}}\n"
         )
     bodies += f"  {name}: {{box: [0.05, 0.05, 0.1], on: table, at: [0.0, 0.0]}}\n"
-    bodies = _cupboard() + bodies
-    return _case("caged", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("hits wall_", "hand hits wall_")))
+    bodies = cupboard() + bodies
+    return case("caged", rng, bodies, f"(on {name} cupboard_top)", ((name,), ("hits wall_", "hand hits wall_")))
 
 
 def walled_in(rng: Random) -> Case:
     """A wall through the room separates the robot from the table with the body."""
-    name, x = _name(rng), rng.uniform(-0.9, -0.7)
+    name, x = name_of(rng), rng.uniform(-0.9, -0.7)
     size = f"[0.05, 6.0, {rng.uniform(1.6, 2.2):.2f}]"
     bodies = f"  wall: {{box: {size}, at: [{x:.2f}, 0.0, 1.1], fixed: true, surfaces: {{}}}}\n"
     bodies += "  side_table: {furniture: table, size: [0.6, 0.6, 0.7], at: [-2.1, 0.0, 0.0]}\n"
-    bodies += _box(rng, name, "side_table", at="[0.0, 0.0]")
-    reasons = ("straight ahead: wall",)
-    return _case("walled_in", rng, bodies, f"(on {name} table)", ((name, "move"), reasons))
+    bodies += box(rng, name, "side_table", at="[0.0, 0.0]")
+    reasons = ("straight ahead: wall", "no way leads there: wall")
+    return case("walled_in", rng, bodies, f"(on {name} table)", ((name, "move"), reasons))
 
 
 def loaded(rng: Random) -> Case:
     """On the body stands another one that is too wide for the hand."""
-    name = _name(rng)
-    bodies = _cupboard() + _box(rng, name, "table", (0.07, 0.07, 0.1), at="[0.0, 0.0]")
+    name = name_of(rng)
+    bodies = cupboard() + box(rng, name, "table", (0.07, 0.07, 0.1), at="[0.0, 0.0]")
     width = rng.uniform(0.1, 0.13)
     bodies += f"  slab: {{box: [{width:.3f}, {width:.3f}, {width:.3f}], on: {name}, at: [0.0, 0.0]}}\n"
-    return _case("loaded", rng, bodies, f"(on {name} cupboard_top)", (("slab",), ("no grasp",)))
+    return case("loaded", rng, bodies, f"(on {name} cupboard_top)", (("slab",), ("no grasp",)))
 
 
 KINDS: tuple[Callable[[Random], Case], ...] = (

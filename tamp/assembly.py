@@ -82,7 +82,8 @@ def assemble(
         tallies=result.tallies,
         warnings=(*problem.warnings, *result.warnings),
         seconds={
-            "total": seconds["total"], "search": result.effort.search_seconds, "timing": seconds["timing"], **by_stream
+            "total": seconds["total"], "search": result.effort.search_seconds, "timing": seconds["timing"],
+            "explaining": result.effort.explaining_seconds, "other tries": result.effort.apart_seconds, **by_stream
         },
         record=None if recorder is None else recorder.record(result.attempts(), used.values()),
         samplers=accounts(result.memory),

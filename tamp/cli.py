@@ -49,11 +49,24 @@ def run(arguments: list[str], started: float | None = None) -> int:
     try:
         return _solve(parsed(arguments), time.monotonic() if started is None else started)
     except InputError as error:
+        _hush()
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        _hush()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    finally:
+        _hush()
+
+
+_SHOWN: list[Progress] = []
+"""What speaks while the command works."""
+
+
+def _hush() -> None:
+    while _SHOWN:
+        _SHOWN.pop().end()
 
 
 def _solve(arguments: Arguments, started: float) -> int:
@@ -96,6 +109,9 @@ def _solve(arguments: Arguments, started: float) -> int:
         registry=registry(),
         steering=arguments.steering,
     )
+    shown = Progress(quiet=arguments.quiet or arguments.json)
+    _SHOWN.append(shown)
+    shown.begin("loading")
     problem = load()
     domain_name = problem.stream_task.task.domain.name
     given = sampler_files((*problem.samplers.values(), *given_names.values()))
@@ -105,8 +121,9 @@ def _solve(arguments: Arguments, started: float) -> int:
     if arguments.statistics is not None:
         known = read_statistics(arguments.statistics, domain_name)
         problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
-    shown = Progress(quiet=arguments.quiet or arguments.json)
     shown.line(headline(problem))
+    shown.begin("searching")
+    loading = time.monotonic() - started
 
     def improved(plan: Solution) -> None:
         shown.clear()
@@ -124,8 +141,10 @@ def _solve(arguments: Arguments, started: float) -> int:
         record=arguments.record or wishes.page,
     )
     shown.clear()
+    shown.begin("judging")
     verdict = _judge(plan_text(solution), problem.classifiers) if solution.solved and arguments.verify else None
     holds = solution.solved and (verdict is None or verdict.holds)
+    shown.begin("writing")
     written = write_plan(solution, arguments.out) if holds else None  # first of all: what fails later loses no plan
     later = None
     if arguments.statistics is not None:
@@ -136,9 +155,14 @@ def _solve(arguments: Arguments, started: float) -> int:
     asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
     because = None
     if asked:
-        shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
-        because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
+        shown.line(f"{summary(solution, loading)}\n\n  looking for changes that would make it solvable ...")
+        because = why(
+            solution, lambda scene: load(scene=scene), max_time=arguments.time,
+            progress=shown.update, trying=shown.begin,
+        )  # fmt: skip
         shown.clear()
+    if written is not None and arguments.execute:
+        shown.begin("executing")
     executed = _execute(written, arguments) if written is not None and arguments.execute else None
     if arguments.json:
         import json
@@ -153,13 +177,14 @@ def _solve(arguments: Arguments, started: float) -> int:
             document["execution"] = executed.json()
         say(json.dumps(document, indent=2))
     else:
-        shown.line(summary(solution) if because is None else because.text())
+        shown.line(summary(solution, loading) if because is None else because.text())
         _conclude(shown, arguments, written, verdict)
         if executed is not None:
             shown.line(f"\n{executed.text()}")
     if wishes.any:
         from tamp.view.open import film_of_solution
 
+        shown.begin("drawing")
         fulfil(wishes, *film_of_solution(solution), None, shown.line)
     if later is not None:
         raise later
@@ -183,6 +208,8 @@ def _solve_symbolic(arguments: Arguments, started: float) -> int:
     *domain, problem = arguments.files
     check_outputs(arguments.outputs, (*(find_domain(name) for name in domain), Path(problem)))
     shown = Progress(quiet=arguments.quiet or arguments.json)
+    _SHOWN.append(shown)
+    shown.begin("searching")
     ended = plan_files(
         arguments.files,
         search=arguments.search,

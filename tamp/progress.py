@@ -4,9 +4,22 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import time
 from dataclasses import dataclass, field
 from typing import Any
+
+SILENCE = 2.0
+"""Seconds after which a line says what is being done, where no terminal can rewrite one."""
+
+OFTEN = 0.1
+"""Seconds between two rewritings of a terminal's line while there is news,"""
+
+WITHOUT_NEWS = 0.5
+"""and while there is none."""
+
+_PRINTING = threading.RLock()  # held over a fork, so that no child begins with the other thread's half line
+os.register_at_fork(before=_PRINTING.acquire, after_in_parent=_PRINTING.release, after_in_child=_PRINTING.release)
 
 
 def say(text: str) -> None:
@@ -19,30 +32,80 @@ def say(text: str) -> None:
 
 @dataclass
 class Progress:
-    """A line on a terminal that is rewritten while planning goes on."""
+    """A line that says what a command does: rewritten on a terminal, elsewhere printed after two silent seconds.
+
+    Counters and clock only ever grow: what is done in another try comes on top of what was shown. While it is begun, a
+    thread speaks for a main thread that is busy in a long search.
+    """
 
     quiet: bool
+    phase: str = "searching"
     _started: float = field(default_factory=time.monotonic)
-    _last: float = 0.0
+    _last: float = field(default_factory=time.monotonic)
     _shown: bool = False
+    _before: tuple[int, int] = (0, 0)
+    _now: tuple[int, int] = (0, 0)
+    _stop: threading.Event | None = None
+
+    def begin(self, phase: str) -> None:
+        """Say from now on that this is being done, should it take long."""
+        self.clear()
+        self.phase = phase
+        self._before = self._counted
+        self._now = (0, 0)
+        if self._stop is None and not self.quiet:
+            self._stop = threading.Event()
+            threading.Thread(target=self._speak, args=(self._stop,), daemon=True).start()
+
+    def end(self) -> None:
+        """Say nothing more by itself."""
+        if self._stop is not None:
+            self._stop.set()
+            self._stop = None
+        self.clear()
 
     def line(self, text: str) -> None:
         """Print to stay."""
         if not self.quiet:
-            say(text)
+            with _PRINTING:
+                self.clear()
+                say(text)
+                self._last = time.monotonic()
 
     def update(self, effort: Any) -> None:
-        """Rewrite the progress line ten times a second; elsewhere than on a terminal, print one every five seconds."""
-        now = time.monotonic()
-        terminal = sys.stderr.isatty()
-        if self.quiet or now - self._last < (0.1 if terminal else 5.0) or (not terminal and now - self._started < 2.0):
-            return
-        self._last = now
-        text = f"  searching   {effort.skeletons} skeletons · {effort.draws:,} samples · {now - self._started:.1f} s"
-        print(f"\r{text}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True)
-        self._shown = terminal
+        """Note what was done so far, and rewrite the line where there is time for it."""
+        self._now = max(self._now[0], effort.skeletons), max(self._now[1], effort.draws)
+        self._tell(OFTEN)
 
     def clear(self) -> None:
         """Remove the progress line."""
-        if self._shown:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+        with _PRINTING:
+            if self._shown:
+                print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+                self._shown = False
+
+    @property
+    def _counted(self) -> tuple[int, int]:
+        return self._before[0] + self._now[0], self._before[1] + self._now[1]
+
+    def _tell(self, often: float) -> None:
+        now = time.monotonic()
+        with _PRINTING:
+            try:
+                terminal = sys.stderr.isatty()
+                if self.quiet or now - self._last < (often if terminal else SILENCE):
+                    return
+                self._last = now
+                skeletons, draws = self._counted
+                counts = f"{skeletons} skeletons · {draws:,} samples · " if skeletons or draws else ""
+                text = f"  {self.phase:<11} {counts}{now - self._started:.1f} s"
+                print(
+                    f"\r{text}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True
+                )
+                self._shown = terminal
+            except (OSError, ValueError):  # nobody listens any more
+                self.quiet = True
+
+    def _speak(self, stop: threading.Event) -> None:
+        while not stop.wait(WITHOUT_NEWS / 2):
+            self._tell(WITHOUT_NEWS)

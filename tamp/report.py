@@ -32,6 +32,10 @@ PARTS = {
 """Parts of the time in the summary, by the beginning of the streams' names; the first that fits."""
 
 
+APART = ("search", "timing", "explaining", "other tries")
+"""Parts of the time that are no streams'."""
+
+
 def headline(problem: Problem) -> str:
     """One line about the problem."""
     goal = problem.stream_task.task.goal
@@ -43,8 +47,8 @@ def headline(problem: Problem) -> str:
     )
 
 
-def summary(solution: Solution) -> str:
-    """What the command line prints when planning has ended."""
+def summary(solution: Solution, loading: float = 0.0) -> str:
+    """What the command line prints when planning has ended, after so many seconds before it began."""
     lines = [f"warning: {warning}" for warning in solution.warnings]
     total = solution.seconds.get("total", 0.0)
     if solution.solved:
@@ -60,7 +64,7 @@ def summary(solution: Solution) -> str:
             "",
             f"  {better}; lower bound of the cost {solution.bound:g}, gap {100 * (solution.gap or 0.0):.0f} %",
         ]
-    return "\n".join([*lines, *_tried(solution), "", *_effort(solution)])
+    return "\n".join([*lines, *_tried(solution), "", *_effort(solution, loading)])
 
 
 def improvement(solution: Solution) -> str:
@@ -151,18 +155,16 @@ def _base(segment: Segment, index: int) -> str:
     return f"({x + 0.0:.2f}, {y + 0.0:.2f}, {degrees + 0.0:.0f}°)"
 
 
-def _effort(solution: Solution) -> list[str]:
+def _effort(solution: Solution, loading: float) -> list[str]:
     total = max(solution.seconds.get("total", 0.0), 1e-9)
     parts: dict[str, float] = {}
     for name, seconds in solution.seconds.items():
-        part = name if name in ("search", "timing") else _part(name)
+        part = name if name in APART else _part(name)
         if part is not None:
             parts[part] = parts.get(part, 0.0) + seconds
-    times = [
-        f"{part} {100 * seconds / total:.0f} %"
-        for part, seconds in sorted(parts.items(), key=lambda item: -item[1])
-        if seconds > 0.005 * total
-    ]
+    rest = "improving" if solution.improvements else "other"
+    times = [f"{part} {share} %" for part, share in _shares(parts, total, rest)]
+    passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
     effort = solution.effort
     searched = [
         _count(effort.skeletons, "skeleton"),
@@ -176,10 +178,24 @@ def _effort(solution: Solution) -> list[str]:
             kept = _glued(f"{name} {statistics.successes} of {statistics.calls}")
             samples.append(f"{kept}{f' ({reasons})' if reasons else ''}")
     return [
-        *_listed("time", map(_glued, times)),
+        *_listed("time", map(_glued, times), passed),
         *_listed("search", map(_glued, searched)),
         *_listed("samples", samples),
     ]
+
+
+def _shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
+    """Whole percents of the time that add up to a hundred, the largest part first; `rest` is what no part claims."""
+    told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
+    told[rest] = max(0.0, total - sum(told.values()))
+    whole = max(total, sum(told.values()))
+    exact = {part: 100.0 * seconds / whole for part, seconds in told.items()}
+    shares = {part: math.floor(share) for part, share in exact.items()}
+    nearest = sorted(exact, key=lambda part: shares[part] - exact[part])
+    for part in nearest[: 100 - sum(shares.values())]:
+        shares[part] += 1
+    order = sorted(shares, key=lambda part: (part == rest, -exact[part]))
+    return [(part, shares[part]) for part in order if shares[part] > 0]
 
 
 def _glued(text: str) -> str:
@@ -187,12 +203,12 @@ def _glued(text: str) -> str:
     return text.replace(" ", "\u00a0")
 
 
-def _listed(label: str, items: Iterable[str]) -> list[str]:
-    """Items after a label, wrapped."""
+def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
+    """Items after a label, wrapped, perhaps with something before a colon."""
     lines = textwrap.wrap(
         "\u00a0· ".join(items),
         WIDTH,
-        initial_indent=f"  {label:<9}",
+        initial_indent=f"  {label:<9}{f'{first}: ' if first else ''}",
         subsequent_indent=" " * 11,
         break_long_words=False,
         break_on_hyphens=False,

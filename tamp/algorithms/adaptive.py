@@ -6,6 +6,7 @@ by counted work instead of the clock, so that the same seed gives the same plan.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -102,9 +103,7 @@ class Adaptive(Run):
                 elif dry == 0 and self._wanders(trails):
                     draws, trails = 10 * LITTLE * trails, 2 * trails
                 if draws:
-                    second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
-                    second.streams.remember(self.streams)
-                    result = second.solve(draws)
+                    result = self._second_opinion(draws)
                     if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED):
                         return result
                 self.progress(self.effort)
@@ -113,12 +112,25 @@ class Adaptive(Run):
         except KeyboardInterrupt:
             return self.stopped(Outcome.INTERRUPTED)
 
+    def _second_opinion(self, draws: int) -> Result:
+        """What the incremental algorithm ends with; the time that each of the two took is known to the other."""
+        began = time.perf_counter()
+        try:
+            second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
+            second.streams.remember(self.streams)
+            result = second.solve(draws)
+            result.effort.apart_seconds = max(0.0, self.deadline.elapsed() - (time.perf_counter() - began))
+            return result
+        finally:
+            self.effort.apart_seconds += time.perf_counter() - began
+
     def _round(self) -> Result | None:
         """Search, bind, learn."""
         found = self.search()
         if found.plan is None:
             if self.deadline.passed:
                 raise OutOfTime
+            self.doubtful = True
             return None if self.recall() or self.deepen() else self.hopeless()
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from tamp.algorithms.conflict import conflict
+from tamp.algorithms.conflict import Ground, conflict
+from tamp.algorithms.kept import kept_from
 from tamp.algorithms.missing import Missing
 from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Node, Skeleton
@@ -18,6 +19,9 @@ from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import unreachable
 from tamp.search.operators import Grounded
+
+SOON = 3.0
+"""Seconds in which goals that exclude each other are looked for once it is proven that there is no plan."""
 
 LINES = 6
 """How many causes are worth reading."""
@@ -44,6 +48,7 @@ def explain_infeasible(
     dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
     missing: Missing,
     deadline: Deadline,
+    ground: Ground,
 ) -> tuple[str, ...]:
     """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
 
@@ -53,6 +58,7 @@ def explain_infeasible(
         dead: The calls that ended without a value.
         missing: Says what a fact lacks.
         deadline: When to look no further.
+        ground: Grounds the task with another goal.
     """
     lines: list[str] = []
     blamed: set[tuple[str, tuple[str, ...]]] = set()
@@ -68,22 +74,24 @@ def explain_infeasible(
         causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
     lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
-    return tuple(dict.fromkeys((*lines, *(_together(grounded, deadline) if not lines or not blamed else ()))))
+    if blamed or unreachable(grounded):
+        return tuple(dict.fromkeys(lines))
+    soon = Deadline(min(SOON, deadline.left()))
+    goals = conflict(grounded, soon, problem.task.goal, ground)
+    if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
+        return tuple(dict.fromkeys((_exclusive(goals), *lines)))
+    what = goals[0] if goals else "the goal"
+    calls = {_call(problem, *key): (frozenset(_names(problem, key[1])), why.reason) for key, why in dead.items()}
+    forbidding = kept_from(problem, grounded, calls, what)
+    kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
+    if kept:
+        return tuple(dict.fromkeys((*kept, *lines)))
+    return tuple(dict.fromkeys((*lines, f"every way to {what} was searched, and none leads there")))
 
 
-def _together(grounded: Grounded, deadline: Deadline) -> Iterator[str]:
-    """Each goal can be reached, as far as one knows without looking at the others."""
-    if unreachable(grounded):
-        return
-    facts = conflict(grounded, deadline)
-    texts = [grounded.meanings.get(fact[0]) or _written(fact) for fact in facts]
-    if len(texts) == 1:
-        yield f"every way to {texts[0]} was searched, and none leads there"
-    elif texts:
-        both = "both hold" if len(texts) == 2 else "hold together"
-        yield f"{' and '.join(texts)} cannot {both} at the end: each way to one of them excludes the others"
-    else:
-        yield "every way to the goal was searched, and none leads there"
+def _exclusive(goals: Sequence[str]) -> str:
+    both = "both hold" if len(goals) == 2 else "hold together"
+    return f"{' and '.join(goals)} cannot {both} at the end: each way to one of them excludes the others"
 
 
 def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool) -> tuple[str, ...]:
@@ -143,10 +151,6 @@ def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Recor
     tries = record.failures + record.successes
     place = " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present)) if present else ""
     return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
-
-
-def _written(fact: Fact) -> str:
-    return f"(not {_written(fact[1:])})" if fact[0] == "not" else f"({' '.join(fact)})"
 
 
 def _kinds(problem: StreamTask, words: tuple[str, ...]) -> str:

@@ -82,14 +82,16 @@ class Imagination:
         Where guesses have to be left out, those that are not deeper than a first plan asks for are all that is kept.
         """
         started = time.perf_counter()
-        optimism = self._guesses()
-        grounded = self._instantiated(optimism)
-        while self._shallower() and not grounded.goal.positive <= grounded.reachable | grounded.initial:
-            self.shallow = (self.shallow or 0) + 1
+        try:
             optimism = self._guesses()
             grounded = self._instantiated(optimism)
-        self.effort.search_seconds += time.perf_counter() - started
-        return optimism, grounded
+            while self._shallower() and not grounded.goal.positive <= grounded.reachable | grounded.initial:
+                self.shallow = (self.shallow or 0) + 1
+                optimism = self._guesses()
+                grounded = self._instantiated(optimism)
+            return optimism, grounded
+        finally:
+            self.effort.search_seconds += time.perf_counter() - started
 
     def _guesses(self) -> Optimism:
         """As many as may be; the lowest level alone, when those were too many for the first time."""

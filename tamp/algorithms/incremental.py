@@ -137,6 +137,10 @@ class Incremental(Run):
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh
 
+    def sampled(self) -> dict[Fact, Instance | None]:
+        """What was sampled so far."""
+        return self.found
+
     def imagined(self) -> tuple[Optimism, Grounded]:
         """The task over real facts, only the fluent streams' outputs are placeholders."""
         started = time.perf_counter()

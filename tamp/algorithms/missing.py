@@ -87,12 +87,12 @@ class Missing:
         for action in domain.actions:
             for effect in action.effects:
                 if effect.adds:
-                    conditions = (*_atoms(action.precondition), *_atoms(effect.condition))
+                    conditions = (*plain_atoms(action.precondition), *plain_atoms(effect.condition))
                     parameters = (*action.parameters, *effect.parameters)
                     yield from self._way(action.name, effect.atom, conditions, _typed(parameters), fact)
         for rule in domain.derived:
             types = {**_typed(rule.parameters), **_inner(rule.body)}
-            yield from self._way(f"being {rule.head.predicate}", rule.head, _atoms(rule.body), types, fact)
+            yield from self._way(f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact)
         for stream in self._streams:
             declared = stream.declaration
             for atom in declared.certified:
@@ -155,13 +155,13 @@ class Missing:
         return self._task.domain.fits(self._types.get(word, ()), wanted)
 
 
-def _atoms(formula: Formula) -> tuple[Atom, ...]:
+def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
     """The atoms that must hold for a formula to hold, as far as they are plain."""
     if isinstance(formula, Atom):
         return (formula,)
     if isinstance(formula, And):
-        return tuple(atom for part in formula.parts for atom in _atoms(part))
-    return _atoms(formula.body) if isinstance(formula, Exists) else ()
+        return tuple(atom for part in formula.parts for atom in plain_atoms(part))
+    return plain_atoms(formula.body) if isinstance(formula, Exists) else ()
 
 
 def _inner(formula: Formula) -> dict[str, tuple[str, ...]]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -22,9 +23,13 @@ from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Streams
 from tamp.algorithms.tally import Tally, tallies
 from tamp.clock import Deadline
+from tamp.pddl.structs import Fact, Formula
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
+from tamp.search.instantiate import Instantiator
+from tamp.search.mutex import excluded
+from tamp.search.operators import Grounded
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
@@ -57,6 +62,8 @@ class Run(Imagination):
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
         self.latest: Skeleton | None = None
+        self.doubtful = False
+        self._audited: Grounded | None = None
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -66,13 +73,23 @@ class Run(Imagination):
             below: What the actions of the plan must cost less than; when it is given, there is one try only.
         """
         started = time.perf_counter()
+        try:
+            return self._search(weight, below)
+        finally:
+            self.effort.search_seconds += time.perf_counter() - started
+
+    def _search(self, weight: float, below: float) -> Found:
+        self.effort.searches += 1
+        if self.doubtful and self.excluded():
+            return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
         grounded, prices = with_nogoods(self.grounded, self.experience)
         prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
         found = search(
-            grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below
+            grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below,
+            audit=self.excluded,
         )  # fmt: skip
         self.effort.expanded += found.expanded
         if (
@@ -80,9 +97,14 @@ class Run(Imagination):
         ):  # with many prices many plans look alike: then any plan will do
             found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded
-        self.effort.searches += 1
-        self.effort.search_seconds += time.perf_counter() - started
         return found
+
+    def excluded(self) -> bool:
+        """Whether it is proven that goals exclude each other in the optimistic task; false where that is not known."""
+        if self._audited is self.grounded:
+            return False
+        self._audited = self.grounded
+        return excluded(self.grounded, self.deadline) is not None
 
     def lower_bound(self, limit: int) -> float:
         """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
@@ -170,7 +192,23 @@ class Run(Imagination):
         facts = {*self.known, *self.real, *self.optimism.makers, *self.grounded.reachable, *self.grounded.initial}
         types = {**self.objects.types, **self.optimism.types}
         missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
-        return self.result(outcome, explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline))
+        started = time.perf_counter()
+        explained = explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline, self._towards)
+        self.effort.explaining_seconds += time.perf_counter() - started
+        return self.result(outcome, explained)
+
+    def _towards(self, goal: Formula) -> Grounded:
+        """The optimistic task with another goal."""
+        facts, types = (
+            [*self.real, *self.sampled(), *self.optimism.makers],
+            {**self.objects.types, **self.optimism.types},
+        )
+        instantiator = Instantiator(replace(self.task, goal=goal), frozenset(self.assumed))
+        return instantiator.instantiate(facts, types, frozenset(self.refused))
+
+    def sampled(self) -> Iterable[Fact]:
+        """Real facts that are known besides those that were settled."""
+        return ()
 
     def tallies(self) -> tuple[Tally, ...]:
         """What was tried, by action and stream."""
@@ -183,9 +221,11 @@ class Run(Imagination):
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
         """What the run ends with; by default the explanation is what failed most."""
+        started = time.perf_counter()
         rows = () if outcome is Outcome.SOLVED else self.tallies()
         if explanation is None:
             explanation = explain_failures(self.problem, self.streams, rows, self.latest is not None)
+        self.effort.explaining_seconds += time.perf_counter() - started
         self.effort.draws = self.binder.units
         return Result(
             outcome=outcome,

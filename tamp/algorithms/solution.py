@@ -64,6 +64,8 @@ class Effort:
         skeletons: Different action plans that were tried to be bound.
         draws: Stream calls.
         search_seconds: Wall-clock time in search and instantiation.
+        explaining_seconds: Wall-clock time in saying why there is no plan.
+        apart_seconds: Wall-clock time of the run's other part: a second opinion, or what was tried before it.
     """
 
     searches: int = 0
@@ -71,6 +73,8 @@ class Effort:
     skeletons: int = 0
     draws: int = 0
     search_seconds: float = 0.0
+    explaining_seconds: float = 0.0
+    apart_seconds: float = 0.0
 
 
 @dataclass(frozen=True)

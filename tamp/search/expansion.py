@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -20,6 +20,10 @@ class Reason(Enum):
     UNSOLVABLE = "proven: no plan exists"
     LIMIT = "the limit of expanded states was reached"
     TIME = "the time is up"
+
+
+AUDIT = 100
+"""States after which a search asks whether pairs of facts prove that there is no plan: most plans are found before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +57,14 @@ class Expansion:
         limit: int | None,
         deadline: Deadline | None,
         below: float = math.inf,
+        audit: Callable[[], bool] | None = None,
     ) -> None:
         self.successors = successors
         self.heuristics = tuple(heuristics)
         self.limit = limit
         self.deadline = deadline
         self.below = below
+        self.audit = audit
         self.bound = 0.0
         self.expanded = 0
         self.evaluated = 0
@@ -72,6 +78,8 @@ class Expansion:
         if self.deadline is not None and self.deadline.passed:
             raise Stop(Reason.TIME)
         self.expanded += 1
+        if self.expanded == AUDIT and self.audit is not None and self.audit():
+            raise Stop(Reason.UNSOLVABLE)
 
     def estimate(self, closed: State, parent: State | None) -> tuple[Estimate, ...]:
         """What the heuristics say of a state, `parent` being the state before it, both with derived facts."""

@@ -68,6 +68,7 @@ def search(
     limit: int | None = None,
     deadline: Deadline | None = None,
     below: float = math.inf,
+    audit: Callable[[], bool] | None = None,
 ) -> Result:
     """Search for a plan.
 
@@ -85,6 +86,7 @@ def search(
         deadline: When to give up. It never changes the plan that is found, only whether one is.
         below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
             greedy searches, which keep to the first way to each state.
+        audit: Asked once, when the search turns out not to be a short one: whether it is proven that there is no plan.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
@@ -94,7 +96,7 @@ def search(
     if not grounded.goal.positive <= grounded.reachable | grounded.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(grounded, price if price is not None else {})
-    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below)
+    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE

@@ -10,6 +10,7 @@ from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
 from tamp.streams.values import Grasp
+from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
 
 LIFT = 0.02
@@ -17,6 +18,9 @@ LIFT = 0.02
 
 RETREAT = 0.10
 """How far the tool draws back along its own axis, metres."""
+
+FLAT = 0.02
+"""Height of a body, metres, below which the fingers may not get deep enough beside it, nor under it."""
 
 PROBES = (0.0, 0.5, 1.0)
 """Where on the way the hand is looked at."""
@@ -26,7 +30,7 @@ def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: C
     """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
     fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
     hit = approach_hits(context, pose, grasp, fixed)
-    return True if hit is None else Rejection(f"hand hits {hit}")
+    return True if hit is None else Rejection(f"{_flat(context, body, pose, hit)}hand hits {hit}")
 
 
 def test_approach_clear(
@@ -36,6 +40,15 @@ def test_approach_clear(
     if body == other or approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
         return True
     return Rejection(f"hits {other}", (other,))
+
+
+def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
+    """What to say first of a body so flat that fingers meet what it lies on before they hold it."""
+    low, high = bounds(context.scene.bodies[body].parts, pose)
+    tall = float(high[2] - low[2])
+    below = bounds(context.scene.bodies[hit].parts, context.scene.bodies[hit].pose)
+    carries = (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
+    return f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
 
 
 def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]) -> str | None:

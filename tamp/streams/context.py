@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tamp.streams.mixture import Mixture
+from tamp.streams.passage import Passage
 from tamp.streams.resting import Resting, resting_of
 from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
@@ -32,6 +33,7 @@ class Context:
         mixtures: Relation to the generators that serve it.
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
         holding: What is in the hand at the start; the scene has that body where it was before.
+        heights: How high the hand reaches at the places where that was measured (tamp/streams/heights.py), metres.
     """
 
     scene: Scene
@@ -39,6 +41,7 @@ class Context:
     mixtures: Mapping[str, Mixture]
     steering: str = "se2"
     holding: Grasp | None = None
+    heights: dict[tuple[int, int], float | None] = field(default_factory=dict[tuple[int, int], "float | None"])
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
 
@@ -66,6 +69,11 @@ class Context:
     def hand(self) -> HandCollisions:
         """Collision detection of the hand alone."""
         return HandCollisions(self.scene, self.robot)
+
+    @cached_property
+    def passage(self) -> Passage:
+        """How wide the ways of the base are among the fixed bodies."""
+        return Passage(self.scene, self.robot)
 
     @cached_property
     def home(self) -> Array:

@@ -58,6 +58,11 @@ def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
+def part_mesh(part: Part) -> tuple[Array, Triangles]:
+    """Vertices (n, 3) and triangles (m, 3), outward, of one part in its body's frame; within it where round."""
+    return _placed(part)
+
+
 def _placed(part: Part) -> tuple[Array, Triangles]:
     vertices, triangles = _mesh(part.shape)
     return part.pose.apply(vertices), triangles

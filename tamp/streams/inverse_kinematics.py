@@ -12,6 +12,7 @@ from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.approach import LIFT, RETREAT
 from tamp.streams.context import Context
+from tamp.streams.heights import too_high
 from tamp.streams.values import BaseConf, Grasp, Reach
 from tamp.world.pose import Array, Pose
 
@@ -43,6 +44,9 @@ SOLUTIONS = 24
 BRANCHES = 3
 """and those of them from which the approach is tried."""
 
+UNREACHED = ("out of reach", "no straight approach")
+"""Reasons behind which there may be one with a figure."""
+
 
 def inverse_kinematics(
     context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
@@ -69,6 +73,9 @@ def inverse_kinematics(
                 break
             reason = found
         if reason is not None:
+            if reason.reason in UNREACHED:
+                high = too_high(context, T_world_tool[:3, 3])
+                reason = reason if high is None else Rejection(high)
             failures += 1
             yield reason if failures < PATIENCE else replace(reason, given_up=True)
 

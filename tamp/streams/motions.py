@@ -154,6 +154,10 @@ def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, que
         failure = relaxed.failure or Failure.EXHAUSTED
         ahead = _straight_ahead(context, held, query)
         where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
+        ends = [end[:2] for end in query.ends]
+        gap = context.passage.narrow(ends[1]) if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any() else None
+        if gap is not None:
+            return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
         return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)

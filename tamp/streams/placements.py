@@ -31,7 +31,10 @@ class SurfacePlacements:
         body, region_name = arguments
         region = scene.surfaces.get(region_name) or scene.cavities[region_name]
         room = region.clearance if isinstance(region, Surface) else region.size[2]
-        faces = [face for face in resting_of(scene.bodies[body]).faces if face.extent + 2 * CONTACT_GAP <= room]
+        resting = resting_of(scene.bodies[body])
+        faces = [face for face in resting.faces if face.extent + 2 * CONTACT_GAP <= room]
+        if not faces and resting.lying is not None and resting.lying.extent + 2 * CONTACT_GAP <= room:
+            faces = [resting.lying]
         if not faces:
             return []
         T_world_region = scene.world_pose(region)

@@ -9,6 +9,7 @@ import numpy as np
 from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
+from tamp.streams.heights import too_high
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
 from tamp.world.robot import Robot
@@ -25,16 +26,18 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
 def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
     """Whether the arm could touch a box with corners `low` and `high` (3,) from some place in the room.
 
-    A necessary condition: the shoulder stays at one height and over the room's rectangle grown by its offset.
+    Necessary conditions: the shoulder stays at one height and over the room's rectangle grown by its offset, and the
+    base on the part of the floor to which its way is wide enough.
     """
     robot, room = context.robot, context.scene.room
     shoulder, span = _shoulder(robot), arm_length(robot)
     vertical = max(low[2] - shoulder[2], shoulder[2] - high[2], 0.0)
     if vertical > span:
         side = "high" if low[2] > shoulder[2] else "low"
-        return Rejection(
-            f"out of reach (too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m)"
-        )
+        lowest = np.array((*(low + high)[:2] / 2, low[2]))
+        measured = too_high(context, lowest) if side == "high" else None
+        most = f"too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m"
+        return Rejection(f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})")
     offset = math.hypot(shoulder[0], shoulder[1])
     horizontal = math.hypot(
         max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),
@@ -42,7 +45,8 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
     )
     if math.hypot(horizontal, vertical) > span:
         return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
-    return True
+    gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
+    return True if gap is None else Rejection(f"out of reach ({gap.text})")
 
 
 def arm_length(robot: Robot) -> float:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from tamp.rejection import Rejection
 from tamp.streams.hulls import body_hull, centre_of_mass, outline
+from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
-from tamp.world.scene import CONTACT_GAP, Body, Cavity, Surface
+from tamp.world.scene import CONTACT_GAP, Body, Cavity, Sphere, Surface
 
 SNAP_HEIGHT = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance for `on`), metres."""
@@ -33,6 +34,9 @@ SLACK = 0.002
 STABLE = math.radians(8.0)
 """A face is stable when the body must be tilted at least this much before it tips over the face's edge."""
 
+
+ROUND = 0.0015
+"""Points this little above the lowest one count as touching where a body lies on a curved side, metres."""
 
 BALANCE = 0.015
 """How far inside the supported part of an overhanging base the centre of mass must lie, metres."""
@@ -84,10 +88,28 @@ class Resting:
         faces.sort(key=lambda face: (-round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)), -face.angle))
         return tuple(faces)
 
+    @cached_property
+    def lying(self) -> Face | None:
+        """The curved side that the body lies on at the start; None where that is a stable face, or it is a ball.
+
+        What lies there can lie so elsewhere, though a touch may roll it: a way to rest where there is no better one.
+        """
+        down = -self.body.pose.rotation[2]
+        if self.body.support is None or all(isinstance(part.shape, Sphere) for part in self.body.parts):
+            return None
+        if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT) for face in self.faces):
+            return None
+        return curved_face(self.body)
+
+    @property
+    def ways(self) -> tuple[Face, ...]:
+        """The stable faces, and the curved side that it lies on."""
+        return self.faces if self.lying is None else (*self.faces, self.lying)
+
     def nearest(self, rotation: Array) -> Face | None:
         """The stable face onto which the body, let go under this rotation, tips back; None when it may tip over."""
         down = -rotation[2]
-        best = max(self.faces, key=lambda face: float(-face.rotation[2] @ down), default=None)
+        best = max(self.ways, key=lambda face: float(-face.rotation[2] @ down), default=None)
         if best is None or float(-best.rotation[2] @ down) < math.cos(max(SNAP_TILT, best.angle)):
             return None
         return best
@@ -190,6 +212,39 @@ def stable_faces(body: Body) -> list[Face]:
         extent = float(np.ptp(turned[:, 2]))
         faces.append(Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy()))
     return faces
+
+
+def facets(body: Body, most: int) -> list[Face] | None:
+    """Every side of the hull, however unsteady, as a way to rest; None when there are more than `most`."""
+    vertices, triangles = body_hull(body)
+    normals = _facet_normals(vertices, triangles)
+    if len(normals) > most:
+        return None
+    faces: list[Face] = []
+    for normal in normals:
+        rotation = _rotation_to_down(normal)
+        turned = vertices @ rotation.T
+        low = float(turned[:, 2].min())
+        seen = outline(turned[:, :2])
+        faces.append(Face(rotation, -low, float(np.ptp(turned[:, 2])), seen, seen, 0.0, seen.mean(axis=0)))
+    return faces
+
+
+def curved_face(body: Body) -> Face | None:
+    """The side that is down in the body's pose, however it is curved; None where its centre of mass is beside it."""
+    rotation = body.pose.rotation
+    vertices, _ = body_hull(body)
+    turned = vertices @ rotation.T
+    low, high = bounds(body.parts, Pose((0.0, 0.0, 0.0), body.pose.quaternion))
+    touching = turned[turned[:, 2] < float(turned[:, 2].min()) + ROUND, :2]
+    corners = np.array([(-ROUND, -ROUND), (ROUND, -ROUND), (ROUND, ROUND), (-ROUND, ROUND)])
+    base = outline((touching[:, None] + corners).reshape(-1, 2))
+    centre = rotation @ centre_of_mass(body)
+    angle = _tipping_angle(base, centre[:2], float(centre[2] - low[2]))
+    if angle < 0.0:
+        return None
+    extent = float(high[2] - low[2])
+    return Face(rotation, -float(low[2]), extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
 
 
 def _facet_normals(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:

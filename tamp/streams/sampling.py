@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
 from tamp.streams.drawing import draw
 from tamp.streams.grasps import sample_grasps
-from tamp.streams.reach import within_reach
-from tamp.streams.resting import Face, fits, rest
+from tamp.streams.refusals import no_grasp, no_room
+from tamp.streams.resting import rest
 from tamp.streams.values import Grasp
-from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
-from tamp.world.scene import CONTACT_GAP, Box, Cavity, Hull, Part, Surface
+from tamp.world.scene import Cavity, Surface
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
@@ -30,10 +27,7 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
     if found:
         yield Rejection("no further grasp was found", given_up=True)
     else:
-        parts = context.scene.bodies[body].parts
-        simple = len(parts) == 1 and not isinstance(parts[0].shape, Hull)
-        opening = context.robot.opening * 100
-        yield Rejection(f"no grasp: every width is over the hand's {opening:.0f} cm", given_up=not simple)
+        yield no_grasp(context.scene.bodies[body], context.robot.opening)
 
 
 def sample_on(context: Context, body: str, surface: str, call: Call) -> Iterator[Pose | Rejection]:
@@ -51,7 +45,7 @@ def _placements(
 ) -> Iterator[Pose | Rejection]:
     T_world_region = context.scene.world_pose(region)
     resting = context.resting(body)
-    refusal = _refusal(context, body, region, T_world_region)
+    refusal = no_room(context, body, region)
     if refusal is not None:
         yield refusal
         return
@@ -64,34 +58,6 @@ def _placements(
         return pose if hit is None else Rejection(f"hits {hit}")
 
     yield from draw(context, relation, context.mixtures[relation], (body, region.name), judge, call)
-
-
-def _refusal(context: Context, body: str, region: Surface | Cavity, T_world_region: Pose) -> Rejection | None:
-    """Why no placement at all is possible, when that can be proven."""
-    if context.scene.bodies[region.body].movable:
-        return Rejection(
-            f"{region.name} is on {region.body}, which may be moved; only fixed bodies can be put things on"
-        )
-    room = region.clearance if isinstance(region, Surface) else region.size[2]
-    faces = context.resting(body).faces
-    if not faces:
-        return Rejection(f"{body} rests on no stable face")
-    low = [face for face in faces if face.extent + 2 * CONTACT_GAP <= room]
-    if not low:
-        least = min(face.extent for face in faces)
-        return Rejection(f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)")
-    if isinstance(region, Cavity) and not any(fits(face, region.size) for face in low):
-        size, space = (" x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size))
-        return Rejection(f"protrudes ({body} takes {size} m, {region.name} has {space} m)")
-    height = min(room, 2.0)
-    box = Part(Box((*region.size[:2], height)), Pose((0.0, 0.0, height / 2)))
-    reachable = within_reach(context, *bounds((box,), T_world_region))
-    return Rejection(f"{region.name} is {reachable.reason}") if isinstance(reachable, Rejection) else None
-
-
-def _extents(face: Face) -> tuple[float, float, float]:
-    width, depth = np.ptp(face.outline, axis=0)
-    return float(width), float(depth), face.extent
 
 
 def _middle(context: Context) -> tuple[float, float, float]:
