@@ -17,7 +17,7 @@ from tamp.initial import initial_state
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import StreamFile, Task
-from tamp.search.loops.tiers import load as load_compiled_loops
+from tamp.search.loops.tiers import load_kept as load_compiled_loops
 from tamp.streams.choice import GIVEN, Choice, Grounding, Registry, maker, mix, parse_choice
 from tamp.streams.context import Context
 from tamp.streams.groundings import sample_relation, test_relation

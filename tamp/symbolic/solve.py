@@ -15,11 +15,8 @@ from tamp.errors import InputError
 from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
 from tamp.search.heuristics import ADMISSIBLE
 from tamp.search.instantiate import instantiate
-from tamp.search.loops.tiers import prepare as prepare_loops
 from tamp.search.operators import Grounded, Operator
 from tamp.symbolic.problem import SymbolicProblem
-
-prepare_loops()
 
 SEARCH = "greedy"
 """The search when none is named."""
