@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from grounding.form import Form
 from grounding.situation import Placed
+from tamp.compilation import njit
 from tamp.world.pose import Array
 
 FAR = 1.0

@@ -4,6 +4,43 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import dataclass
+
+
+@dataclass
+class Standstill:
+    """Time that counts for nobody: while kernels are compiled, which happens once for all that come after.
+
+    Attributes:
+        depth: How many of those who stopped the clock have not let it go on.
+        total: Seconds for which it stood still before `since`.
+    """
+
+    depth: int = 0
+    total: float = 0.0
+    since: float = 0.0
+
+    def begin(self) -> None:
+        """Stop the clock, or keep it stopped."""
+        if self.depth == 0:
+            self.since = time.monotonic()
+        self.depth += 1
+
+    def end(self) -> None:
+        """Let it go on, once for each time that it was stopped."""
+        self.depth -= 1
+        if self.depth == 0:
+            self.total += time.monotonic() - self.since
+
+
+STANDSTILL = Standstill()
+"""Of this process."""
+
+
+def counted() -> float:
+    """The monotonic clock, less the time for which it stood still; seconds."""
+    now = time.monotonic()
+    return now - STANDSTILL.total if STANDSTILL.depth == 0 else STANDSTILL.since - STANDSTILL.total
 
 
 class OutOfTime(BaseException):
@@ -11,7 +48,7 @@ class OutOfTime(BaseException):
 
 
 class Deadline:
-    """A moment on the monotonic clock.
+    """A moment on the monotonic clock, which stands still while kernels are compiled.
 
     Args:
         seconds: From now; infinite by default.
@@ -21,7 +58,7 @@ class Deadline:
     """
 
     def __init__(self, seconds: float = math.inf) -> None:
-        self.started = time.monotonic()
+        self.started = counted()
         self.seconds = seconds
         self.ended = False
 
@@ -31,7 +68,7 @@ class Deadline:
 
     def elapsed(self) -> float:
         """Seconds since the deadline was set."""
-        return time.monotonic() - self.started
+        return counted() - self.started
 
     @property
     def passed(self) -> bool:

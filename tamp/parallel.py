@@ -14,6 +14,7 @@ from tamp.api import solve
 from tamp.clock import Deadline
 from tamp.portfolio import Tell, member_seed, race
 from tamp.problem import Problem
+from tamp.search.loops.tiers import prepare as prepare_loops
 from tamp.solution import Solution
 
 EVERY = 0.1
@@ -61,6 +62,7 @@ def solve_parallel(
     if jobs == 1:
         return solve(problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress, record=record)
     importlib.import_module("tamp.motion.parametrization")  # no fork while a thread is importing it
+    prepare_loops()
     deadline = Deadline(max_time)
     best: list[Solution] = []
 

@@ -20,7 +20,7 @@ from tamp.pddl.files import read_pddl
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import StreamFile, Task
-from tamp.search.loops.tiers import load as load_compiled_loops
+from tamp.search.loops.tiers import load_kept as load_compiled_loops
 from tamp.served import Served, line_of
 from tamp.streams.choice import Grounding, Registry, mix
 from tamp.streams.context import Context

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from tamp.compilation import njit
 from tamp.world.pose import Array
 
 QUADRATIC: NDArray[np.float64] = np.zeros((16, 9))

@@ -17,7 +17,7 @@ from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
 from tamp.pddlstream.problem import PDDLProblem, bind
-from tamp.search.loops.tiers import load as load_compiled_loops
+from tamp.search.loops.tiers import load_kept as load_compiled_loops
 
 load_compiled_loops()
 

@@ -10,6 +10,7 @@ from tamp.algorithms.solution import Outcome
 from tamp.clock import Deadline
 from tamp.portfolio import Tell, race
 from tamp.search.heuristics import ADMISSIBLE
+from tamp.search.loops.tiers import prepare as prepare_loops
 from tamp.search.operators import NONE, Operator
 from tamp.symbolic.problem import SymbolicProblem
 from tamp.symbolic.solve import SymbolicSolution, choose, solve_symbolic
@@ -47,6 +48,7 @@ def solve_symbolic_parallel(
     """
     if jobs == 1:
         return solve_symbolic(problem, search=search, heuristic=heuristic, max_time=max_time)
+    prepare_loops()
     deadline = Deadline(max_time)
     pairs = portfolio(search, heuristic, jobs)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.compilation import njit
 from tamp.view.mesh import Mesh, unit
 from tamp.world.pose import Array
 
@@ -131,7 +131,7 @@ def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
     return frame, scale, offset, depth
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _fill(screen, perspective, depth, ids, weights):
     """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the eye are left out."""
     rows, columns = depth.shape
@@ -170,7 +170,7 @@ def _fill(screen, perspective, depth, ids, weights):
                         weights[row, column, 2] = w
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame, scale, offset, shadows, pixels):
     """Colours of pixels from the triangles that they see: some light from everywhere, some from above, the sun's."""
     rows, columns = ids.shape

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+import numpy as np
 
+from tamp.compilation import njit
 from tamp.world.tables import BOX, CENTRE, CYLINDER, KIND, MARGIN, POINT, SIZE, VERTEX_COUNT, VERTICES
 
 APART, CLOSE, BETWEEN, UNSURE = 0, 1, 2, 3
@@ -163,9 +164,9 @@ def _reduce(s, n, weights):
     """
     weights[0], weights[1], weights[2], weights[3] = 1.0, 0.0, 0.0, 0.0
     if n == 2:
-        weights[0], weights[1] = _on_segment(s, 0, 1)
+        weights[0], weights[1] = _on_segment(s, np.int64(0), np.int64(1))
     elif n == 3:
-        weights[0], weights[1], weights[2] = _on_triangle(s, 0, 1, 2)
+        weights[0], weights[1], weights[2] = _on_triangle(s, np.int64(0), np.int64(1), np.int64(2))
     elif n == 4:
         best = math.inf
         b0, b1, b2, b3 = 0.0, 0.0, 0.0, 0.0
@@ -175,7 +176,7 @@ def _reduce(s, n, weights):
                 continue
             weights[left_out] = 0.0
             weights[i], weights[j], weights[k] = _on_triangle(s, i, j, k)
-            square = _square(s, 4, weights)
+            square = _square(s, n, weights)
             if square < best:
                 best = square
                 b0, b1, b2, b3 = weights[0], weights[1], weights[2], weights[3]

@@ -21,8 +21,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from tamp.compilation import njit
 from tamp.world.gjk import APART, BETWEEN, CLOSE, INLINE, JIT, centre, separation, support
 from tamp.world.tables import (
     BOX,

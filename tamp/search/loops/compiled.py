@@ -12,21 +12,23 @@ from types import FunctionType
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 
+from tamp.compilation import njit
 from tamp.search.loops import kernels, rows
 from tamp.search.loops.tiers import Loops
 
 _I, _F, _N, _C = types.int64[::1], types.float64[::1], types.float64, types.int64
 _ROWS = types.NamedUniTuple(_I, 2, rows.Rows)
+_INNER = {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
-@njit
+@njit()
 def _full(size, value):
     return np.full(size, value)
 
 
-@njit
+@njit()
 def _count_up(size):
     return np.arange(size)
 
@@ -45,7 +47,7 @@ _names: dict[str, Any] = {**vars(rows), **vars(kernels), "full": _full, "count_u
 def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..., Any]:
     """Compile a function; without a signature it serves other compiled ones only."""
     copy = FunctionType(function.__code__, _names, function.__name__)
-    made = njit(signature, cache=True, nogil=True) if signature else njit(nogil=True)
+    made = njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True) if signature else njit(**_INNER)
     _names[function.__name__] = result = made(copy)
     return result
 

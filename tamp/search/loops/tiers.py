@@ -1,6 +1,6 @@
 """Which loops run: plain Python at first, compiled ones once they pay, or where they are loaded anyway.
 
-numba takes longer to load than a small task to solve. Both give the same numbers.
+numba takes longer to load than a small task to solve, and much longer to compile. Both give the same numbers.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from tamp.search.loops.rows import Integers, Reals, Rows
 ENOUGH = 2_000_000
 """Entries that plain Python goes through before the compiled loops are loaded: about as long as loading takes."""
 
+MANY = 10_000_000
+"""Entries before they are compiled, where that has not been done yet: as long as compiling takes."""
 
 CACHED = (
     (kernels, ("explore", "relaxed_plan", "landmark_cut")),
@@ -61,20 +63,27 @@ class _Meter:
     """What plain Python has gone through in this process. It decides about time alone, never about a result."""
 
     entries = 0
+    enough: int | None = None
 
 
 _METER = _Meter()
 
 
 def load() -> Loops:
-    """The compiled loops, loaded now, and compiled where that has not been done: not in anyone's planning time."""
+    """The compiled loops, loaded now, and compiled where that has not been done."""
     from tamp.search.loops.compiled import LOOPS
 
     return LOOPS
 
 
+def load_kept() -> None:
+    """Load the compiled loops where that is all there is to do: for who has numba loaded anyway."""
+    if compiled_before():
+        load()
+
+
 def prepare() -> None:
-    """Load the compiled loops where they have yet to be compiled: that takes longer than many a budget."""
+    """Compile the loops where that has not been done, before processes start that would each do it."""
     if not compiled_before():
         load()
 
@@ -95,4 +104,10 @@ def compiled_before() -> bool:
 def choose(entries: int) -> Loops:
     """The loops for a piece of work that goes through so many entries."""
     _METER.entries += entries
-    return load() if _METER.entries > ENOUGH or "tamp.search.loops.compiled" in sys.modules else PLAIN
+    if "tamp.search.loops.compiled" in sys.modules:
+        return load()
+    if _METER.entries <= ENOUGH:
+        return PLAIN
+    if _METER.enough is None:
+        _METER.enough = ENOUGH if compiled_before() else MANY
+    return load() if _METER.entries > _METER.enough else PLAIN
