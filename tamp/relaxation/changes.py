@@ -11,7 +11,7 @@ from tamp.pddl.structs import And, Atom, Formula, Or
 from tamp.problem import Problem
 from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
-from tamp.world.scaling import scale_part, scale_pose
+from tamp.world.scaling import scale_part, scale_pose, scale_visual
 from tamp.world.scene import Body, Box, Cavity, Part, Scene, Surface
 
 SMALLER = ((0.75, "a quarter smaller", 2), (0.5, "half its size", 3), (0.3, "a third of its size", 4))
@@ -161,8 +161,8 @@ def _scaled(body: Body, factor: float) -> Body:
     )
     return replace(
         body, parts=parts, surfaces=surfaces, pose=replace(body.pose, position=(x, y, z + sunk)),
-        visual_scale=tuple(scale * factor for scale in body.visual_scale),
-        visual_pose=scale_pose(body.visual_pose, factor),
+        visuals=tuple(scale_visual(one, factor) for one in body.visuals),
+        center_of_mass=body.center_of_mass and tuple(x * factor for x in body.center_of_mass),
     )  # fmt: skip
 
 

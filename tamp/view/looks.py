@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from tamp.view.mesh import Mesh, read_mesh, shape_mesh
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.view.mesh import Mesh, read_mesh, shape_mesh, simplified
+from tamp.world.meshes import primitive_parts
 from tamp.world.robot import Robot
-from tamp.world.scene import Body, Part
+from tamp.world.scene import Body, Part, Visual
 from tamp.world.urdf_link import read_visuals
 
 BASE_COLOUR = (0.25, 0.3, 0.38, 1.0)
@@ -18,14 +25,44 @@ LARGE = 20_000
 
 
 def body_meshes(body: Body) -> tuple[Mesh, ...]:
-    """A body in its own frame: its visual mesh where it has one, else its parts."""
-    if body.visual is None:
-        return tuple(_part(part, body.colour) for part in body.parts)
-    meshes = read_mesh(body.visual, body.visual_scale, body.colour)
+    """A body in its own frame: what its file shows, where that can be read, else its parts."""
+    drawn, _ = _drawing(body)
+    return drawn or tuple(_part(part, body.colour) for part in body.parts)
+
+
+def undrawable(bodies: Iterable[Body]) -> tuple[str, ...]:
+    """For each body of whose file the drawing cannot be read, a sentence that says so; its parts are drawn."""
+    sentences: list[str] = []
+    for body in bodies:
+        _, why = _drawing(body)
+        if why:
+            sentences.append(f"{body.name}: {why}: its collision shape is drawn")
+    return tuple(sentences)
+
+
+@lru_cache(maxsize=256)
+def _drawing(body: Body) -> tuple[tuple[Mesh, ...], str]:
+    """The meshes of a body's visuals, or none and why they cannot be read."""
+    meshes: list[Mesh] = []
+    try:
+        for visual in body.visuals:
+            meshes += _visual(visual, body)
+    except InputError as error:
+        return (), error.message
+    return tuple(meshes), ""
+
+
+def _visual(visual: Visual, body: Body) -> Iterator[Mesh]:
+    if visual.mesh is None:
+        yield from (_part(part, visual.colour or body.colour) for part in visual.shapes)
+        return
+    colour = visual.colour or body.colour
+    meshes = read_mesh(visual.mesh, visual.scale, colour)
     if sum(len(mesh.faces) for mesh in meshes) > LARGE:
-        size = max(float((mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)).max()) for mesh in meshes)
-        meshes = read_mesh(body.visual, body.visual_scale, body.colour, size / 100)
-    return tuple(mesh.moved(body.visual_pose.matrix) for mesh in meshes)
+        low = np.min([mesh.vertices.min(axis=0) for mesh in meshes], axis=0)
+        high = np.max([mesh.vertices.max(axis=0) for mesh in meshes], axis=0)
+        meshes = [simplified(mesh, float((high - low).max()) / 100) for mesh in meshes]
+    yield from (mesh.moved(visual.pose.matrix) for mesh in meshes)
 
 
 def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
@@ -35,8 +72,8 @@ def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
     for link in robot.links:
         meshes: list[Mesh] = []
         for element in visuals.get(link.name, ()):
-            if element.shape is not None:
-                meshes.append(_part(Part(element.shape, element.pose), ROBOT_COLOUR))
+            if element.mesh is None:
+                meshes += [_part(part, ROBOT_COLOUR) for part in primitive_parts(element)]
             if element.mesh is not None:
                 coloured = element.mesh.with_suffix(".mtl").is_file()
                 read = read_mesh(element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.errors import InputError
+from tamp.world.mesh_file import MOST_BYTES, Beside, ascii_text, quiet, read_triangles
 from tamp.world.pose import Array
+from tamp.world.raw_file import read_raw
 from tamp.world.scene import Box, Cylinder, Shape, Sphere
 
 Colour = tuple[float, float, float, float]
+_GREY = (0.8, 0.8, 0.8, 1.0)
 ROUND = 40
 """Corners of what is round."""
 
@@ -53,21 +59,49 @@ def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: f
     """The triangles of a mesh file, a mesh for each of its colours.
 
     Args:
-        file: In any format that trimesh reads.
-        scale: Factors that make it metres.
+        file: OBJ, STL, PLY, COLLADA or glTF.
+        scale: Factors that make it metres; negative ones mirror it.
         colour: Of all of it; None keeps the file's own.
         cell: Metres: details smaller than this are left out; 0 keeps everything.
-    """
-    import trimesh  # takes half a second
 
-    loaded = trimesh.load_scene(file, process=False)
+    Raises:
+        InputError: It cannot be read.
+    """
+    pieces = _coloured(file) if colour is None else [(*read_triangles(file), colour)]
     groups: dict[Colour, list[tuple[Array, NDArray[np.integer]]]] = {}
-    for geometry in loaded.geometry.values():
-        own = colour or _material(geometry)
-        vertices = np.asarray(geometry.vertices, dtype=float) * np.asarray(scale)
-        groups.setdefault(own, []).append((vertices, np.asarray(geometry.faces)))
+    mirrored = float(np.prod(scale)) < 0
+    for vertices, faces, own in pieces:
+        if not np.isfinite(vertices).all():
+            raise InputError(f"the mesh '{file.name}' holds coordinates that are not finite numbers")
+        turned = faces[:, ::-1] if mirrored else faces
+        groups.setdefault(colour or own, []).append((vertices * np.asarray(scale), turned))
     meshes = [_joined(pieces, own) for own, pieces in groups.items()]
     return [simplified(mesh, cell) if cell else mesh for mesh in meshes]
+
+
+def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]:
+    """The geometries of a file with the colours of their materials."""
+    if file.suffix.lower() == ".dae":
+        yield *read_triangles(file), _GREY
+        return
+    import trimesh  # takes half a second
+
+    quiet()
+    content = read_raw(file, MOST_BYTES)
+    content = ascii_text(content) if file.suffix.lower() == ".obj" else content
+    beside: Any = Beside(file.parent)
+    try:
+        loaded: Any = trimesh.load_scene(
+            io.BytesIO(content), file_type=file.suffix.lower()[1:], resolver=beside, process=False
+        )  # fmt: skip
+        found = [
+            (np.asarray(one.vertices, dtype=float), np.asarray(one.faces, dtype=np.int64), _material(one))
+            for one in loaded.dump()
+            if hasattr(one, "faces")
+        ]
+    except Exception as error:  # trimesh raises whatever its readers stumble on
+        raise InputError(f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}") from None
+    yield from found
 
 
 def simplified(mesh: Mesh, cell: float) -> Mesh:
@@ -93,7 +127,7 @@ def _material(geometry: object) -> Colour:
     material = getattr(visual, "material", None)
     rgba = getattr(material, "main_color", None)
     if rgba is None:
-        return (0.8, 0.8, 0.8, 1.0)
+        return _GREY
     red, green, blue, alpha = (float(part) / 255.0 for part in rgba)
     return (red, green, blue, alpha)
 

@@ -107,11 +107,14 @@ def fulfil(
         InputError: Something cannot be written or served, or the document is not what it should be.
     """
     from tamp.view.document import page_document
+    from tamp.view.looks import undrawable
     from tamp.view.page import page, write_page
     from tamp.view.picture import write_png, write_video
     from tamp.view.samples import shots
     from tamp.view.server import serve
 
+    for sentence in undrawable(film.scene.bodies.values()):
+        say(f"warning: {sentence}.")
     if wishes.png is not None:
         write_png(film, wishes.png, wishes.at, wishes.size or (800, 600))
         say(f"{wishes.png} written.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +12,10 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.world.bounds import bounds
 from tamp.world.furniture import FURNITURE, Furniture, Options
-from tamp.world.meshes import Mesh, find_mesh, load_mesh
+from tamp.world.meshes import Mesh, capsule_parts, find_mesh, mesh_triangles, load_mesh
 from tamp.world.pose import Pose
-from tamp.world.scene import Body, Box, Cavity, Cylinder, Part, Shape, Sphere, Surface
+from tamp.world.scene import Body, Box, Cavity, Cylinder, Part, Sphere, Surface, Visual
+from tamp.world.tops import NARROWEST, top_of
 from tamp.world.yaml_nodes import Node
 
 COLOURS: Mapping[str, tuple[float, float, float]] = {
@@ -28,11 +29,10 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 """What PDDL takes for a name."""
 
 PLACEMENT = ("on", "at", "yaw", "rpy", "quaternion", "pose")
-_SHAPES = ("box", "cylinder", "sphere", "mesh", "furniture")
+_SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
 _COMMON = (*PLACEMENT, "fixed", "mass", "friction", "colour", "surfaces", "cavities")
 _OPTIONS = {"mesh": ("scale",)}
 _LARGEST_MOVABLE = 5.0
-_NARROWEST_TOP = 0.05
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         mesh = _mesh(entries, folder)
         parts = mesh.parts
     else:
-        parts = (Part(_primitive(kind, entries[kind])),)
+        parts = _primitive(kind, entries[kind])
     movable = kind != "furniture"
     if "fixed" in entries:
         movable = not entries["fixed"].flag()
@@ -85,22 +85,24 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     if movable:
         _check_size(parts, entries[kind])
     derived = furniture.surfaces
-    if kind in ("box", "cylinder") and not movable:
-        top = top_of(name, parts)
-        derived = (top,) if top and min(top.size) >= _NARROWEST_TOP else ()
+    if kind != "furniture" and not movable:
+        triangles = mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
+        top = top_of(name, parts, _stance(entries), triangles)
+        derived = (top,) if top and min(top.size) >= NARROWEST - 1e-9 else ()
     body = Body(
         name,
         parts,
         Pose(),
         movable,
-        mass=entries["mass"].number(positive=True) if "mass" in entries else Body.mass,
-        friction=entries["friction"].number(low=0.0) if "friction" in entries else Body.friction,
+        mass=_or(entries["mass"].number(positive=True) if "mass" in entries else mesh and mesh.mass, Body.mass),
+        friction=_or(
+            entries["friction"].number(low=0.0) if "friction" in entries else mesh and mesh.friction, Body.friction
+        ),
         colour=_colour(entries.get("colour"), kind, mesh),
         surfaces=_surfaces(name, entries["surfaces"]) if "surfaces" in entries else derived,
         cavities=_cavities(name, entries["cavities"]) if "cavities" in entries else furniture.cavities,
-        visual=mesh.visual if mesh else None,
-        visual_scale=mesh.visual_scale if mesh else (1.0, 1.0, 1.0),
-        visual_pose=mesh.visual_pose if mesh else Pose(),
+        visuals=_visuals(mesh, "colour" in entries),
+        center_of_mass=mesh.center_of_mass if mesh else None,
     )
     return Draft(body, {key: entries[key] for key in PLACEMENT if key in entries}, node, mesh)
 
@@ -137,17 +139,6 @@ def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, 
         raise node.error(f"the quaternion's norm is {norm:.3g}, not 1", remedy="Is its order x, y, z, w?")
     x, y, z, w = (float(value) for value in values / norm)
     return (x, y, z, w)
-
-
-def top_of(name: str, parts: tuple[Part, ...]) -> Surface | None:
-    """The upper face of a box or of a cylinder (its largest square) as a surface `name`; None for other shapes."""
-    shape = parts[0].shape
-    if isinstance(shape, Box):
-        return Surface(name, name, Pose((0.0, 0.0, shape.size[2] / 2)), shape.size[:2])
-    if isinstance(shape, Cylinder):
-        side = shape.radius * 2**0.5
-        return Surface(name, name, Pose((0.0, 0.0, shape.height / 2)), (side, side))
-    return None
 
 
 def _kind(node: Node) -> str:
@@ -197,7 +188,9 @@ def _mesh(entries: Mapping[str, Node], folder: Path) -> Mesh:
     scale = (1.0, 1.0, 1.0)
     if "scale" in entries:
         given = entries["scale"]
-        x, y, z = given.numbers(3, positive=True) if given.is_list() else (given.number(positive=True),) * 3
+        x, y, z = given.numbers(3) if given.is_list() else (given.number(positive=True),) * 3
+        if 0.0 in (x, y, z):
+            raise given.error("a factor of 0 leaves nothing of the mesh")
         scale = (x, y, z)
     try:
         return load_mesh(find_mesh(node.text(), folder), scale)
@@ -205,14 +198,36 @@ def _mesh(entries: Mapping[str, Node], folder: Path) -> Mesh:
         raise node.error(error.message, choices=error.choices, remedy=error.remedy) from None
 
 
-def _primitive(kind: str, node: Node) -> Shape:
+def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
     if kind == "box":
         x, y, z = node.numbers(3, positive=True)
-        return Box((x, y, z))
+        return (Part(Box((x, y, z))),)
+    if kind == "sphere":
+        return (Part(Sphere(node.number(positive=True))),)
+    entries = node.mapping(("radius", "height"), required=("radius", "height"))
+    radius, height = entries["radius"].number(positive=True), entries["height"].number(positive=True)
     if kind == "cylinder":
-        entries = node.mapping(("radius", "height"), required=("radius", "height"))
-        return Cylinder(entries["radius"].number(positive=True), entries["height"].number(positive=True))
-    return Sphere(node.number(positive=True))
+        return (Part(Cylinder(radius, height)),)
+    if height <= 2 * radius:
+        remedy = "The height of a capsule counts its round ends; at 2 radii it is a sphere"
+        raise entries["height"].error(f"a capsule of radius {radius:g} is higher than {2 * radius:g}", remedy=remedy)
+    return tuple(capsule_parts(radius, height - 2 * radius))
+
+
+def _stance(entries: Mapping[str, Node]) -> Pose:
+    """How the body will be turned in the world, but for a turn about the vertical."""
+    given = entries["pose"].mapping() if "pose" in entries else entries
+    return Pose((0.0, 0.0, 0.0), read_orientation(given))
+
+
+def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
+    """What is drawn of a mesh; the colour that the problem gives counts more than the file's own."""
+    visuals = mesh.visuals if mesh else ()
+    return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
+
+
+def _or(value: float | None, default: float) -> float:
+    return default if value is None else value
 
 
 def _check_size(parts: tuple[Part, ...], node: Node) -> None:

@@ -21,6 +21,7 @@ MOST_PIECES = 16
 _GRID = 40
 _ENOUGH = 0.01
 _PARTS = 6
+_EXACT = 1e-6
 _MOST_TRIANGLES = 6000
 _DIRECTIONS = np.array(
     [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5**0.5, 0.5**0.5, 0], [0.5**0.5, -(0.5**0.5), 0]], dtype=float
@@ -71,7 +72,8 @@ def decompose(vertices: Array, faces: NDArray[np.integer], most: int = MOST_PIEC
             done.append(piece)
         else:
             pieces += halves
-    cells = [_closed(piece, triangles) for piece in done + pieces]
+    # A coarser mesh may stand out of the box of the true one.
+    cells = [np.clip(_closed(piece, triangles), low, high) for piece in done + pieces]
     return [simplified(points) for points in _grown(cells, vertices[np.unique(faces)])]
 
 
@@ -232,6 +234,9 @@ def _grown(cells: list[Array], vertices: Array) -> list[Array]:
             np.maximum(row, vertices @ plane[:3] + plane[3], out=row)
     nearest = np.argmin(distances, axis=0)
     out = distances.min(axis=0) > TOLERANCE / 2
+    # The box of the mesh is kept exactly.
+    farthest = np.concatenate([np.argmin(vertices, axis=0), np.argmax(vertices, axis=0)])
+    out[farthest] = distances.min(axis=0)[farthest] > _EXACT
     return [np.concatenate([points, vertices[out & (nearest == i)]]) for i, points in enumerate(cells)]
 
 

@@ -12,17 +12,26 @@ import numpy as np
 
 from tamp.data import cache_folder, shipped, write_whole
 from tamp.errors import InputError
+from tamp.world.mesh_file import MOST_BYTES
+from tamp.world.pose import Array, Pose
+from tamp.world.raw_file import read_raw
 from tamp.world.scene import Hull
 
 Scale = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
 
 # Raise it when the same file would give other pieces.
 _VERSION = 2
 _ONE_HULL = 1.15
 
 
-def mesh_pieces(path: Path, scale: Scale) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
+def mesh_pieces(path: Path, scale: Scale, turned: Quaternion | None = None) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
     """Convex pieces that contain the mesh, in metres in the file's frame, and what had to be repaired.
+
+    Args:
+        path: The mesh file.
+        scale: Factors that make it metres.
+        turned: The orientation (xyzw) of the file's frame in the one in which the pieces are wanted; None for the same.
 
     One hull when it is at most 15 % larger than the mesh. The first call takes a second or two; its result is kept in
     the cache folder under the file's hash, and a later call takes a millisecond. Shipped meshes come with their pieces.
@@ -30,33 +39,33 @@ def mesh_pieces(path: Path, scale: Scale) -> tuple[tuple[Hull, ...], tuple[str, 
     Raises:
         InputError: The file is missing or no usable mesh.
     """
-    name = pieces_name(path, scale)
+    name = pieces_name(path, scale, turned)
     kept = cache_folder() / "meshes" / name
     for file in (shipped("problems") / "assets" / "pieces" / name, kept):
         found = _read(file)
         if found is not None:
             return found
-    hulls, warnings = compute_pieces(path, scale)
+    hulls, warnings = compute_pieces(path, scale, turned)
     with contextlib.suppress(OSError):  # a read-only home: computed anew next time
         write_whole(kept, packed(hulls, warnings))
     return hulls, warnings
 
 
-def pieces_name(path: Path, scale: Scale) -> str:
+def pieces_name(path: Path, scale: Scale, turned: Quaternion | None = None) -> str:
     """The name of the file that keeps the pieces of a mesh at a scale.
 
     Raises:
         InputError: The mesh cannot be read.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read the mesh '{path.name}': {error.strerror}") from None
+    content = read_raw(path, MOST_BYTES)
     # The suffix decides the reader, and the name stands in warnings.
-    return hashlib.sha256(content + repr((_VERSION, path.name, scale)).encode()).hexdigest()[:32] + ".npz"
+    asked = (_VERSION, path.name, scale) if turned is None else (_VERSION, path.name, scale, turned)
+    return hashlib.sha256(content + repr(asked).encode()).hexdigest()[:32] + ".npz"
 
 
-def compute_pieces(path: Path, scale: Scale) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
+def compute_pieces(
+    path: Path, scale: Scale, turned: Quaternion | None = None
+) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
     """The same, computed anew."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -65,15 +74,25 @@ def compute_pieces(path: Path, scale: Scale) -> tuple[tuple[Hull, ...], tuple[st
     from tamp.world.mesh_surface import read_surface
 
     surface = read_surface(path, scale)
+    vertices = surface.vertices if turned is None else surface.vertices @ Pose(quaternion=turned).rotation.T
     try:
-        whole = float(ConvexHull(surface.vertices).volume)
+        whole = float(ConvexHull(vertices).volume)
         if surface.volume is not None and whole <= _ONE_HULL * surface.volume:
-            pieces = [simplified(surface.vertices)]
+            pieces = [simplified(vertices)]
         else:
-            pieces = decompose(surface.vertices, surface.faces)
-    except QhullError:
+            pieces = decompose(vertices, surface.faces)
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        hulls = tuple(_hull(*hull_of(_within(piece, low, high))) for piece in pieces)
+    except (QhullError, ValueError):
         raise InputError(f"the mesh '{path.name}' is degenerate: it is flat, no closed hull can be made") from None
-    return tuple(_hull(*hull_of(piece)) for piece in pieces), surface.warnings
+    return hulls, surface.warnings
+
+
+def _within(points: Array, low: Array, high: Array) -> Array:
+    """A flat piece was made 1 mm thick: it is moved so that it does not stand out of the mesh's box."""
+    size = np.ptp(points, axis=0)
+    move = np.maximum(low - points.min(axis=0), 0.0) - np.maximum(points.max(axis=0) - high, 0.0)
+    return points + np.where(size <= high - low, move, 0.0)
 
 
 def packed(hulls: tuple[Hull, ...], warnings: tuple[str, ...]) -> bytes:

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.errors import InputError
+from tamp.world.mesh_file import read_triangles
 from tamp.world.pose import Array
 
 LARGEST = 5.0
 SMALLEST = 0.001
-SUFFIXES = (".obj", ".stl", ".ply")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,11 @@ class MeshSurface:
 
 
 def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
-    """Read an OBJ, STL or PLY file. Imports trimesh, which takes half a second.
+    """Read a mesh file. Imports trimesh, which takes half a second.
+
+    Args:
+        path: OBJ, STL, PLY, COLLADA or glTF.
+        scale: Factors that make it metres; negative ones mirror it.
 
     Raises:
         InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of units.
@@ -43,23 +47,13 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
     import trimesh
 
     name = path.name
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"'{name}' is neither OBJ, STL, PLY nor URDF")
-    try:
-        mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
-        vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
-    except Exception as error:  # trimesh raises whatever its readers stumble on
-        known = {ImportError: "it is not text or binary of its format", IndexError: "a face names a missing corner"}
-        why = next((words for kind, words in known.items() if isinstance(error, kind)), str(error))
-        raise InputError(f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY") from None
-    if not len(vertices) or not len(faces):
-        raise InputError(f"the mesh '{name}' is empty: it holds no triangles")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise InputError(f"the mesh '{name}' names a corner that it does not hold")
+    vertices, faces = read_triangles(path)
     used = np.unique(faces)
     if not np.isfinite(vertices[used]).all():
         raise InputError(f"the mesh '{name}' holds coordinates that are not finite numbers")
     vertices = np.where(np.isfinite(vertices), vertices, 0.0) * np.array(scale)
+    if np.prod(scale) < 0:  # mirrored: what was outside stays outside
+        faces = faces[:, ::-1]
     _check_size(name, np.ptp(vertices[used], axis=0))
     return _closed(name, trimesh.Trimesh(vertices, faces, process=False))
 

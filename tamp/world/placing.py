@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tamp.world.bodies import Draft, read_orientation, read_pose, top_of
+from tamp.world.bodies import Draft, read_orientation, read_pose
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
 from tamp.world.scene import CONTACT_GAP, Body
+from tamp.world.tops import top_of
 from tamp.world.yaml_nodes import Node
 
 FLOOR = "floor"
@@ -57,11 +58,20 @@ class _Placing:
         }
         self.placed: dict[str, Body] = {}
         self.warnings: list[str] = []
+        self.places: list[tuple[str, _Place]] = []
+        self.heights = np.zeros(0)
 
     def run(self) -> tuple[dict[str, Body], tuple[str, ...]]:
         for name in self.drafts:
             self.place(name, ())
         bodies = {name: self.placed[name] for name in self.drafts}
+        # Every place once: thousands of bodies make millions of pairs.
+        self.places = [
+            (body.name, place)
+            for body in self.placed.values()
+            for place in (*_places(body).values(), *filter(None, [_top(body)]))
+        ]
+        self.heights = np.array([place.pose.position[2] for _, place in self.places])
         for name, draft in self.drafts.items():
             if "on" not in draft.entries and bodies[name].movable:
                 bodies[name] = self.settled(bodies[name], draft.node)
@@ -153,10 +163,9 @@ class _Placing:
             raise node.error(f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'")
         base = np.array([*(low + high)[:2] / 2, low[2]])
         places = [_Place(None, Pose(), (math.inf, math.inf))]
-        for other in self.placed.values():
-            if other.name != body.name:
-                top = _top(other)
-                places += [*_places(other).values(), *([top] if top else [])]
+        for index in np.flatnonzero(np.abs(self.heights - low[2]) <= _SNAP):
+            owner, place = self.places[index]
+            places += [place] if owner != body.name else []
         under = [
             (abs(low[2] - place.pose.position[2]), index, place)
             for index, place in enumerate(places)
@@ -186,8 +195,6 @@ def _places(body: Body) -> dict[str, _Place]:
 
 
 def _top(body: Body) -> _Place | None:
-    """The top of an upright box or cylinder without surfaces, which may carry another body."""
-    top = None if body.surfaces or body.cavities else top_of(body.name, body.parts)
-    if top is None or body.pose.rotation[2, 2] < _UPRIGHT:
-        return None
-    return _Place(body.name, body.pose @ top.pose, top.size)
+    """The highest level face of a body without places of its own, which may carry another body."""
+    top = None if body.surfaces or body.cavities else top_of(body.name, body.parts, body.pose)
+    return None if top is None else _Place(body.name, body.pose @ top.pose, top.size)

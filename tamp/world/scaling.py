@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tamp.world.pose import Pose
-from tamp.world.scene import Box, Cylinder, Hull, Part, Shape, Sphere
+from tamp.world.scene import Box, Cylinder, Hull, Part, Shape, Sphere, Visual
 
 
 def scale_part(part: Part, factor: float) -> Part:
@@ -17,6 +19,17 @@ def scale_pose(pose: Pose, factor: float) -> Pose:
     """A pose whose position is scaled."""
     x, y, z = pose.position
     return Pose((x * factor, y * factor, z * factor), pose.quaternion)
+
+
+def scale_visual(visual: Visual, factor: float) -> Visual:
+    """What is drawn of a body that is scaled by a factor about its origin."""
+    x, y, z = visual.scale
+    return replace(
+        visual,
+        scale=(x * factor, y * factor, z * factor),
+        pose=scale_pose(visual.pose, factor),
+        shapes=tuple(scale_part(part, factor) for part in visual.shapes),
+    )
 
 
 def _scale_shape(shape: Shape, factor: float) -> Shape:

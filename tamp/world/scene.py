@@ -57,6 +57,25 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Visual:
+    """Something to draw in place of a body's parts.
+
+    Attributes:
+        mesh: A mesh file, or None for the shapes.
+        shapes: Primitives at their poses in the visual's frame.
+        scale: Factors by which the file's x, y, z are multiplied to be metres; a negative one mirrors.
+        pose: T_body_visual: pose of the scaled mesh's frame, or of the shapes', in the body's.
+        colour: Its own; None for the body's.
+    """
+
+    mesh: Path | None = None
+    shapes: tuple[Part, ...] = ()
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    pose: Pose = Pose()
+    colour: tuple[float, float, float, float] | None = None
+
+
+@dataclass(frozen=True)
 class Surface:
     """A horizontal rectangle on which bodies may rest.
 
@@ -104,9 +123,10 @@ class Body:
         support: The surface or cavity that it was declared to stand on (`on:`), or rests on by geometry, or the movable
             body that carries it; None when it floats or is fixed.
         carriers: The movable bodies that it rests on, one or several.
-        visual: The mesh file to draw, when there is one.
-        visual_scale: Factors by which the file's x, y, z are multiplied to be metres.
-        visual_pose: Pose of the scaled mesh's frame in the body's (a URDF's visual origin).
+        mass: Kilograms.
+        friction: Coulomb's coefficient.
+        visuals: What to draw in place of its parts.
+        center_of_mass: In the body's frame, metres, where a file says it; None for parts of one density.
     """
 
     name: str
@@ -120,9 +140,8 @@ class Body:
     cavities: tuple[Cavity, ...] = ()
     support: str | None = None
     carriers: tuple[str, ...] = ()
-    visual: Path | None = None
-    visual_scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    visual_pose: Pose = Pose()
+    visuals: tuple[Visual, ...] = ()
+    center_of_mass: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)

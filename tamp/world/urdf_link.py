@@ -1,4 +1,4 @@
-"""The one link of a URDF file that describes an object."""
+"""The geometry of one link in a URDF file: its collision or visual elements, its colour."""
 
 from __future__ import annotations
 
@@ -10,8 +10,19 @@ from xml.etree import ElementTree
 from tamp.errors import InputError
 from tamp.world.pose import Pose
 from tamp.world.scene import Box, Cylinder, Sphere
+from tamp.world.xml_file import read_xml
 
 Scale = tuple[float, float, float]
+Colour = tuple[float, float, float, float]
+KNOWN = ("box", "cylinder", "sphere", "capsule", "mesh")
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the cylinder alone."""
+
+    radius: float
+    length: float
 
 
 @dataclass(frozen=True)
@@ -22,44 +33,15 @@ class Element:
         pose: Of the geometry in the link's frame.
         shape: The primitive, or None for a mesh.
         mesh: The mesh file, or None for a primitive.
-        scale: Factors that make the mesh metres.
+        scale: Factors that make the mesh metres; a negative one mirrors it.
+        colour: A visual element's own, when it has one.
     """
 
     pose: Pose
-    shape: Box | Cylinder | Sphere | None = None
+    shape: Box | Cylinder | Sphere | Capsule | None = None
     mesh: Path | None = None
     scale: Scale = (1.0, 1.0, 1.0)
-
-
-@dataclass(frozen=True)
-class UrdfLink:
-    """What a link is made of; `collisions` are its visual elements when the file gives no others."""
-
-    collisions: tuple[Element, ...]
-    visuals: tuple[Element, ...]
-    colour: tuple[float, float, float, float] | None
-
-
-def read_link(path: Path) -> UrdfLink:
-    """Read a URDF file of one link.
-
-    Raises:
-        InputError: Not XML, not one link, no geometry, or one that is unknown, not finite or not positive.
-    """
-    try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except (OSError, ElementTree.ParseError) as error:
-        raise InputError(f"cannot read '{path.name}': {error}") from None
-    links = root.findall("link")
-    if len(links) != 1:
-        names = ", ".join(link.get("name", "?") for link in links[:8])
-        found = f"{len(links)} links ({names})" if links else "no link"
-        raise InputError(f"'{path.name}' has {found}: an object has one link")
-    visuals = _elements(path, links[0], "visual")
-    collisions = _elements(path, links[0], "collision") or visuals
-    if not collisions:
-        raise InputError(f"'{path.name}' has neither collision nor visual geometry")
-    return UrdfLink(collisions, visuals, _colour(root, links[0]))
+    colour: Colour | None = None
 
 
 def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
@@ -68,56 +50,45 @@ def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
     Raises:
         InputError: Not XML, or a geometry that is unknown, not finite or not positive.
     """
-    try:
-        root = ElementTree.fromstring(path.read_bytes())
-    except (OSError, ElementTree.ParseError) as error:
-        raise InputError(f"cannot read '{path.name}': {error}") from None
-    return {link.get("name", ""): _elements(path, link, "visual") for link in root.findall("link")}
+    root = read_xml(path)
+    return {link.get("name", ""): elements(path, root, link, "visual") for link in root.findall("link")}
 
 
-def _elements(path: Path, link: ElementTree.Element, kind: str) -> tuple[Element, ...]:
-    found = [(element, element.find("geometry")) for element in link.findall(kind)]
-    return tuple(_element(path, element, geometry) for element, geometry in found if geometry is not None)
+def elements(
+    path: Path, root: ElementTree.Element, link: ElementTree.Element, kind: str
+) -> tuple[Element, ...]:  # fmt: skip
+    """The `collision` or `visual` elements of a link that have a geometry.
+
+    Raises:
+        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist.
+    """
+    found: list[Element] = []
+    for element in link.findall(kind):
+        geometry = element.find("geometry")
+        if geometry is not None:
+            found.append(_element(path, element, geometry, material_colour(root, element.find("material"))))
+    return tuple(found)
 
 
-def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Element) -> Element:
-    origin = element.find("origin")
+def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
+    """The pose in an element's <origin xyz rpy>, the identity where there is none.
+
+    Raises:
+        InputError: Not three finite numbers.
+    """
+    origin = None if element is None else element.find("origin")
     zero = (0.0, 0.0, 0.0)
-    pose = Pose.from_xyz_rpy(_vector(path, origin, "xyz", zero), _vector(path, origin, "rpy", zero))
-    for shape in geometry:
-        if shape.tag == "box":
-            return Element(pose, Box(_vector(path, shape, "size", None, positive=True)))
-        if shape.tag == "cylinder":
-            return Element(pose, Cylinder(_length(path, shape, "radius"), _length(path, shape, "length")))
-        if shape.tag == "sphere":
-            return Element(pose, Sphere(_length(path, shape, "radius")))
-        if shape.tag == "mesh":
-            scale = _vector(path, shape, "scale", (1.0, 1.0, 1.0), positive=True)
-            return Element(pose, mesh=_mesh_file(path, shape.get("filename", "")), scale=scale)
-    known = "box, cylinder, sphere, mesh"
-    raise InputError(f"'{path.name}' has a geometry that is none of {known}")
+    return Pose.from_xyz_rpy(_vector(path, origin, "xyz", zero), _vector(path, origin, "rpy", zero))
 
 
-def _mesh_file(path: Path, name: str) -> Path:
-    """A mesh beside the URDF, or `package://` somewhere above it."""
-    if not name:
-        raise InputError(f"'{path.name}' has a mesh without a file name")
-    below = name.removeprefix("package://").removeprefix("file://")
-    folders = [path.parent] if below == name else [path.parent, *path.parents]
-    tails = [Path(below)] if below == name else [Path(below), Path(*Path(below).parts[1:])]
-    for folder in folders:
-        for tail in tails:
-            if (folder / tail).is_file():
-                return folder / tail
-    raise InputError(f"'{path.name}' names the mesh '{name}', which does not exist")
-
-
-def _colour(root: ElementTree.Element, link: ElementTree.Element) -> tuple[float, float, float, float] | None:
-    material = link.find("visual/material")
+def material_colour(root: ElementTree.Element, material: ElementTree.Element | None) -> Colour | None:
+    """The colour of a <material>: its own, or that of the file's material, or of an earlier visual's, of its name."""
     if material is None:
         return None
-    named = [other for other in root.findall("material") if other.get("name") == material.get("name")]
-    for candidate in (material, *named):
+    name = material.get("name")
+    named = [other for other in root.findall("material") if other.get("name") == name]
+    earlier = [other for other in root.findall("link/visual/material") if name and other.get("name") == name]
+    for candidate in (material, *named, *earlier):
         colour = candidate.find("color")
         words = colour.get("rgba", "").split() if colour is not None else []
         if len(words) == 4:
@@ -127,6 +98,61 @@ def _colour(root: ElementTree.Element, link: ElementTree.Element) -> tuple[float
                 return None
             return (r, g, b, a)
     return None
+
+
+def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None) -> Element:
+    pose = origin_pose(path, element)
+    if not len(geometry):
+        raise InputError(f"'{path.name}' has an empty <geometry>")
+    shape = geometry[0]
+    if shape.tag == "box":
+        return Element(pose, Box(_vector(path, shape, "size", None, positive=True)), colour=colour)
+    if shape.tag == "cylinder":
+        cylinder = Cylinder(_length(path, shape, "radius"), _length(path, shape, "length"))
+        return Element(pose, cylinder, colour=colour)
+    if shape.tag == "sphere":
+        return Element(pose, Sphere(_length(path, shape, "radius")), colour=colour)
+    if shape.tag == "capsule":
+        capsule = Capsule(_length(path, shape, "radius"), _length(path, shape, "length"))
+        return Element(pose, capsule, colour=colour)
+    if shape.tag == "mesh":
+        file = _mesh_file(path, shape.get("filename", ""))
+        return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
+    if shape.tag == "plane":
+        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
+    raise InputError(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
+
+
+def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
+    """Three factors, or one for all directions, which URDF does not provide for but files have."""
+    words = _numbers(path, mesh, "scale", None) if "scale" in mesh.attrib else (1.0,)
+    if len(words) not in (1, 3) or 0.0 in words:
+        text = mesh.get("scale", "")
+        raise InputError(f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, found '{text[:60]}'")
+    x, y, z = words if len(words) == 3 else words * 3
+    return (x, y, z)
+
+
+def _mesh_file(path: Path, name: str) -> Path:
+    """A mesh beside the URDF, or `package://` somewhere above it."""
+    if not name.strip():
+        raise InputError(f"'{path.name}' has a mesh without a file name")
+    name = name.strip().replace("\\", "/")  # as written on Windows
+    below = name
+    for start in ("package://", "model://", "file://"):
+        below = below.removeprefix(start)
+    tails, folders = [Path(below)], [path.parent]
+    if not name.startswith("file://") and below != name:
+        tails, folders = [Path(below), Path(*Path(below).parts[1:])], [path.parent, *path.absolute().parents]
+    for folder in folders:
+        for tail in tails:
+            try:
+                if (folder / tail).is_file():
+                    return folder / tail
+            except OSError:  # a name too long to be one
+                continue
+    short = name if len(name) <= 80 else f"{name[:77]}..."
+    raise InputError(f"'{path.name}' names the mesh '{short}', which does not exist")
 
 
 def _length(path: Path, element: ElementTree.Element, attribute: str) -> float:
@@ -140,7 +166,7 @@ def _vector(
     default: tuple[float, float, float] | None,
     positive: bool = False,
 ) -> tuple[float, float, float]:
-    if default is not None and (element is None or attribute not in element.attrib):
+    if default is not None and (element is None or not element.get(attribute, "").strip()):
         return default
     if element is None:
         raise InputError(f"'{path.name}': '{attribute}' is missing")
@@ -148,15 +174,19 @@ def _vector(
     return (x, y, z)
 
 
-def _numbers(path: Path, element: ElementTree.Element, attribute: str, count: int, positive: bool) -> tuple[float, ...]:
+def _numbers(
+    path: Path, element: ElementTree.Element, attribute: str, count: int | None, positive: bool = False
+) -> tuple[float, ...]:
     text = element.get(attribute, "")
+    shown = text if len(text) <= 60 else f"{text[:57]}..."
     where = f"'{path.name}': {attribute} of <{element.tag}>"
     try:
-        values = tuple(float(word) for word in text.split())
+        values = tuple(float(word) for word in text.replace(",", " ").split())
     except ValueError:
-        raise InputError(f"{where}: '{text}' is not made of numbers") from None
-    if len(values) != count:
-        raise InputError(f"{where}: expected {count} numbers, found '{text}'")
+        remedy = "Expand it with xacro first" if "${" in text or "$(" in text else ""
+        raise InputError(f"{where}: '{shown}' is not made of numbers", remedy=remedy) from None
+    if count is not None and len(values) != count:
+        raise InputError(f"{where}: expected {count} numbers, found '{shown}'")
     if not all(math.isfinite(value) for value in values) or (positive and min(values) <= 0):
-        raise InputError(f"{where}: '{text}' is not positive and finite" if positive else f"{where}: not finite")
+        raise InputError(f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite")
     return values

@@ -124,7 +124,7 @@ CASES = [
     # Meshes
     (CAN, "{mesh: objects/bwl.obj, on: table}", 7, "no mesh file 'objects/bwl.obj'. Did you mean 'objects/bowl.obj'"),
     (CAN, "{mesh: pybullet_data/duc.obj, on: table}", 7, "Did you mean 'pybullet_data/duck.obj'"),
-    (CAN, "{mesh: pybullet_data/r2d2.urdf, on: table}", 7, r"'r2d2.urdf' has 16 links .*: an object has one link"),
+    (CAN, "{mesh: pybullet_data/plane_implicit.urdf, on: table}", 7, "has a <plane>, which has no end"),
     (CAN, "{mesh: objects/bowl.obj, scale: 0, on: table}", 7, "bodies.can.scale: must be positive"),
     (CAN, "{mesh: objects/bowl.obj, scale: 1000, on: table}", 7, "160 x 160 x 55 m large.*scale: 0.001"),
 ]

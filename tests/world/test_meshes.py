@@ -19,8 +19,8 @@ from tamp.world.decomposition import MOST_PIECES, decompose
 from tamp.world.mesh_pieces import compute_pieces, mesh_pieces, pieces_name
 from tamp.world.mesh_surface import open_edges, read_surface
 from tamp.world.meshes import Mesh, find_mesh, load_mesh
-from tamp.world.pose import Array
-from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.world.pose import Array, Pose
+from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere, Visual
 
 ONE = (1.0, 1.0, 1.0)
 CUBE = [(x, y, z) for x in (0, 0.1) for y in (0, 0.1) for z in (0, 0.1)]
@@ -300,20 +300,21 @@ def test_urdf_of_one_link(tmp_path: Path) -> None:
     assert mesh.parts[0].pose.position == (0, 0, 0.025) and mesh.parts[0].pose.yaw == pytest.approx(np.pi / 2)
     assert np.ptp(hulls(mesh)[0], axis=0) == pytest.approx((0.05, 0.05, 0.05))
     assert mesh.parts[3].pose.position == (0.05, 0, 0)
-    assert mesh.visual == cube and mesh.visual_scale == ONE and mesh.visual_pose.position == (0, 0, 0.05)
+    warm = (1.0, 0.5, 0.0, 1.0)
+    assert mesh.visuals == (Visual(cube, scale=ONE, pose=Pose((0.0, 0.0, 0.05)), colour=warm),)
     assert mesh.colour == (1, 0.5, 0, 1) and set(mesh.files) == {tmp_path / "lamp.urdf", cube}
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("</robot>", '<link name="shade"/></robot>', r"2 links \(lamp, shade\): an object has one link"),
+        ("</robot>", '<link name="shade"/></robot>', r"2 links \(lamp, shade\) that no joint holds together"),
         ("0.2 0.1 0.1", "0.2 0.1", "size of <box>: expected 3 numbers"),
         ("0.2 0.1 0.1", "0.2 0.1 -1", "not positive"),
         ("0.2 0.1 0.1", "0.2 0.1 nan", "not positive and finite"),
         ('radius="0.05"', 'radius="x"', "'x' is not made of numbers"),
         ("lamps/cube.obj", "lamps/cub.obj", "names the mesh 'package://lamps/cub.obj', which does not exist"),
-        ("<sphere ", "<capsule ", "none of box, cylinder, sphere, mesh"),
+        ("<sphere ", "<torus ", "none of box, cylinder, sphere, capsule, mesh"),
         ("</robot>", "", "cannot read 'lamp.urdf'"),
     ],
 )
