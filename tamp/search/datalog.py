@@ -135,7 +135,8 @@ def join(
         rows = _filter(relations, known, negative, equalities, rows)
         if not atoms:
             break
-        atom = min(atoms, key=lambda a: 0.0 if known.keys() >= _variables(a) else relations.fan_out(a, known))
+        bound_whole = (a for a in atoms if known.keys() >= _variables(a))
+        atom = next(bound_whole, None) or min(atoms, key=lambda a: relations.fan_out(a, known))
         atoms.remove(atom)
         bound: list[int] = []
         free: list[int] = []

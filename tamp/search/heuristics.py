@@ -20,12 +20,12 @@ class Estimate:
     Attributes:
         value: The estimated cost to the goal, infinite in a dead end.
         plan: The operators of a relaxed plan, where the heuristic makes one; those applicable are preferred.
-        achieving: Picks those of the applicable operators that are preferred for another reason.
+        paid: Says of an operator of that plan which prices of its guards the value contains.
     """
 
     value: float
     plan: tuple[int, ...] = ()
-    achieving: Callable[[list[int]], list[int]] | None = None
+    paid: Callable[[int], float] | None = None
 
 
 class Heuristic(Protocol):
@@ -45,7 +45,7 @@ def ff(successors: Successors) -> Heuristic:
         if exploration.dead:
             return Estimate(math.inf)
         value, plan = relaxation.plan(exploration)
-        return Estimate(value, tuple(plan))
+        return Estimate(value, tuple(plan), exploration.paid)
 
     return estimate
 
@@ -100,7 +100,7 @@ def landmarks(successors: Successors) -> Heuristic:
         if not known.possible:
             return Estimate(math.inf)
         remaining = known.remaining(closed, parent)
-        return Estimate(known.cost(remaining), achieving=lambda operators: known.achieving(operators, remaining))
+        return Estimate(known.cost(remaining))
 
     return estimate
 

@@ -35,6 +35,8 @@ class Instantiator:
         self._task, self._assumed = task, assumed
         self._facts: frozenset[Fact] = frozenset()
         self._run: Instantiation | None = None
+        self._derived = frozenset(rule.head.predicate for rule in task.domain.derived)
+        self._given = self._derived & {fact[0] for fact in task.initial}
 
     def instantiate(
         self,
@@ -55,7 +57,10 @@ class Instantiator:
         known = frozenset(facts)
         new = known - self._facts
         kept = self._run is not None and self._facts <= known
-        if self._run is None or not kept or any(fact[0] in self._run.absences for fact in new):
-            self._run, new = Instantiation(self._task, self._assumed), known
+        given = self._given | (self._derived & {fact[0] for fact in new})
+        ended = self._run is not None and any(fact[0] in self._run.absences for fact in new)
+        if self._run is None or not kept or ended or given != self._given:
+            self._given = given
+            self._run, new = Instantiation(self._task, self._assumed, given), known
         self._facts = known
         return self._run.grounded(new, objects or {}, refused)

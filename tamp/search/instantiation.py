@@ -36,13 +36,18 @@ class _Variant:
 class Instantiation:
     """A task with its relations, its rules and what they have reached so far.
 
+    Args:
+        task: Gives actions, derived rules, the initial state, the goal, costs.
+        assumed: Static predicates of tests that are taken to hold.
+        given: Derived predicates of which facts are given besides.
+
     Attributes:
         absences: The static predicates that some condition wants not to hold.
     """
 
-    def __init__(self, task: Task, assumed: frozenset[str]) -> None:
+    def __init__(self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()) -> None:
         self._task = task
-        self._normalizer = normalizer = Normalizer(task.domain)
+        self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
         for action in task.domain.actions:
             effects = lifted_effects(action, normalizer)

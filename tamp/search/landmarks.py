@@ -27,7 +27,6 @@ class Landmarks:
     def __init__(self, successors: Successors) -> None:
         self._relaxation = relaxation = Relaxation(successors, steps=True)
         self._size = len(successors.facts)
-        self._successors = successors
         initial = successors.closure(successors.initial)
         situation = relaxation.situation(initial)
         before, effects, needed = situation.before.lists(), situation.effects.lists(), situation.needed.lists()
@@ -67,7 +66,6 @@ class Landmarks:
         self._complements = self._all >> self._size
         self._weights = self._weigh(effects, situation.costs)
         self._needs = self._first_needs(sets, before, effects)
-        self._changes = self._find_changes()
 
     def remaining(self, closed: State, parent: State | None) -> Mask:
         """The landmarks that are still to come, or to come again.
@@ -92,11 +90,6 @@ class Landmarks:
         """The sum of the cheapest achievers' costs."""
         weights = self._weights
         return sum(weights[fact] for fact in bits(remaining))
-
-    def achieving(self, operators: list[int], remaining: Mask) -> list[int]:
-        """Those of the operators that make one of these landmarks true."""
-        changes = self._changes
-        return [i for i in operators if changes[i] & remaining]
 
     def _holding(self, closed: State) -> Mask:
         return (closed & self._all) | (~closed & self._complements) << self._size
@@ -123,14 +116,3 @@ class Landmarks:
                 if self._all >> fact & 1 and not union >> fact & 1:
                     needs[fact] = needs[fact] & own if fact in needs else own
         return {fact: need & self._all for fact, need in needs.items() if need & self._all}
-
-    def _find_changes(self) -> list[Mask]:
-        """The landmarks that each operator may make true."""
-        s, whole = self._successors, (1 << self._size) - 1
-        changes: list[Mask] = []
-        for i, added in enumerate(s.added):
-            mask = added | (~s.kept[i] & ~added & whole) << self._size
-            for _, _, adds, deletes in s.conditional[i]:
-                mask |= adds | deletes << self._size
-            changes.append(mask & self._all)
-        return changes

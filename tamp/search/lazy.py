@@ -105,15 +105,21 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
             # Among equals: greedy search goes on from the state just expanded, weighted A* takes the older.
             order = number if not greedy else rank - search.expanded * len(s.operators)
             step = s.cost[operator]
-            extra = reached - cost - step
+            dearer = reached - cost - step
             for kind, h in enumerate(values):
-                key = h + extra if greedy else reached + weight * h
+                extra = dearer and dearer - _paid(found[state][kind], operator)
+                key = h + extra if greedy else cost + step + extra + weight * h
                 heappush(usual[kind], (key, order, reached, after, state, operator))
                 if rank < len(helpful) and extra <= step:
                     # Rank decides among preferred siblings, not cost. One that guards make dear waits elsewhere.
                     key = h if greedy else cost + weight * h
                     heappush(preferred[kind], (key, order, reached, after, state, operator))
     return None
+
+
+def _paid(estimate: Estimate, operator: int) -> float:
+    """The prices of the operator's guards that the parent's estimate contains: they shall not count twice."""
+    return estimate.paid(operator) if estimate.paid is not None and operator in estimate.plan else 0.0
 
 
 def _helpful(
@@ -124,8 +130,6 @@ def _helpful(
     for estimate in estimates:
         if estimate.plan:
             helpful.update(_preferred(s, state, closed, applicable, estimate.plan))
-        if estimate.achieving is not None:
-            helpful.update(dict.fromkeys(estimate.achieving(applicable)))
     return helpful
 
 

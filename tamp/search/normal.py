@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tamp.pddl.structs import And, Atom, Domain, Exists, Formula, Not, Or, Parameter
+from tamp.pddl.structs import And, Atom, Derived, Domain, Exists, Formula, Not, Or, Parameter
+from tamp.search.unfolding import unfoldable
 
 SPLITS = 12
 """A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary predicates."""
@@ -46,11 +47,16 @@ class Normalizer:
     Attributes:
         definitions: Rules by the predicate that they define.
         auxiliary: Names of the predicates made here, and the formula that each stands for.
+
+    Args:
+        domain: Gives the types and the derived predicates.
+        given: Derived predicates of which facts are given as well, so that their rules do not say all.
     """
 
-    def __init__(self, domain: Domain) -> None:
+    def __init__(self, domain: Domain, given: frozenset[str] = frozenset()) -> None:
         self._domain = domain
         self._renamed = 0
+        self._unfolded = {rule.head.predicate: rule for rule in unfoldable(domain, given)}
         self.definitions: dict[str, list[Definition]] = {}
         self.auxiliary: dict[str, Formula] = {}
         for rule in domain.derived:
@@ -94,7 +100,10 @@ class Normalizer:
 
     def _dnf(self, formula: Formula, sign: bool, names: Mapping[str, str], scope: dict[str, Types]) -> list[_Part]:
         if isinstance(formula, Atom):
-            return [((), ((sign, Atom(formula.predicate, tuple(names.get(t, t) for t in formula.terms))),))]
+            terms = tuple(names.get(term, term) for term in formula.terms)
+            if sign and formula.predicate in self._unfolded:
+                return self._unfold(self._unfolded[formula.predicate], terms, scope)
+            return [((), ((sign, Atom(formula.predicate, terms)),))]
         if isinstance(formula, Not):
             return self._dnf(formula.body, not sign, names, scope)
         if isinstance(formula, And | Or):
@@ -116,6 +125,16 @@ class Normalizer:
         if not inner:
             return [((), ())]
         return [((), ((False, self._name(formula, inner, scope, "forall")),))]
+
+    def _unfold(self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]) -> list[_Part]:
+        """The rule's body in the place of its head, with the types that it asks of its arguments."""
+        names = dict(zip(rule.head.terms, terms, strict=True))
+        typed = tuple(
+            (True, Atom(type_relation(parameter.types), (names[parameter.name],)))
+            for parameter in rule.parameters
+            if "object" not in parameter.types
+        )
+        return [(more, (*typed, *literals)) for more, literals in self._dnf(rule.body, True, names, scope)]
 
     def _product(self, parts: list[list[_Part]], scope: dict[str, Types]) -> list[_Part]:
         size = 1

@@ -9,7 +9,8 @@ are operators of their own. Negated derived facts are taken for free (only recur
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 
 from tamp.search.loops.rows import Integers, Reals, Rows
@@ -32,6 +33,8 @@ class Situation:
         needed: For each fact, complement or guard, the relaxed operators that wait for it.
         paid: Guards that can be paid for.
         prices: What they cost.
+        raised: For each operator the prices of guards that its cost contains.
+        guarded: For each operator the guards, with their prices, that it waits for.
     """
 
     loops: Loops
@@ -41,6 +44,8 @@ class Situation:
     needed: Rows
     paid: tuple[int, ...] = ()
     prices: tuple[float, ...] = ()
+    raised: Mapping[int, float] = field(default_factory=dict[int, float])
+    guarded: Mapping[int, list[tuple[int, float]]] = field(default_factory=dict[int, list[tuple[int, float]]])
 
     @property
     def operators(self) -> int:
@@ -66,6 +71,12 @@ class Exploration:
     def goal_costs(self) -> list[float]:
         """What each fact of the goal costs."""
         return [float(self.costs[goal]) for goal in self.goals]
+
+    def paid(self, operator: int) -> float:
+        """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than removes their facts."""
+        it = self.situation
+        waited = it.guarded.get(operator, ())
+        return it.raised.get(operator, 0.0) + sum(price for guard, price in waited if self.supporters[guard] < 0)
 
     @property
     def dead(self) -> bool:
@@ -183,12 +194,18 @@ class Relaxation:
         dearer: list[int] = []
         by: list[float] = []
         waiting: dict[tuple[int, float], list[int]] = {}
+        raised: dict[int, float] = {}
+        blocked: dict[int, list[tuple[int, float]]] = {}
         for fact in bits(state):
             if fact in self._negative:
                 waiting[1 << fact, math.inf] = list(self._negative[fact])
         for facts in s.triggered(state):
             removal = min(self._removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
+                if price <= removal and price < math.inf:
+                    raised[operator] = raised.get(operator, 0.0) + price
+                else:
+                    blocked.setdefault(operator, []).append((facts, price))
                 for i in self._of_operator[operator]:
                     if price <= removal and price < math.inf:
                         dearer.append(i)
@@ -208,6 +225,7 @@ class Relaxation:
             complements = [size + fact for fact in bits(facts)]
             removers += complements
             removed += [guard] * len(complements)
+        numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
         loops, last = base.loops, operators + len(removers)
         added = loops.integers(range(operators, last))
         behind, sources = loops.integers([*waiters, *added]), loops.integers([*guards, *removers])
@@ -220,6 +238,11 @@ class Relaxation:
             needed=loops.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),
             prices=tuple(price for _, price in paid),
+            raised=raised,
+            guarded={
+                operator: [(numbers[key], key[1]) for key in keys if key in numbers]
+                for operator, keys in blocked.items()
+            },
         )
 
     def explore(self, closed: State, *, additive: bool) -> Exploration:

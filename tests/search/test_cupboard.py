@@ -158,3 +158,17 @@ def test_the_same_plan_whatever_the_hash_seed() -> None:
         )
         outputs.append(json.loads(run.stdout))
     assert outputs[0] == outputs[1] == outputs[2]
+
+
+@pytest.mark.parametrize("name", INFORMED)
+def test_a_price_that_the_estimate_contains_is_not_counted_again(name: str) -> None:
+    """The last body's places are all priced: counted twice, every move elsewhere would be tried before them."""
+    task = instantiate(*cupboard(8))
+
+    def price(fact: Fact) -> float:
+        return 2.0 if fact[:2] == ("pose-clear", "o7") else 0.0
+
+    result = search(task, search=name, price=price, limit=200)
+    assert result.plan is not None
+    assert len(result.plan.operators) == 32
+    assert result.plan.cost == 32 + 7 * 2.0
