@@ -12,7 +12,7 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.world.bounds import bounds
 from tamp.world.furniture import FURNITURE, Furniture, Options
-from tamp.world.meshes import Mesh, capsule_parts, find_mesh, mesh_triangles, load_mesh
+from tamp.world.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_triangles
 from tamp.world.pose import Pose
 from tamp.world.scene import Body, Box, Cavity, Cylinder, Part, Sphere, Surface, Visual
 from tamp.world.tops import NARROWEST, top_of
