@@ -251,7 +251,7 @@ def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     import os
 
     os.mkfifo(tmp_path / "d.pddl")
-    with pytest.raises(InputError, match="a device or a pipe"):
+    with pytest.raises(InputError, match="this is a pipe, no PDDL file"):
         read_pddl(tmp_path / "d.pddl")
 
 
