@@ -2,55 +2,83 @@
 
 from __future__ import annotations
 
-import importlib.util
+from collections.abc import Mapping
+from importlib.util import decode_source
 from pathlib import Path
+from types import ModuleType
 
 from tamp.errors import InputError
+from tamp.reading import read_bytes
 from tamp.streams.choice import GIVEN, MODES, Grounding
 from tamp.streams.relations import Classifier, Generator
 
 SUFFIX = ".py"
 
+MOST_BYTES = 10_000_000
+"""The largest Python file that is read."""
+
 NAME = "grounding"
 """What the object is called in the file."""
 
 
-def given_by_files(samplers: dict[str, str]) -> tuple[dict[str, str], dict[str, Grounding]]:
+def given_by_files(
+    samplers: Mapping[str, str], sources: Mapping[str, str] | None = None
+) -> tuple[dict[str, str], dict[str, Grounding]]:
     """Part what `--sampler` says into names, for `load_problem(samplers=)`, and objects, for its `groundings`.
 
     A file is run, so only a command line may name one: what comes with a problem or a plan does not run.
 
     Args:
         samplers: Relation to NAME or FILE.py, or either with a mode.
+        sources: What stands in the files, by name, where that is known already: then they are not read.
 
     Raises:
         InputError: As for `python_grounding`.
     """
     names, objects = dict(samplers), dict[str, Grounding]()
     for relation, text in samplers.items():
-        file, colon, mode = (
-            text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
-        )
+        file, mode = parted(text)
         if Path(file).suffix == SUFFIX:
-            objects[relation] = python_grounding(Path(file))
-            names[relation] = f"{GIVEN}{colon}{mode}"
+            objects[relation] = python_grounding(Path(file), (sources or {}).get(file))
+            names[relation] = f"{GIVEN}{mode}"
     return names, objects
 
 
-def python_grounding(path: Path) -> Grounding:
+def parted(text: str) -> tuple[str, str]:
+    """A sampler's name or file, and its mode with the colon before it, if it has one."""
+    mode = next((f":{mode}" for mode in MODES if text.endswith(f":{mode}")), "")
+    return text.removesuffix(mode) if mode else text, mode
+
+
+def python_source(path: Path) -> str:
+    """What stands in a Python file, in the encoding that it says.
+
+    Raises:
+        InputError: There is no such file, or it is no text.
+    """
+    content = read_bytes(path, MOST_BYTES, kind="Python file")
+    try:
+        return decode_source(content)
+    except (SyntaxError, UnicodeDecodeError) as error:
+        raise InputError(f"this is no Python file: {error}", file=path) from None
+
+
+def python_grounding(path: Path, source: str | None = None) -> Grounding:
     """The object of name NAME in a Python file, which is run.
+
+    Args:
+        path: The file.
+        source: What stands in it, when it was read before; the file need not be here then.
 
     Raises:
         InputError: There is no such file, it fails, or it has no such object with `propose` or `classify`.
     """
-    if not path.is_file():
-        raise InputError("no such file", file=path)
-    spec = importlib.util.spec_from_file_location(f"_own_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise InputError("this is no Python file", file=path)
-    module = importlib.util.module_from_spec(spec)
+    if source is None:
+        source = python_source(path)
+    module = ModuleType(f"_own_{path.stem}")
+    module.__file__ = str(path)
     try:
-        spec.loader.exec_module(module)
+        exec(compile(source, str(path), "exec"), module.__dict__)
     except Exception as error:
         line = error.lineno if isinstance(error, SyntaxError) else None
         raise InputError(f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line) from error
