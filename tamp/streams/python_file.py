@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib.abc import InspectLoader
 from importlib.util import decode_source
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
 from tamp.errors import InputError
 from tamp.reading import read_bytes
@@ -19,6 +20,21 @@ MOST_BYTES = 10_000_000
 
 NAME = "grounding"
 """What the object is called in the file."""
+
+
+class _Text(InspectLoader):
+    """Loads a module from a text that was read before."""
+
+    def __init__(self, path: Path, source: str) -> None:
+        self._path, self._source = path, source
+
+    def get_source(self, fullname: str) -> str:
+        """The text."""
+        return self._source
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The text, compiled; errors in it name the file."""
+        return self.source_to_code(self._source, str(self._path))
 
 
 def given_by_files(
@@ -75,10 +91,11 @@ def python_grounding(path: Path, source: str | None = None) -> Grounding:
     """
     if source is None:
         source = python_source(path)
+    loader = _Text(path, source)
     module = ModuleType(f"_own_{path.stem}")
     module.__file__ = str(path)
     try:
-        exec(compile(source, str(path), "exec"), module.__dict__)
+        loader.exec_module(module)
     except Exception as error:
         line = error.lineno if isinstance(error, SyntaxError) else None
         raise InputError(f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line) from error
