@@ -58,7 +58,10 @@ READ = [
     # words without a blank between them
     ("(cut ?p - part)", "(cut?p - part)"),
     (":effect (cut ?p)", ":effect(cut?p)"),
-    # the type of an object is only said to be a more general one
+    ("(total-cost) - number", "(total-cost) - number - part"),
+    ("(total-cost) - number", "- part (total-cost) - number"),
+    # the type of an object is only said to be a more general one, or another one in a problem
+    ("(near p1 p2)", "(near p1 p2) (cut b1)"),
     ("(:constants)", "(:constants k - object)"),
     ("(near p1 p2)", "(near p1 p2) (cut k)"),
     # requirements, case, blanks
