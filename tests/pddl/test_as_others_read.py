@@ -218,7 +218,7 @@ HOSTILE = [
     (f"(define (domain {'n' * 100_000}))", "a word of 100,000 characters"),
     ("(define (domain d\x00))", "a control character (U+0000) in a word"),
     ("(define (domain d\x1b[31m))", "a control character (U+001B) in a word"),
-    ("(define (domain d) " + "(a b) " * 400_000, "more than 1,500,000 words"),
+    ("(define (domain d) " + "(a b) " * 400_000, "more than 1,000,000 words"),
     ("(define (domain d) " + "(:predicates (b)) (:action a :effect (a " * 40, "is never closed"),
     (f"(define (domain d) (:predicates (p {'?x ' * 20_000})) (:action a :effect (p)))", "'p' takes 20000 arguments"),
 ]
