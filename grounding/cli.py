@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from dataclasses import asdict, replace
+from itertools import islice
 from pathlib import Path
 
 from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
@@ -13,6 +14,7 @@ from grounding.certainty import cannot_tell
 from grounding.dataset import FORMAT as DATA
 from grounding.dataset import Dataset, read_dataset, write_dataset
 from grounding.mesh_folder import MeshFolder, read_folder
+from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
@@ -20,6 +22,9 @@ from tamp.outputs import check_outputs, check_writable
 from tamp.terminal import spoken
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+
+SHOWN = 5
+"""Contradicting pairs of rows that are named."""
 
 
 @spoken
@@ -81,7 +86,7 @@ def _collect(chosen: Collect) -> None:
     out = chosen.out or data_file(chosen.relation, "train")
     _check_out(out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))])
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
-    for text in unsteady(data):
+    for text in (*unsteady(data), *monotony(data)):
         print(f"warning: {text}", file=sys.stderr)
     write_dataset(out, data)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
@@ -133,6 +138,12 @@ def _train(chosen: Train) -> None:
     read = [*_with_card(chosen.data or data_file(chosen.relation, "train")), *_with_card(encoder)]
     _check_out(out, WEIGHTS, read, args.state)
     data = _data(chosen.data, chosen.relation, "train")
+    file = chosen.data or data_file(chosen.relation, "train")
+    for text in monotony(data, chosen.samples):
+        print(f"warning: {file}: {text}", file=sys.stderr)
+    for first, second in islice(contradictions(data), SHOWN):
+        what = f"rows {first} and {second} are the same situation, labelled both ways"
+        print(f"warning: {file}: array 'holds', {what}", file=sys.stderr)
     try:
         weights = train(data, chosen.model, args, _show)
     except ImportError as error:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from grounding.dataset import Dataset
 from grounding.relational.measures import View
 from grounding.situation import Region, region_of
+from grounding.variety import contradictions
 from tamp.errors import InputError
 from tamp.pddl.nodes import Group, Node, Symbol, error
 from tamp.pddl.sexpr import read
@@ -25,6 +26,9 @@ from tamp.world.scene import Part, Scene
 
 KINDS = ("holds", "does not hold")
 
+HANGS = 0.005
+"""Metres by which a body may be off its place: physics leaves a millimetre or two."""
+
 
 @dataclass(frozen=True, eq=False)
 class Demonstration:
@@ -34,11 +38,13 @@ class Demonstration:
         scene: Everything stands where the label is about.
         arguments: The relation's: a body, and the surface or container that it stands to.
         holds: The label.
+        source: Where it is said, for messages: "lying.yaml:9".
     """
 
     scene: Scene
     arguments: tuple[str, str]
     holds: bool = True
+    source: str = ""
 
 
 def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
@@ -49,12 +55,15 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
         demonstrations: In the order in which `--samples` takes them.
 
     Raises:
-        InputError: There are none, or arguments that are not a body and a surface or container of another one.
+        InputError: There are none, arguments that are not a body and a surface or container of another one, or the
+            same situation is said to hold and not to hold.
     """
+    sources: list[str] = []
     rows: list[tuple[bool, Region, list[tuple[int, Array]]]] = []
     templates: dict[tuple[Part, ...], str] = {}
     numbers: dict[tuple[Part, ...], int] = {}
-    for one in demonstrations:
+    for number, one in enumerate(demonstrations):
+        sources.append(one.source or f"demonstration {number + 1}")
         bodies, region = _bodies(one)
         placed: list[tuple[int, Array]] = []
         for name in bodies:
@@ -70,22 +79,42 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
     arrays = _arrays(rows)
     by_type = {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(KINDS)}
     card = {"relation": relation, "split": "train", "count": len(rows), "by type": by_type, "feasible": 1.0}
-    return Dataset(arrays, {name: parts for parts, name in templates.items()}, KINDS, card)
+    data = Dataset(arrays, {name: parts for parts, name in templates.items()}, KINDS, card)
+    data.sources = tuple(sources)
+    for first, second in contradictions(data):
+        places = f"{sources[first]} and {sources[second]}"
+        what = f"'{relation}' is said to hold and not to hold in the same situation: {places}"
+        raise InputError(what, remedy="Take one of the two away")
+    return data
 
 
 def unsteady(data: Dataset) -> list[str]:
-    """Warnings of bodies for which the relation holds as they stand on none of their stable faces."""
-    found: Counter[str] = Counter()
-    for example in data:
+    """Warnings of bodies for which the relation holds where no plan will put them, each with its first place.
+
+    They stand on none of their stable faces, hang in the air, or are sunk into the place.
+    """
+    found: Counter[tuple[str, str]] = Counter()
+    first: dict[tuple[str, str], str] = {}
+    for row, example in enumerate(data):
         if not example.holds:
             continue
         view = View(example.situation)
         measured = view.measure((view.T_region_world @ example.situation.body.matrix)[None])
+        low, nearest = float(measured.low[0, 2]), float(measured.nearest[0])
+        wrong: list[str] = []
         if not len(view.faces) or np.linalg.norm(measured.tilt) > math.sin(SNAP_TILT):
-            found[example.names[1]] += 1
+            wrong.append("stands on none of its stable faces")
+        if min(low, nearest) > HANGS:
+            wrong.append(f"hangs {low * 1e3:.0f} mm above the place")
+        if low < -HANGS:
+            wrong.append(f"is sunk {-low * 1e3:.0f} mm into the place")
+        for what in wrong:
+            entry = (example.names[1], what)
+            found[entry] += 1
+            first.setdefault(entry, data.sources[row] if data.sources else f"row {row}")
     return [
-        f"{name} stands on none of its stable faces ({count} scene{'s' * (count > 1)}): no plan will put it down so"
-        for name, count in found.items()
+        f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): no plan will put it down so"
+        for (name, what), count in found.items()
     ]
 
 
@@ -106,7 +135,8 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
         said: list[Demonstration] = []
         for form in read(goal.text, path, line_offset=goal.line - 1, column_offset=goal.column - 1):
             for group, holds in _facts(form, relation.lower()):
-                demonstration = Demonstration(loaded.scene, _names(group, loaded.scene), holds)
+                where = f"{path}:{group.place.line}:{group.place.column}"
+                demonstration = Demonstration(loaded.scene, _names(group, loaded.scene), holds, where)
                 try:
                     _bodies(demonstration)
                 except InputError as found:

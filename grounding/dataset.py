@@ -6,7 +6,6 @@ A data set is self-contained: it carries the geometry of its bodies, so that not
 from __future__ import annotations
 
 import io
-import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,9 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grounding.checks import check_arrays, check_card
 from grounding.form import Form
+from grounding.npz import MOST_BYTES, read_npz
+from grounding.pair import read_pair, write_pair
 from grounding.situation import Placed, Region, Situation, near
-from tamp.data import write_whole
 from tamp.errors import InputError
 from tamp.world.pose import Pose
 from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere
@@ -58,6 +59,9 @@ class Dataset:
         templates: Name to the parts of a body of scale 1.
         kinds: The names of the types of samples.
         card: Relation, seed, commit, counts, splits.
+
+    Attributes:
+        sources: Where each row is from, for messages, as far as that is known: "lying.yaml:9"; it is not written.
     """
 
     def __init__(
@@ -68,6 +72,7 @@ class Dataset:
         card: Mapping[str, Any],
     ) -> None:
         self.arrays, self.templates, self.kinds, self.card = dict(examples), dict(templates), tuple(kinds), dict(card)
+        self.sources: tuple[str, ...] = ()
         self._names = tuple(templates)
         self._forms: dict[str, Form] = {}
 
@@ -110,6 +115,10 @@ class Dataset:
         chosen = np.asarray(indices)
         return Dataset({k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card)
 
+    def form(self, row: int, body: int) -> Form:
+        """The geometry of a scene's body: 0 for what the place is of, 1 for the relation's body, then the others."""
+        return self._form(self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body]))
+
     def _form(self, name: str, scale: float) -> Form:
         if name not in self._forms:
             self._forms[name] = Form(self.templates[name])
@@ -132,35 +141,35 @@ def write_dataset(path: Path, data: Dataset) -> None:
             content = io.BytesIO()
             np.lib.format.write_array(content, np.ascontiguousarray(array), allow_pickle=False)
             archive.writestr(entry, content.getvalue())
-    write_whole(path.with_suffix(".json"), (json.dumps(card, indent=2, sort_keys=True) + "\n").encode())
-    write_whole(path, buffer.getvalue())
+    write_pair(path, buffer.getvalue(), card)
 
 
 def read_dataset(path: Path) -> Dataset:
     """The data set at `path`.
 
     Raises:
-        InputError: A file is missing, damaged or of another format.
+        InputError: A file is missing, damaged or of another format, the two do not belong together, or an array is not
+            what it should be; then with the array and its row.
     """
-    card_path = path.with_suffix(".json")
-    remedy = "Generate it again: tamp-learn generate --help"
-    for file in (path, card_path):
-        if not file.is_file():
-            raise InputError("no such data set", file=file, remedy=remedy)
+    remedy = "Generate it again: tamp-learn generate --help, or collect it again"
+    pair = read_pair(path, FORMAT, what="data set", most=MOST_BYTES, remedy=remedy)
+    card = pair.card
     try:
-        card = json.loads(card_path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise InputError(f"the card is damaged: {error}", file=card_path, remedy=remedy) from None
-    if not isinstance(card, dict) or card.get("format") != FORMAT:
-        raise InputError(f"not a card of '{FORMAT}'", file=card_path, remedy=remedy)
+        check_card(card)
+    except InputError as error:
+        raise InputError(error.message, file=path.with_suffix(".json"), remedy=remedy) from None
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
+        arrays = read_npz(pair.content)
+        check_arrays(arrays, card)
         geometry = _unpacked({name: arrays.pop(name) for name in _GEOMETRY})
         templates = dict(zip(card.pop("templates"), geometry, strict=True))
-        return Dataset(arrays, templates, card.pop("kinds"), card)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except InputError as error:
+        raise InputError(f"the data set is damaged: {error.message}", file=path, remedy=remedy) from None
+    except (ValueError, ArithmeticError) as error:  # a hull that is none
         raise InputError(f"the data set is damaged: {error}", file=path, remedy=remedy) from None
+    if pair.stranger is not None:
+        raise pair.stranger
+    return Dataset(arrays, templates, card.pop("kinds"), card)
 
 
 _GEOMETRY = (

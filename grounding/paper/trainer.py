@@ -258,6 +258,9 @@ class Trainer:
             raise InputError(f"the state is damaged: {error}", file=path, remedy=remedy) from None
         if found.get("run") != self._run():
             raise InputError("the state of another training", file=path, remedy=remedy)
+        wanted = {name: (tensor.shape, tensor.dtype) for name, tensor in self._tensors().items()}
+        if wanted != {name: (tensor.shape, tensor.dtype) for name, tensor in tensors.items()}:
+            raise InputError("the state is damaged: its arrays are others", file=path, remedy=remedy)
         for name, tensor in self._tensors().items():
             tensor.copy_(tensors[name])
 

@@ -96,8 +96,12 @@ class Tree:
         bounds = [arrays[f"tree.{name}"].astype(np.float64) for name in ("low", "high")]
         if any(bound.shape != (size,) for bound in bounds):
             raise _refused(f"a range of other than {size} features")
+        if (bounds[0] > bounds[1]).any():
+            raise _refused("a range that ends before it begins")
         self.leaves = np.flatnonzero(~inner & (self.positive > 0.5))
         self.low, self.high = (limits[self.leaves] for limits in self._limits(*bounds))
+        if (self.low > self.high).any():
+            raise _refused("a leaf that no example can reach")
 
     def leaf(self, features: Array) -> NDArray[np.intp]:
         """The leaves of both arguments' features, shape (n, 2 f); returns (n,)."""

@@ -7,8 +7,9 @@ tilt and a yaw. What all demonstrations keep (room at the sides, above, around) 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,12 @@ SLACK = 0.002
 
 LEVEL, FLAT = 0.003, 0.05
 """Metres and sine: what physics leaves of a height or a tilt is noise up to these."""
+
+STEADY_LEVEL = 1e-4
+"""Metres by which the spreads of two distances may differ and still be alike."""
+
+LEVELS, ANCHORS = 3, 4
+"""How many levels of a body and anchors of a region there are."""
 
 WIDEST = 0.12
 """Sine of the largest tilt that is proposed."""
@@ -76,7 +83,8 @@ class Chart:
         finite = np.isfinite(heights).all(axis=0)
         middle = np.median(np.where(finite, heights, 0.0), axis=0)
         spread = np.where(finite, np.median(np.abs(heights - middle), axis=0), np.inf)
-        level, anchor = (int(v) for v in np.unravel_index(np.argmin(spread), spread.shape))
+        # Where several keep their distance, as on tables of one height all do, the lowest point above the plane counts.
+        level, anchor = (int(v) for v in np.argwhere(spread <= spread.min() + STEADY_LEVEL)[0])
         offset = float(middle[level, anchor])
         sides = np.array([one.sides.min() for one in measured])
         low = min(int(0.01 * len(measured)), len(measured) - 1)
@@ -98,8 +106,30 @@ class Chart:
 
     @classmethod
     def from_card(cls, card: Mapping[str, Any]) -> Chart:
-        """The inverse of `dataclasses.asdict`."""
-        return cls(**card)
+        """The inverse of `card`.
+
+        Raises:
+            TypeError: An entry is missing, unknown, or no number or truth value as it should be.
+            ValueError: A level or an anchor that there is not.
+        """
+        known = dict(card)
+        if known.get("ceiling", 0) is None:
+            known["ceiling"] = math.inf
+        chart = cls(**known)
+        for name, value in known.items():
+            wanted = {"level": int, "anchor": int, "contained": bool}.get(name, float)
+            given = type(value)
+            if given is not wanted and not (wanted is float and given is int):
+                raise TypeError(f"'{name}' of the chart is {value!r:.40}, not a {wanted.__name__}")
+        if chart.level not in range(LEVELS) or chart.anchor not in range(ANCHORS):
+            raise ValueError(f"the chart has level {chart.level} and anchor {chart.anchor}")
+        return chart
+
+    @property
+    def card(self) -> dict[str, Any]:
+        """Its entries as JSON knows them, which has no infinite ceiling: None."""
+        entries = asdict(self)
+        return {**entries, "ceiling": self.ceiling if math.isfinite(self.ceiling) else None}
 
     def encode(self, measured: Measures) -> Demonstration:
         """One pose in these coordinates."""

@@ -30,11 +30,16 @@ class Flow:
 
     Raises:
         KeyError: There is no scale.
+        ValueError: The scale is not that of the coordinates.
         ValueError: A network has other numbers of inputs or outputs.
     """
 
     def __init__(self, chart: Chart, arrays: Mapping[str, NDArray[Any]]) -> None:
         self.chart, self._scale = chart, arrays["scale"]
+        if self._scale.shape != (COORDINATES,) or not (self._scale > 0.0).all():
+            raise ValueError(
+                f"the scale has shape {self._scale.shape}, or no size, not one of {COORDINATES} coordinates"
+            )
         self._face = layers_of(arrays, "face", CONDITION, 1)
         self._pair = layers_of(arrays, "pair", PAIR, POOLED)
         self._velocity = layers_of(arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -108,9 +107,7 @@ def relational_weights(
         arrays = {name: np.asarray(getattr(proposals, name), np.float32) for name in DEMONSTRATIONS}
     else:
         arrays = {f"flow.{name}": array for name, array in proposals.items()}
-    return Weights(
-        {**arrays, **{f"rank.{name}": array for name, array in rank.items()}}, {**card, "chart": asdict(chart)}
-    )
+    return Weights({**arrays, **{f"rank.{name}": array for name, array in rank.items()}}, {**card, "chart": chart.card})
 
 
 def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:

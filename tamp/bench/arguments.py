@@ -22,7 +22,8 @@ class Run:
     problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
     """Shipped problems' names, or files."""
     samplers: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("default", "uniform")
-    """NAME or NAME:alone for all relations that have it, on=NAME,inside=NAME, or default: the problem's own."""
+    """NAME or NAME:alone for all relations that have it; on=NAME,inside=NAME; or default: the problem's own. In on=NAME
+    it may also be a file, as for tamp-solve --sampler: on=weights.safetensors, or on=mine.py, which is run."""
     seeds: Annotated[int, tyro.conf.arg(metavar="COUNT")] = 10
     """How many seeds each; all samplers get the same ones."""
     first: Annotated[int, tyro.conf.arg(metavar="SEED")] = 0

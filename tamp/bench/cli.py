@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -52,11 +53,17 @@ def run(arguments: list[str]) -> int:
 
 
 def _run(chosen: Run) -> list[dict[str, Any]]:
-    from tamp.bench.case import relations
+    from tamp.bench.case import labelled, relations
 
     known = _known()
-    samplers = {sampler: relations(sampler, known) for sampler in chosen.samplers}
-    return _lead(chosen, samplers, range(chosen.first, chosen.first + chosen.seeds), chosen.algorithm)
+    samplers: dict[str, Mapping[str, str]] = {}
+    sources: dict[str, str] = {}
+    for sampler in chosen.samplers:
+        served = relations(sampler, known)
+        label, texts = labelled(sampler, served)
+        samplers[label] = served
+        sources |= texts
+    return _lead(chosen, samplers, range(chosen.first, chosen.first + chosen.seeds), chosen.algorithm, sources)
 
 
 def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
@@ -70,7 +77,11 @@ def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
 
 
 def _lead(
-    chosen: Run | Fig8, samplers: Mapping[str, Mapping[str, str]], seeds: range, algorithm: str
+    chosen: Run | Fig8,
+    samplers: Mapping[str, Mapping[str, str]],
+    seeds: range,
+    algorithm: str,
+    sources: Mapping[str, str] | None = None,
 ) -> list[dict[str, Any]]:
     """Check everything, run what is missing, print the tables; all results of the file."""
     from tamp.api import ALGORITHMS
@@ -80,6 +91,7 @@ def _lead(
     from tamp.bench.progress import Watch
     from tamp.problem import load_problem
     from tamp.streams.choice import sampler_files
+    from tamp.streams.python_file import given_by_files
 
     if algorithm not in ALGORITHMS:
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
@@ -87,11 +99,12 @@ def _lead(
     read: list[Path] = []
     for problem in dict.fromkeys(problems):  # an error in a file is one now, and not one in each run
         for relation_samplers in samplers.values():
-            loaded = load_problem(problem, samplers=relation_samplers, registry=_registry())
+            names, objects = given_by_files(relation_samplers, sources)
+            loaded = load_problem(problem, samplers=names, groundings=objects, registry=_registry())
             read += [file for files in loaded.files.values() for file in files]
-            read += sampler_files(loaded.samplers.values())
+            read += [*sampler_files(loaded.samplers.values()), *map(Path, sources or {})]
     check_outputs({"--out": chosen.out}, read)
-    wanted = cases(problems, samplers, seeds, chosen.time, algorithm)
+    wanted = cases(problems, samplers, seeds, chosen.time, algorithm, sources)
     with Log(chosen.out) as log:
         log.check(chosen.time, algorithm)
         missing = log.missing(wanted)
@@ -147,6 +160,9 @@ def _print_tables(lines: Sequence[Mapping[str, Any]], against: str | None = None
     from tamp.bench.table import report
 
     samplers = dict.fromkeys(line["config"]["sampler"] for line in lines)
+    if against is not None and against not in samplers:  # of a file's version, the name alone will do
+        alike = [name for name in samplers if re.sub(r"#[0-9a-f]{8}(?=,|:|$)", "", name) == against]
+        against = alike[0] if len(alike) == 1 else against
     if against is not None and against not in samplers:
         raise InputError(f"no runs with '{against}' among the results", found=against, choices=samplers)
     usual = BASELINE if BASELINE in samplers and len(samplers) > 1 else None

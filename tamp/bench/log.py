@@ -13,7 +13,9 @@ from types import TracebackType
 from typing import Any
 
 from tamp.bench.case import Case, key
+from tamp.bench.line import Line, read_line
 from tamp.errors import InputError
+from tamp.reading import read_bytes
 
 ELSEWHERE = "Name another file with --out"
 
@@ -23,7 +25,8 @@ BEGINNING = b'{"config": '
 LONGEST_LINE = 10_000_000
 """Bytes."""
 
-Line = dict[str, Any]
+MOST_BYTES = 100_000_000
+"""The largest file of results that is read: fifty thousand runs."""
 
 
 def read_log(path: Path) -> list[Line]:
@@ -155,33 +158,12 @@ def _check_own(path: Path) -> None:
 
 def _whole(path: Path) -> bytes:
     """The file up to the end of its last whole line."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"the results cannot be read: {error.strerror}", file=path) from None
+    content = read_bytes(path, MOST_BYTES, kind="file of results")
     return content[: content.rfind(b"\n") + 1]
 
 
 def _lines(path: Path, whole: bytes) -> list[Line]:
-    return [_parsed(path, line, number) for number, line in enumerate(whole.split(b"\n")[:-1], start=1)]
-
-
-def _parsed(path: Path, text: bytes, number: int) -> Line:
-    try:
-        line = json.loads(text)
-        hash(key(line["config"]))
-        sound = (
-            isinstance(line["solved"], bool)
-            and isinstance(line["outcome"], str)
-            and math.isfinite(line["planning_s"])
-            and math.isfinite(line["config"]["time"])
-            and line["verified"] in (True, False, None)
-        )
-    except (ValueError, KeyError, TypeError):
-        sound = False
-    if not sound:
-        raise InputError("no result of tamp-bench", file=path, line=number, remedy="Remove the line: its run is redone")
-    return line
+    return [read_line(line, path, number) for number, line in enumerate(whole.split(b"\n")[:-1], start=1)]
 
 
 def _plain(value: Any) -> Any:

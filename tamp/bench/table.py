@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,9 @@ from typing import Any
 from tamp.bench.summary import Summary, summaries
 
 Row = dict[str, str]
+
+MOST_WARNINGS = 10
+"""Warnings of samplers that a report names."""
 
 
 def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> str:
@@ -24,7 +28,22 @@ def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> s
     told = [(one, one.parts) for one in found if one.parts]
     if told:
         tables += ["Mean seconds by part, of all runs:", table([_parts(one, parts) for one, parts in told])]
-    return "\n\n".join([*tables, _origins(lines)])
+    return "\n\n".join([*tables, *_sidelined(lines), _origins(lines)])
+
+
+def _sidelined(lines: Iterable[Mapping[str, Any]]) -> list[str]:
+    """What was said of samplers that took no part to the end, once for each: without them the figures are others'."""
+    said = Counter(
+        (line["config"]["sampler"], warning)
+        for line in lines
+        for warning in line.get("warnings", ())
+        if "is sidelined" in warning
+    )
+    if not said:
+        return []
+    shown = [f"{count} x {sampler}: {warning}" for (sampler, warning), count in said.most_common(MOST_WARNINGS)]
+    more = len(said) - len(shown)
+    return ["\n".join(["Samplers that were sidelined:", *shown, *([f"and {more} more"] if more > 0 else [])])]
 
 
 def table(rows: Sequence[Row]) -> str:

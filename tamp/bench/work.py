@@ -17,6 +17,7 @@ from tamp.problem import load_problem
 from tamp.solution import Solution
 from tamp.streams.choice import Registry
 from tamp.streams.mixture import Account
+from tamp.streams.python_file import given_by_files
 
 ERROR = "ERROR"
 """The outcome of a run in which the planner or the judge raised."""
@@ -56,7 +57,8 @@ def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
 
 def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
     began = time.perf_counter()
-    problem = load_problem(case.problem, samplers=dict(case.samplers), registry=registry())
+    names, objects = given_by_files(dict(case.samplers), dict(case.sources))
+    problem = load_problem(case.problem, samplers=names, groundings=objects, registry=registry())
     loaded, used = time.perf_counter(), time.process_time()
     solution = solve(problem, max_time=case.time, seed=case.seed, algorithm=case.algorithm)
     planned, spent = time.perf_counter(), time.process_time() - used

@@ -126,7 +126,7 @@ def parse_predicates(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatu
 def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatures:
     """Read `:functions`: like predicates, each group optionally followed by `- number`."""
     groups: list[Group] = []
-    position = 0
+    position = typed = 0
     while position < len(nodes):
         node = nodes[position]
         position += 1
@@ -134,9 +134,13 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
             groups.append(node)
             continue
         result = nodes[position] if position < len(nodes) else None
-        if node.text != "-" or not groups or result is None:
+        if node.text != "-" or result is None:
             raise error(node, f"expected a function such as (distance ?a ?b), found '{node.written}'")
         symbol = as_symbol(result, "the type 'number'")
+        if typed == len(groups):  # an empty list before a type
+            position += 1
+            continue
+        typed = len(groups)
         if symbol.text in types:
             raise error(symbol, lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"))
         if symbol.text != "number":

@@ -31,12 +31,15 @@ class Scope:
             formula no name is bound twice.
         notes: Collects oddities that are no errors, such as an object of a more general type than is declared, which
             Fast Downward reads; None where that is an error.
+        any_type: Whether such an object may be of any type, as in Fast Downward: what a predicate declares is no more
+            than a comment to it.
     """
 
     domain: Domain
     objects: Mapping[str, tuple[str, ...]]
     variables: Mapping[str, Parameter]
     notes: list[str] | None = field(default=None, compare=False)
+    any_type: bool = False
 
     def with_variables(self, more: Iterable[Parameter]) -> tuple[Scope, tuple[Parameter, ...]]:
         """The scope inside a quantifier, and the quantifier's parameters under their final names."""
@@ -174,12 +177,13 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
         choices = (*scope.variables, *(fitting or scope.objects))
         message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
         raise error(symbol, message, found=symbol.written, choices=choices)
-    if scope.notes is not None and _more_general(scope.objects[name], types, scope.domain):
-        own = " and ".join(scope.objects[name])
-        what = f"'{name}' is only said to be {_article(own)}, where {_article(' or '.join(types))} is declared"
+    own = " and ".join(scope.objects[name])
+    general = _more_general(scope.objects[name], types, scope.domain)
+    if scope.notes is not None and (general or scope.any_type):
+        said = "is only said to be" if general else "is"
+        what = f"'{name}' {said} {_article(own)}, where {_article(' or '.join(types))} is declared"
         scope.notes.append(warning(symbol, what))
         return name
-    own = " and ".join(scope.objects[name])
     message = f"'{name}' is {_article(own)}, not {_article(' or '.join(types))}"
     raise error(symbol, message + ("" if fitting else "; there is none"), choices=fitting)
 

@@ -17,7 +17,7 @@ MAX_DEPTH = 100
 MAX_WORD = 1000
 """Characters; longer words are refused: none has a meaning, and numbers of thousands of digits take their time."""
 
-MAX_TOKENS = 1_500_000
+MAX_TOKENS = 1_000_000
 """Words and parentheses of a text; more would need gigabytes."""
 
 MANY = 200_000

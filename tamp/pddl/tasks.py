@@ -72,7 +72,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     notes = [*check_requirements(items_of(sections, ":requirements"))]
     notes += _check_domain(single(sections, ":domain"), domain)
     objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants)
-    scope = scope_of(domain, objects, notes)
+    scope = replace(scope_of(domain, objects, notes), any_type=True)
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
     costs: dict[Fact, float] = {}

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
+import pickle
+import re
 from pathlib import Path
 
 import pytest
 
-from tamp.bench.case import cases, named, relations
+from tamp.bench.case import cases, labelled, named, relations
 from tamp.bench.fig8 import FIG8, chosen
+from tamp.bench.line import read_line
+from tamp.bench.table import report
+from tamp.bench.work import do
 from tamp.errors import InputError
 from tamp.streams.placements import SurfacePlacements
 
@@ -47,6 +53,9 @@ def test_a_bare_name_serves_the_relations_that_have_its_weights() -> None:
         ("inside=flow", "no such weight file"),
         ("under=flow", "unknown relation 'under'"),
         ("on=nobody", "unknown sampler 'nobody' for 'on'"),
+        ("on=none.py", r"none\.py: no such file"),
+        ("mine.py", "Of a file say which relation it serves: on=mine.py"),
+        ("on=flow,on=surface", "the relation 'on' stands twice"),
     ],
 )
 def test_a_wrong_sampler_is_an_error(sampler: str, said: str) -> None:
@@ -70,3 +79,63 @@ def test_what_is_not_shipped_is_skipped_by_name() -> None:
     assert len(able) + len(skipped) == 12
     assert "no such sampler" in skipped["gnn-pc"]
     assert "not shipped" in skipped["mlp-bb"]
+
+
+MINE = """
+class Middle:
+    def propose(self, scene, arguments, count, rng):
+        return []
+grounding = Middle()
+"""
+
+
+def test_a_python_file_is_named_with_its_hash_and_sent_along(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "mine,own.py"
+    file.write_text(MINE)
+    served = relations("on=mine,own.py:alone,inside=surface", KNOWN)
+    assert served == {"on": f"{file}:alone", "inside": "surface"}
+    label, sources = labelled("on=mine,own.py:alone,inside=surface", served)
+    assert re.fullmatch(r"on=mine,own\.py#[0-9a-f]{8}:alone,inside=surface", label)
+    assert sources == {str(file): MINE}
+    (case,) = cases(["swap"], {label: served}, [0], 30.0, sources=sources)
+    assert case.sources == ((str(file), MINE),)
+    assert "sources" not in case.config
+    file.write_text(MINE + "# another one")
+    assert labelled("on=mine,own.py", served)[0] != label
+    assert labelled("default", {}) == ("default", {})
+    assert labelled("on=flow", {"on": "flow"}) == ("on=flow", {})
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("grounding = 3", "has neither propose nor classify"),
+        ("grounding = ", r"mine\.py:1: it cannot be run: SyntaxError"),
+        ("1 / 0", "it cannot be run: ZeroDivisionError"),
+        ("# -*- coding: nonsense -*-", "this is no Python file"),
+        ("other = 3", "it defines no 'grounding'"),
+    ],
+)
+def test_a_python_file_that_does_not_serve(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(text)
+    with pytest.raises(InputError, match=said):
+        relations(f"on={tmp_path / 'mine.py'}", KNOWN)
+
+
+def test_a_run_with_a_python_file_needs_no_file(tmp_path: Path) -> None:
+    """As on another machine of a cluster; what its sampler does wrong stands in the line and in the report."""
+    file = tmp_path / "mine.py"
+    file.write_text(MINE.replace("return []", "raise ValueError('mine')"))
+    served = relations(f"on={file}", KNOWN)
+    label, sources = labelled(f"on={file}", served)
+    (case,) = cases(["one_object"], {label: served}, [0], 30.0, sources=sources)
+    file.unlink()
+    line = do(pickle.loads(pickle.dumps(case)), dict)
+    assert line["outcome"] == "SOLVED" and line["verified"]
+    assert line["config"]["sampler"] == label
+    assert line["config"]["samplers"] == {"on": str(file)}
+    assert read_line(json.dumps(line).encode(), file, 1) == json.loads(json.dumps(line))
+    shown = report([line])
+    assert "Samplers that were sidelined:\n1 x on=" in shown
+    assert "ValueError: mine" in shown

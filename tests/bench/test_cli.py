@@ -29,8 +29,8 @@ from tests.bench.toys import line, some
         ("run --samplers unifrom", "Did you mean 'uniform'"),
         ("run --algorithm adaptiv", "Did you mean 'adaptive'"),
         ("run --out .", "cannot be written"),
-        ("table none.jsonl", "none.jsonl: the results cannot be read"),
-        ("draw none.jsonl", "none.jsonl: the results cannot be read"),
+        ("table none.jsonl", "none.jsonl: no such file"),
+        ("draw none.jsonl", "none.jsonl: no such file"),
     ],
 )
 def test_a_wrong_word_is_an_error_that_helps(
