@@ -85,12 +85,17 @@ def decided(
             elif relation is not None:
                 _refuse_unknown(relation, domain, goal, served.undecided.get(name))
 
+    unused = tuple(
+        f"no stream is named 'sample-{name}' or 'test-{name}': the grounding of '{name}' is not used"
+        for name in dict.fromkeys((*served.generators, *served.classifiers))
+        if name not in own and name not in SAMPLERS
+    )
     asked = {atom.predicate for atom, _ in atoms_of_conditions(domain, goal)}
     relations = {name: one for name, one in relations.items() if one.predicates & asked}
     classifiers = {name: served.classifiers[name] for name in relations}
     seen = {name: _observed(one, classifiers[name], domain, objects, facts, context) for name, one in relations.items()}
     known = frozenset(fact for one in seen.values() for fact in one.holds)
-    warnings = tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
+    warnings = unused + tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
 
     negated = {name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)}
     if not negated:

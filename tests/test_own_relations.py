@@ -176,6 +176,42 @@ def test_it_is_not_asked_where_nothing_depends_on_it(root: Path, tmp_path: Path)
     assert not problem.classifiers and not problem.complements
 
 
+def test_one_of_no_stream_is_warned_of(root: Path, tmp_path: Path, upright: Any) -> None:
+    problem = tamp.load_problem("one_object", groundings={"upright": upright})
+    assert any("the grounding of 'upright' is not used" in text for text in problem.warnings)
+
+
+class Alone:
+    """A classifier without a generator, of a body alone."""
+
+    def classify(self, scene: tamp.Scene, arguments: Sequence[str]) -> float:
+        (body,) = arguments
+        return float(scene.bodies[body].pose.matrix[2, 2] > 0.99)
+
+
+def test_a_classifier_alone_of_a_body_alone(root: Path, tmp_path: Path) -> None:
+    """`(upright ?o)`, tested at poses that `sample-on` proposes."""
+    write_domain(root, tmp_path, SAMPLED, actions="")
+    domain, streams = tmp_path / "mine.pddl", tmp_path / "mine.streams.pddl"
+    text = domain.read_text().replace("(stood ?o - movable ?p - pose ?s - surface)", "(stood ?o - movable ?p - pose)")
+    text = text.replace("(upright ?o - movable ?s - surface)", "(upright ?o - movable)").replace(
+        "(upright ?o ?s)", "(upright ?o)"
+    )
+    domain.write_text(text.replace("(stood ?o ?p ?s)", "(stood ?o ?p)"))
+    test = "  (:stream test-upright :inputs (?o ?p) :domain (pose ?o ?p) :certified (stood ?o ?p))\n"
+    streams.write_text(streams.read_text().replace(SAMPLED, test))
+    for goal, count in (
+        ("(upright tea)", 0),
+        ("(not (upright milk))", 0),
+        ("(not (upright tea))", 2),
+        ("(upright milk)", 4),
+    ):
+        solution = planned(tmp_path, goal, Alone())
+        assert solution.solved and len(solution.plan) == count, (goal, names(solution), solution.explanation)
+        report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Alone()})
+        assert report.holds and report.checked, report.text()
+
+
 DOMAIN = """(define (domain d) (:types movable - body surface - object pose - object)
   (:predicates (pose ?o - movable ?p - pose) (at-pose ?o - movable ?p - pose)
     (tall ?o - movable) (tall-at ?o - movable ?p - pose)
