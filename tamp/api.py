@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
 from tamp.alarm import Alarm
 from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Effort, Outcome, Progress
+from tamp.algorithms.solution import Effort, Outcome, Progress, Result, StreamTask
 from tamp.assembly import assemble, ended_early, random_streams, timed
 from tamp.clock import Deadline, OutOfTime
+from tamp.contradictions import contradictions
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.recording import Recorder
 from tamp.solution import Solution
+
+AGAIN = 8
+"""Plans that are made at most until the classifiers bear one out."""
 
 
 def solve(
@@ -47,8 +56,7 @@ def solve(
     alarm = Alarm(deadline)
     try:
         with alarm:
-            make_rng = random_streams(seed)
-            result = ALGORITHMS[algorithm](task, make_rng, deadline, progress or _silent)
+            result = _borne_out(problem, task, seed, algorithm, deadline, progress or _silent)
             planned = deadline.elapsed()
             plan = timed(problem, result)
     except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
@@ -58,6 +66,28 @@ def solve(
         alarm.disarm()
     total = deadline.elapsed()
     return assemble(problem, result, plan, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
+
+
+def _borne_out(
+    problem: Problem, task: StreamTask, seed: int, algorithm: str, deadline: Deadline, progress: Progress
+) -> Result:
+    """A plan in whose states the classifiers of the user's own relations say what they said of its poses.
+
+    Only those that look at more than their arguments can make the first plan another one than that of the seed.
+    """
+    make_rng = random_streams(seed)
+    result = ALGORITHMS[algorithm](task, make_rng, deadline, progress)
+    wrong = contradictions(problem, result)
+    for again in range(1, AGAIN):
+        if not wrong or deadline.passed:
+            break
+        result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)
+        wrong = contradictions(problem, result)
+    return replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong) if wrong else result
+
+
+def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:
+    return make_rng(f"{again} {key}")
 
 
 def _silent(effort: Effort) -> None:

@@ -50,8 +50,8 @@ class Arguments:
         tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
     ] = ()
     """Which sampler serves a relation, such as on=uniform, on=FILE.safetensors (from tamp-learn train) or on=FILE.py
-    (which says grounding = ...). NAME:alone or NAME:mixed says whether the hand-made sampler takes part; it does unless
-    NAME is hand-made, too."""
+    (which says grounding = ...); the classifier of a relation of your own decides at the start, too. NAME:alone or
+    NAME:mixed says whether the hand-made sampler takes part; it does unless NAME is hand-made, too."""
     algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
     """adaptive, or incremental (simple, for comparison)."""
     steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"

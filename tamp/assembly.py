@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from tamp.algorithms.solution import Outcome, Result
+from tamp.contradictions import contradictions
 from tamp.problem import Problem
 from tamp.recording import Recorder
 from tamp.solution import Action, Solution
@@ -80,7 +81,7 @@ def assemble(
         effort=result.effort,
         explanation=result.explanation,
         tallies=result.tallies,
-        warnings=(*problem.warnings, *result.warnings),
+        warnings=(*problem.warnings, *result.warnings, *contradictions(problem, result)),
         seconds={
             "total": seconds["total"], "search": result.effort.search_seconds, "timing": seconds["timing"],
             "explaining": result.effort.explaining_seconds, "other tries": result.effort.apart_seconds, **by_stream

@@ -39,6 +39,7 @@ class Decided:
         streams: Certify the complements.
         complements: Their predicates, of which the user's files know nothing.
         classifiers: By relation, of those that were asked.
+        relations: The same relations.
         warnings: What is odd about a classifier.
     """
 
@@ -48,6 +49,7 @@ class Decided:
     streams: tuple[BoundStream, ...] = ()
     complements: frozenset[str] = frozenset()
     classifiers: Mapping[str, Classifier] = field(default_factory=dict[str, Classifier])
+    relations: Mapping[str, Relation] = field(default_factory=dict[str, Relation])
     warnings: tuple[str, ...] = ()
 
 
@@ -85,16 +87,21 @@ def decided(
             elif relation is not None:
                 _refuse_unknown(relation, domain, goal, served.undecided.get(name))
 
+    unused = tuple(
+        f"no stream is named 'sample-{name}' or 'test-{name}': the grounding of '{name}' is not used"
+        for name in dict.fromkeys((*served.generators, *served.classifiers))
+        if name not in own and name not in SAMPLERS
+    )
     asked = {atom.predicate for atom, _ in atoms_of_conditions(domain, goal)}
     relations = {name: one for name, one in relations.items() if one.predicates & asked}
     classifiers = {name: served.classifiers[name] for name in relations}
     seen = {name: _observed(one, classifiers[name], domain, objects, facts, context) for name, one in relations.items()}
     known = frozenset(fact for one in seen.values() for fact in one.holds)
-    warnings = tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
+    warnings = unused + tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
 
     negated = {name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)}
     if not negated:
-        return Decided(domain, goal, known, classifiers=classifiers, warnings=warnings)
+        return Decided(domain, goal, known, classifiers=classifiers, relations=relations, warnings=warnings)
     for relation in negated.values():
         _check_poses(relation, domain)
     names = {one: complement_name(one, domain) for relation in negated.values() for one in relation.predicates}
@@ -104,7 +111,8 @@ def decided(
         for name, one in negated.items()
     )
     rewritten, wanted = with_complements(domain, goal, names)
-    return Decided(rewritten, wanted, known | false, streams, frozenset(names.values()), classifiers, warnings)
+    hidden = frozenset(names.values())
+    return Decided(rewritten, wanted, known | false, streams, hidden, classifiers, relations, warnings)
 
 
 def _observed(

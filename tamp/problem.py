@@ -19,6 +19,7 @@ from tamp.own_relations import decided
 from tamp.pddl.files import read_pddl
 from tamp.pddl.lint import lint
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.pddl.relations import Relation
 from tamp.pddl.structs import StreamFile, Task
 from tamp.search.loops.tiers import load_kept as load_compiled_loops
 from tamp.served import Served, line_of
@@ -55,6 +56,7 @@ class Problem:
         samplers: Which sampler serves which relation.
         warnings: What was repaired or looks odd.
         classifiers: By relation of the user's own, what says whether it holds.
+        relations: The same relations: their facts and of what they are asked.
         complements: Predicates of the task that the user's files do not have.
     """
 
@@ -67,6 +69,7 @@ class Problem:
     samplers: Mapping[str, str]
     warnings: tuple[str, ...]
     classifiers: Mapping[str, Classifier] = field(default_factory=dict[str, Classifier])
+    relations: Mapping[str, Relation] = field(default_factory=dict[str, Relation])
     complements: frozenset[str] = frozenset()
 
 
@@ -159,6 +162,7 @@ def load_problem(
             *known.warnings,
         ),
         classifiers=known.classifiers,
+        relations=known.relations,
         complements=known.complements,
     )
 

@@ -149,7 +149,7 @@ def test_verify_judges_before_anything_is_written(
     assert re.search(r"^the plan holds: 4 actions", text, re.MULTILINE), text
     out.unlink()
 
-    def refuse(document: dict[str, Any]) -> Report:
+    def refuse(document: dict[str, Any], *, classifiers: object) -> Report:
         assert document["format"] == "tamp-plan" and not out.exists()
         violation = Violation("collision", "panda_hand and table penetrate", 1, "pick", 2.5, ("table",), 0.01)
         return Report("the plan", (violation,), 4, 12.0, 100, None, {}, (), 0.1)

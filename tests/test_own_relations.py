@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tamp
@@ -174,6 +175,75 @@ def test_it_is_not_asked_where_nothing_depends_on_it(root: Path, tmp_path: Path)
     write_domain(root, tmp_path, TESTED, actions="")
     problem = tamp.load_problem(write_problem(tmp_path, "(on tea shelf)"), groundings={"upright": Odd(ValueError())})
     assert not problem.classifiers and not problem.complements
+
+
+def test_one_of_no_stream_is_warned_of(root: Path, tmp_path: Path, upright: Any) -> None:
+    problem = tamp.load_problem("one_object", groundings={"upright": upright})
+    assert any("the grounding of 'upright' is not used" in text for text in problem.warnings)
+
+
+class Lonely:
+    """On the shelf, and nothing else is within 25 cm: it looks at more than it is asked about.
+
+    Args:
+        wide: Metres along the shelf, each way, within which it proposes.
+    """
+
+    def __init__(self, wide: float) -> None:
+        self.wide = wide
+
+    def classify(self, scene: tamp.Scene, arguments: Sequence[str]) -> float:
+        at = {name: np.array(body.pose.position) for name, body in scene.bodies.items() if body.movable}
+        here = at.pop(arguments[0])
+        there = arguments[1] == "shelf" and here[0] < 0.0
+        return float(there and all(np.linalg.norm(here - other) > 0.25 for other in at.values()))
+
+    def propose(self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: Any) -> list[tamp.Pose]:
+        x, y, z = scene.world_pose(scene.surfaces["shelf"]).position
+        return [tamp.Pose((x, y + dy, z + 0.1)) for dy in rng.uniform(-self.wide, self.wide, count)]
+
+
+def test_a_plan_that_the_classifier_does_not_bear_out_is_none(root: Path, tmp_path: Path) -> None:
+    """Each pose on the shelf was lonely while the other body stood on the table; together they must be, too."""
+    write_domain(root, tmp_path, TESTED, actions="")
+    solution = planned(tmp_path, "(and (upright milk shelf) (upright tea shelf))", Lonely(0.3))
+    assert solution.solved and len(solution.plan) == 8
+    report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Lonely(0.3)})
+    assert report.holds and report.checked, report.text()
+    solution = planned(tmp_path, "(and (upright milk shelf) (upright tea shelf))", Lonely(0.12))
+    assert solution.outcome is tamp.Outcome.EXHAUSTED and not solution.plan
+    assert "the classifier of 'upright' looks at bodies that it is not asked about" in solution.explanation[0]
+
+
+class Alone:
+    """A classifier without a generator, of a body alone."""
+
+    def classify(self, scene: tamp.Scene, arguments: Sequence[str]) -> float:
+        (body,) = arguments
+        return float(scene.bodies[body].pose.matrix[2, 2] > 0.99)
+
+
+def test_a_classifier_alone_of_a_body_alone(root: Path, tmp_path: Path) -> None:
+    """`(upright ?o)`, tested at poses that `sample-on` proposes."""
+    write_domain(root, tmp_path, SAMPLED, actions="")
+    domain, streams = tmp_path / "mine.pddl", tmp_path / "mine.streams.pddl"
+    text = domain.read_text().replace("(stood ?o - movable ?p - pose ?s - surface)", "(stood ?o - movable ?p - pose)")
+    text = text.replace("(upright ?o - movable ?s - surface)", "(upright ?o - movable)").replace(
+        "(upright ?o ?s)", "(upright ?o)"
+    )
+    domain.write_text(text.replace("(stood ?o ?p ?s)", "(stood ?o ?p)"))
+    test = "  (:stream test-upright :inputs (?o ?p) :domain (pose ?o ?p) :certified (stood ?o ?p))\n"
+    streams.write_text(streams.read_text().replace(SAMPLED, test))
+    for goal, count in (
+        ("(upright tea)", 0),
+        ("(not (upright milk))", 0),
+        ("(not (upright tea))", 2),
+        ("(upright milk)", 4),
+    ):
+        solution = planned(tmp_path, goal, Alone())
+        assert solution.solved and len(solution.plan) == count, (goal, names(solution), solution.explanation)
+        report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Alone()})
+        assert report.holds and report.checked, report.text()
 
 
 DOMAIN = """(define (domain d) (:types movable - body surface - object pose - object)

@@ -17,6 +17,7 @@ from tamp.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.stored import Stored
 from tamp.streams.choice import GIVEN, Grounding, Registry, maker, parse_choice
 from tamp.streams.registry import SAMPLERS
+from tamp.verification.files import source_file
 from tamp.verification.trust import read_streams, streams_file
 
 Named = Mapping[str, tuple[str, Classifier]]
@@ -77,7 +78,9 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
     Raises:
         InputError: The goal needs to know that a relation does not hold, and it has no classifier.
     """
-    streams = read_streams(stored.plan, streams_file(stored.plan, None), domain)
+    streams = read_streams(
+        stored.plan, streams_file(stored.plan, None, source_file(stored.plan, "domain", None)), domain
+    )
     if streams is None:
         return Own({})
     asked: dict[str, tuple[Relation, str, Classifier]] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from tamp.data import find_domain
+from tamp.data import find_domain, shipped
 from tamp.errors import InputError
 from tamp.pddl.complement import signed_atoms
 from tamp.pddl.parser import parse_streams
@@ -20,8 +20,10 @@ STREAMS = ".streams.pddl"
 """What a domain's streams file ends with, beside the domain."""
 
 
-def streams_file(plan: PlanFile, override: Path | None) -> Path | None:
+def streams_file(plan: PlanFile, override: Path | None, domain: Path | None = None) -> Path | None:
     """The streams that the user names, else those that the plan names or that lie of that name beside it.
+
+    A plan that names none has those beside the domain.
 
     Raises:
         InputError: The user names none that there are.
@@ -32,7 +34,8 @@ def streams_file(plan: PlanFile, override: Path | None) -> Path | None:
         return override
     source = plan.source("streams")
     if source is None:
-        return None
+        beside = [domain.with_suffix(STREAMS)] if domain is not None else []
+        return next((file for file in beside if file.is_file()), None)
     beside = [plan.file.parent / source.path.name] if plan.file else []
     return next((file for file in (source.path, *beside) if file.is_file()), None)
 
@@ -122,12 +125,20 @@ def trusted_relations(
     return tuple(sorted(found))
 
 
-def certifiable(domain: Domain, streams: StreamFile | None) -> frozenset[str]:
-    """The static predicates that streams certify; without the streams, all of them."""
+def certifiable(plan: PlanFile, domain: Domain, streams: StreamFile | None) -> frozenset[str]:
+    """The static predicates that streams certify; where the plan's are not there, all; where it names none, its own."""
     static = domain.predicates.keys() - domain.fluent_predicates - domain.derived_predicates - KINDS_OF_OBJECTS
     if streams is None:
-        return frozenset(static)
+        named = plan.source("streams") is not None
+        return frozenset(static if named else static & {fact[0] for fact in plan.certified})
     return frozenset(atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified) & static
+
+
+def domain_note(loaded: LoadedProblem, domain: Path, given: bool) -> tuple[str, ...]:
+    """That nobody but the plan says by which domain a problem is meant, unless that is one that ships."""
+    if loaded.domain is not None or given or domain.parent.resolve() == shipped("domains").resolve():
+        return ()
+    return (f"the problem names no domain; judged by {domain.name}, as the plan says",)
 
 
 def _own_domain(loaded: LoadedProblem) -> Path | None:

@@ -25,10 +25,11 @@ from tamp.verification.relations import Relations
 from tamp.verification.replay import Replay
 from tamp.verification.report import Report, Violation
 from tamp.verification.semantics import Semantics
+from tamp.verification.standing import RELATIONS
 from tamp.verification.start import check_files, check_initial, check_objects
 from tamp.verification.sweep import Sweeper
 from tamp.verification.symbolic import is_symbolic, verify_symbolic
-from tamp.verification.trust import certifiable, other_files, read_streams, streams_file, trusted_relations
+from tamp.verification.trust import certifiable, domain_note, other_files, read_streams, streams_file, trusted_relations
 from tamp.world.load import LoadedProblem, load_scene
 from tamp.world.robot import ROBOTS
 
@@ -81,7 +82,7 @@ def verify(
         loaded.goal.text, parsed, objects, loaded.path,
         line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
     )  # fmt: skip
-    own_streams = streams_file(read, None if streams is None else Path(streams))
+    own_streams = streams_file(read, None if streams is None else Path(streams), domain_file)
     declared = read_streams(read, own_streams, parsed)
     asked = _asked(classifiers, declared, parsed)
     robot = ROBOTS[loaded.scene.robot.model]()
@@ -100,7 +101,7 @@ def verify(
         sweeper = Sweeper(world, robot)
         certified = Certified(read, world, robot, sweeper, parsed)
         decided = {name for relation, _ in asked.values() for name in relation.predicates}
-        stated = certified.known | decided | certifiable(parsed, declared)
+        stated = certified.known | decided | certifiable(read, parsed, declared)
         violations += check_initial(read, loaded.scene, parsed, given, stated)
         static = [fact for fact in read.initial if fact[0] in stated and fact not in given]
         violations += certified.check([*read.certified, *static], trusted)
@@ -124,7 +125,7 @@ def verify(
             states=replay.findings.states,
             nearest=replay.findings.nearest,
             trusted={name: count for name, count in sorted(trusted.items()) if name not in decided},
-            notes=(*replay.notes, *unsaid),
+            notes=(*replay.notes, *unsaid, *domain_note(loaded, domain_file, domain is not None)),
             on_trust=tuple(sorted(on_trust)),
             other_files=other_files(read, loaded, domain_file, own_streams, given_files),
             asked=dict(sorted(relations.answers.items())),
@@ -149,6 +150,8 @@ def _asked(
         if name not in names:
             raise InputError(f"the streams have no relation '{name}'", file=streams.file, found=name, choices=names)
         relation = relation_of(streams, domain, name)
+        if relation is not None and relation.predicates & RELATIONS:
+            raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
         if relation is None:
             what = f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
             raise InputError(

@@ -89,7 +89,7 @@ def test_chance_is_told_from_knowledge() -> None:
     [
         (20, "stands", "it was trained on 20 labels, 10 of them negative; a classifier needs 100"),
         (120, "all", "none of them negative"),
-        (120, "chance", "it is no better than chance"),
+        pytest.param(120, "chance", "it is no better than chance", marks=pytest.mark.slow),
         (120, "stands", None),
     ],
 )

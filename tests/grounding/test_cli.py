@@ -37,7 +37,8 @@ def learn(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.
     def learned(line: str) -> str:
         assert run(line.split()) == DONE
         said = capsys.readouterr()
-        assert said.err == ""
+        few = "warning: it only proposes, and cannot tell yet where 'on' holds: it was trained on 2"  # 20 or 24 labels
+        assert said.err.startswith(few) if line.startswith("train") else said.err == ""
         return said.out
 
     return learned

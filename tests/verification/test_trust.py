@@ -143,6 +143,31 @@ def test_another_domain_and_other_streams_are_named(
     assert "not those that the plan was made with" in verify(plan, streams=mine).other_files[0]
 
 
+def test_a_plan_that_names_no_streams_states_no_more_than_the_problem(root: Path, written: Written) -> None:
+    """A fact that no stream certifies, and the problem does not state, is wrong as it ever was."""
+    plan = written("(upright tea table)")
+    document = json.loads(plan.read_text())
+    del document["inputs"]["streams"]
+    changed(plan, inputs=document["inputs"])
+    assert verify(plan).on_trust == ("upright",)  # those beside the domain
+    changed(plan, initial=[*document["initial"], ["reachable", "milk", "milk_start"], ["loaded", "milk"]])
+    assert any("does not imply (loaded milk)" in one.message for one in verify(plan).violations)
+    (plan.parent / "mine.streams.pddl").unlink()
+    assert any("does not imply (stood tea" in one.message for one in verify(plan).violations)
+
+
+def test_a_problem_without_a_domain_has_a_note(root: Path, written: Written, tmp_path: Path) -> None:
+    written("(on tea shelf)")
+    path = tmp_path / "mine.yaml"
+    path.write_text(path.read_text().replace("domain: mine.pddl\n", ""))
+    upright = python_grounding(tmp_path / "upright.py")
+    problem = tamp.load_problem(path, tmp_path / "mine.pddl", groundings={"upright": upright})
+    plan = tamp.write_plan(tamp.solve(problem, max_time=60.0, seed=0), tmp_path / "plan.json")
+    report = verify(plan)
+    assert report.checked and report.notes == ("the problem names no domain; judged by mine.pddl, as the plan says",)
+    assert verify(plan, domain=tmp_path / "mine.pddl").notes == ()
+
+
 @pytest.mark.parametrize(
     ("sampler", "message"),
     [
@@ -150,6 +175,7 @@ def test_another_domain_and_other_streams_are_named(
         ("upright=gone.py", "no such file"),
         ("upright=transfer", "the judge knows no sampler 'transfer'"),
         ("upright=empty.py", "no object 'grounding' with the method classify"),
+        ("on=upright.py", "'on' is decided by the bodies' geometry"),
         ("uprigth=upright.py", "the streams have no relation 'uprigth'"),
         ("upright=gone.safetensors", "no such weight file"),
     ],
