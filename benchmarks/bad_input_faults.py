@@ -36,8 +36,8 @@ WORDS = (
     "", " ", "x", "nan", "inf", "-inf", "-1", "0", "1e300", "1e-300", "9" * 400, "1.5", "x" * 300, "x" * 5000, "/",
     ".", "/dev/zero", "/dev/full", "/proc/self/mem", "/nowhere/x", "p.yaml", "plan.json", "cupboard.pddl", "d.npz",
     "b.jsonl", "thing.obj", "pipe", "loop", "folder", "on=", "=x", "on=on", "on=p.yaml", "on=plan.json",
-    "on=none.safetensors", "on=none.py", "a\x1b[31mb", "\u202eabc", "ü", "\U0001f916", "0x0", "99999x99999", "64x", "-5x-5", "[]", "{}", "None",
-    "true", "a=b=c", "--", "-x", "local:1", "1e9x1",
+    "on=none.safetensors", "on=none.py", "a\x1b[31mb", "\u202eabc", "ü", "\U0001f916", "0x0", "99999x99999", "64x",
+    "-5x-5", "[]", "{}", "None", "true", "a=b=c", "--", "-x", "local:1", "1e9x1",
 )  # fmt: skip
 
 
