@@ -215,7 +215,30 @@ def _deep(text: str, draw: random.Random) -> bytes:
     return (text[:at] + opening * count + closing * draw.choice((0, count)) + text[at:]).encode()
 
 
-TEXT_FAULTS = (_lines, _words, _words, _numbers, _numbers, _signs, _signs, _deep)
+def _lisp(text: str, draw: random.Random) -> bytes:
+    """What only PDDL has; a word elsewhere in other texts."""
+    if "(:types" not in text and "(:objects" not in text:
+        return _words(text, draw)
+    count = draw.choice((200, 10_000))
+    chain = " ".join(f"t{n} - t{n + 1}" for n in range(count))
+    many = " ".join(f"o{n}" for n in range(count))
+    variables = " ".join(f"?v{n}" for n in range(count))
+    changes = (
+        ("(:types", f"(:types {chain} "), ("(:types", f"(:types t{count} - t0 {chain} "),
+        ("(:types", f"(:types {many} - "),
+        ("(:objects", f"(:objects {many} - "), ("(:predicates", f"(:predicates (wide {variables}) "),
+        (":parameters (", f":parameters ({variables} "), ("(and ", "(and " + "(and) " * count),
+        ("(and ", "(or (not (and"),
+        ("(:requirements", "(:requirements :durative-actions :preferences"),
+        (":precondition (and", ":precondition (forall (?z"),
+        ("(:goal", "(:goal (forall (?z) (exists (?w) (on ?z ?w)))) (:goal"), ("(define", "(define (define"),
+    )  # fmt: skip
+    usable = [change for change in changes if change[0] in text]
+    old, new = draw.choice(usable)
+    return text.replace(old, new, 1).encode()
+
+
+TEXT_FAULTS = (_lisp, _lines, _words, _words, _numbers, _numbers, _signs, _signs, _deep)
 
 
 def _merges(text: str, draw: random.Random) -> str:
