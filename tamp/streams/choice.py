@@ -66,7 +66,7 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     """
     name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
     if Path(name).suffix in known.get(ANY, {}):
-        return Choice(os.path.realpath((folder or Path()) / name), alone=mode == "alone")
+        return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
     name, colon, mode = text.partition(":")
     if relation not in known or relation == ANY:
         choices = [other for other in known if other != ANY]
