@@ -219,9 +219,7 @@ def _floor(film: Film) -> list[Triangles]:
     """Tiles of two shades, a metre wide (larger ones in a hall), under the room and around it."""
     room = film.scene.room
     side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
-    xs, ys = (
-        range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND) for low, high in (room.x, room.y)
-    )
+    xs, ys = (range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND) for low, high in (room.x, room.y))
     tiles: list[Triangles] = []
     for shade, colour in enumerate(FLOOR_COLOURS):
         corners = [(x, y) for x in xs for y in ys if (x + y) % 2 == shade]
