@@ -36,8 +36,8 @@ WORDS = (
     "", " ", "x", "nan", "inf", "-inf", "-1", "0", "1e300", "1e-300", "9" * 400, "1.5", "x" * 300, "x" * 5000, "/",
     ".", "/dev/zero", "/dev/full", "/proc/self/mem", "/nowhere/x", "p.yaml", "plan.json", "cupboard.pddl", "d.npz",
     "b.jsonl", "thing.obj", "pipe", "loop", "folder", "on=", "=x", "on=on", "on=p.yaml", "on=plan.json",
-    "on=none.safetensors", "on=none.py", "a\x1b[31mb", "\u202eabc", "ü", "\U0001f916", "0x0", "99999x99999", "64x", "-5x-5", "[]", "{}", "None",
-    "true", "a=b=c", "--", "-x", "local:1", "1e9x1",
+    "on=none.safetensors", "on=none.py", "a\x1b[31mb", "\u202eabc", "ü", "\U0001f916", "0x0", "99999x99999", "64x",
+    "-5x-5", "[]", "{}", "None", "true", "a=b=c", "--", "-x", "local:1", "1e9x1",
 )  # fmt: skip
 
 
@@ -215,7 +215,30 @@ def _deep(text: str, draw: random.Random) -> bytes:
     return (text[:at] + opening * count + closing * draw.choice((0, count)) + text[at:]).encode()
 
 
-TEXT_FAULTS = (_lines, _words, _words, _numbers, _numbers, _signs, _signs, _deep)
+def _lisp(text: str, draw: random.Random) -> bytes:
+    """What only PDDL has; a word elsewhere in other texts."""
+    if "(:types" not in text and "(:objects" not in text:
+        return _words(text, draw)
+    count = draw.choice((200, 10_000))
+    chain = " ".join(f"t{n} - t{n + 1}" for n in range(count))
+    many = " ".join(f"o{n}" for n in range(count))
+    variables = " ".join(f"?v{n}" for n in range(count))
+    changes = (
+        ("(:types", f"(:types {chain} "), ("(:types", f"(:types t{count} - t0 {chain} "),
+        ("(:types", f"(:types {many} - "),
+        ("(:objects", f"(:objects {many} - "), ("(:predicates", f"(:predicates (wide {variables}) "),
+        (":parameters (", f":parameters ({variables} "), ("(and ", "(and " + "(and) " * count),
+        ("(and ", "(or (not (and"),
+        ("(:requirements", "(:requirements :durative-actions :preferences"),
+        (":precondition (and", ":precondition (forall (?z"),
+        ("(:goal", "(:goal (forall (?z) (exists (?w) (on ?z ?w)))) (:goal"), ("(define", "(define (define"),
+    )  # fmt: skip
+    usable = [change for change in changes if change[0] in text]
+    old, new = draw.choice(usable)
+    return text.replace(old, new, 1).encode()
+
+
+TEXT_FAULTS = (_lisp, _lines, _words, _words, _numbers, _numbers, _signs, _signs, _deep)
 
 
 def _merges(text: str, draw: random.Random) -> str:

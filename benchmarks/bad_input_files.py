@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import trimesh
+
 from tamp.data import shipped
 
 PROBLEM = """\
@@ -54,6 +56,18 @@ TASK = """\
   (:init (table a) (table b) (table c) (clear a) (clear b) (clear c))
   (:goal (and (on a b) (on b c))))
 """
+MESHES = """\
+robot: {{model: panda_mobile, base: [0, 0, 0]}}
+room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
+domain: cupboard
+bodies:
+  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0, 0], yaw: 90 deg}}
+  thing: {{mesh: {mesh}, on: table}}
+goal: (on thing table)
+"""
+SUFFIXES = ("ply", "glb", "dae", "txt.stl")
+"""Of the meshes that have a problem of their own, mesh.SUFFIX in m_SUFFIX.yaml."""
+
 LABELLED = """\
 robot: {{model: panda_mobile, base: [0, 0, 0]}}
 room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
@@ -108,6 +122,10 @@ DOORS = (
     Door("obj", "thing.obj", "text", SCENE),
     Door("mtl", "thing.mtl", "text", SCENE),
     Door("stl", "brick.stl", "binary", SCENE),
+    *(
+        Door(suffix, f"mesh.{suffix}", "text" if suffix in ("dae", "txt.stl") else "binary",
+             (f"tamp-solve m_{suffix}.yaml --time 2 --out out.json",)) for suffix in SUFFIXES
+    ),
     Door("urdf", "stool.urdf", "text", SCENE),
     Door("plan", "plan.json", "json", PLAN),
     Door("symbolic domain", "d.pddl", "text", ("tamp-solve d.pddl t.pddl --time 2 --out out.json",)),
@@ -168,6 +186,10 @@ def make(folder: Path, run: Callable[[str], int]) -> None:
     (folder / "brick.stl").write_bytes(_brick())
     for suffix in (".pddl", ".streams.pddl"):
         shutil.copy(shipped("domains") / f"cupboard{suffix}", folder / f"cupboard{suffix}")
+    box = trimesh.creation.box((0.06, 0.05, 0.08))
+    for suffix in SUFFIXES:
+        box.export(folder / f"mesh.{suffix}", file_type="stl_ascii" if suffix == "txt.stl" else suffix)
+        (folder / f"m_{suffix}.yaml").write_text(MESHES.format(mesh=f"mesh.{suffix}"), encoding="utf-8")
     (folder / "demo").mkdir()
     for number in range(8):
         goal = "(lefty can table)" if number % 2 else "(not (lefty can table))"

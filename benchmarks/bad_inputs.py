@@ -204,13 +204,14 @@ def judge(ended: Ended, words: list[str], before: dict[str, bytes | None], folde
         lines = [line for line in ended.err.splitlines() if not line.startswith("warning: ")]
         if len(lines) != 1 or not lines[0].startswith("error: "):
             faults.append(f"{len(lines)} lines of error")
-        names = {Path(name).name for name in before} | {"lefty", "on"}
+        names = {Path(name).name for name in (*before, *words)} | {"lefty"}
         if "words" not in ended.faults and not any(name in ended.err for name in names):
             faults.append("the error names no file")
         if after != before and not {name for name in after if name not in before} <= {"out.json"}:
             faults.append(f"written: {sorted(after.keys() - before.keys())}")
     changed = [name for name, content in before.items() if after.get(name, b"gone") != content]
     kept = {words[at + 1] for at, word in enumerate(words[:-1]) if word in ("--out", "--statistics")}
+    kept |= {"plan.json"} if words[0] == "tamp-solve" and "--out" not in words else set()  # where a plan goes
     if set(changed) - (kept if ended.code != 2 else set()):
         faults.append(f"changed: {changed}")
     faults += [f"left: {name}" for name in after if "unfinished" in name]

@@ -19,6 +19,7 @@ from grounding.scenes import OTHERS, Made
 from grounding.supports import support_templates
 from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.outputs import UNFINISHED
 
 CHUNK = 100
 """Scenes that one process makes before they are kept."""
@@ -126,6 +127,9 @@ def _size(job: Job, number: int) -> int:
 
 def _claim(parts: Path, name: str) -> None:
     mark = parts / "job.json"
+    if parts.is_dir() and not mark.is_file() and any(UNFINISHED.match(one.name) is None for one in parts.iterdir()):
+        what = "this folder is in the way, and tamp-learn has not made it"
+        raise InputError(what, file=parts, remedy="Move it, or choose another --out")
     if parts.is_dir() and (not mark.is_file() or mark.read_text() != name):
         shutil.rmtree(parts)
     write_whole(mark, name.encode())

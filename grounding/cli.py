@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -204,11 +205,11 @@ def _with_card(path: Path | None) -> list[Path]:
 
 
 def _below(folder: Path, pattern: str) -> list[Path]:
-    return sorted(folder.rglob(pattern)) if folder.is_dir() else []
+    return sorted(folder.rglob(pattern)) if os.path.isdir(folder) else []
 
 
 def _mesh_files(chosen: Generate | Explore) -> list[Path]:
-    return [] if chosen.meshes is None else [file for file in _below(chosen.meshes, "*") if file.is_file()]
+    return [] if chosen.meshes is None else [file for file in _below(chosen.meshes, "*") if os.path.isfile(file)]
 
 
 def _check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:

@@ -198,8 +198,10 @@ def _replace(path: Path, content: bytes) -> None:
             if mode is not None:
                 os.fchmod(stream.fileno(), mode)
             temporary.replace(path)
-    except BaseException:
+    except BaseException as error:
         temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.filename is None:
+            error.filename = str(path)
         raise
 
 

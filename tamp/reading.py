@@ -28,10 +28,7 @@ KINDS = (
 
 def is_file(path: Path) -> bool:
     """Whether a regular file of that name is there; a name that cannot be one is none."""
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+    return os.path.isfile(path)  # pathlib's raises for a name that is too long
 
 
 def read_bytes(file: Path, most: int = MOST_BYTES, *, kind: str = "file") -> bytes:

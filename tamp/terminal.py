@@ -10,10 +10,10 @@ import sys
 from collections.abc import Callable
 from typing import ParamSpec, TextIO
 
-from tamp.errors import printable
+from tamp.errors import one_line, printable
 
 UNPRINTED = 2
-"""The exit status of a command whose output could not be printed."""
+"""The exit status of a command whose output could not be printed, or which the machine could not carry out."""
 
 ERASE = "\x1b[K"
 """What a line of progress ends with: erase the rest of the line."""
@@ -108,6 +108,11 @@ def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
                 code = command(*args, **kwargs) or 0
             except SystemExit as end:
                 code = end.code if isinstance(end.code, int) else int(end.code is not None)
+            except (OSError, MemoryError) as error:  # the machine's fault, wherever it comes
+                place = f"{error.filename}: " if isinstance(error, OSError) and error.filename else ""
+                reason = (isinstance(error, OSError) and error.strerror) or "there is not enough memory"
+                err.write(f"error: {one_line(f'{place}{reason}')}\n")
+                code = UNPRINTED
             out.flush()
             excused = code > 128 or (plain and out.broken)  # interrupted; a help that nobody reads to its end
             if out.failure is not None and not excused:

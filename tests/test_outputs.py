@@ -11,6 +11,7 @@ import signal
 import stat
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -24,6 +25,8 @@ from tamp.data import find_domain, find_problem
 from tamp.errors import InputError
 from tamp.export.cli import main as export
 from tamp.outputs import check_outputs, check_writable, locked_folder, write_whole
+from tamp.scratch import scratch_folder
+from tamp.terminal import spoken
 from tamp.view.cli import main as view
 
 DOMAIN = "(define (domain d) (:predicates (p)) (:action a :parameters () :precondition () :effect (p)))"
@@ -226,3 +229,50 @@ def test_one_folder_has_one_writer_at_a_time(tmp_path: Path) -> None:
     with locked_folder(tmp_path):
         assert not (tmp_path / "mine").exists()
     os.waitpid(child, 0)
+
+
+def test_a_full_disk_is_one_error_in_every_command(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*args: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("tamp.outputs.os.fdopen", full)
+    before = contents(folder)
+    for command, line in (
+        (run, "p.yaml --out out.json"),
+        (run, "d.pddl t.pddl --out out.json"),
+        (export, "plan.json --out out.json"),
+        (view, "plan.json --png out.png --size 32x32"),
+        (view, "plan.json --html out.html"),
+        (spoken(learn), "collect on p.yaml --out out.npz"),
+    ):
+        assert command(line.split()) == BAD_INPUT
+        error = capsys.readouterr().err
+        assert error.startswith("error: ") and error.count("\n") == 1, error
+        assert "No space left on device" in error
+    assert contents(folder) == before
+
+
+def test_folders_of_a_moment_are_tidied_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    dead = next(number for number in range(4_000_000, 1, -1) if not Path(f"/proc/{number}").exists())
+    old = time.time() - 1000
+    for name, age in ((f"tamp-{dead}-abc", old), (f"tamp-{os.getpid()}-abc", old), ("tamp-mine", old)):
+        (tmp_path / name).mkdir()
+        os.utime(tmp_path / name, (age, age))
+    (tmp_path / f"tamp-{dead}-young").mkdir()
+    with scratch_folder() as mine:
+        assert mine.is_dir()
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
+        [f"tamp-{os.getpid()}-abc", "tamp-mine", f"tamp-{dead}-young"]
+    )
+
+
+def test_a_folder_of_the_users_is_not_removed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mine = tmp_path / ".x.parts"
+    mine.mkdir()
+    (mine / "diary").write_text("dear", encoding="utf-8")
+    assert learn(["generate", "on", "--count", "2", "--workers", "1", "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+    assert "is in the way" in capsys.readouterr().err
+    assert (mine / "diary").is_file()

@@ -164,3 +164,18 @@ def test_numbers_that_nothing_has(plan: dict[str, Any], tmp_path: Path, capsys: 
     file.write_text(text, encoding="utf-8")
     assert verify([str(file)]) == BAD_INPUT
     assert "duration: 1e+300 is larger than anything" in capsys.readouterr().err
+
+
+def test_weights_may_be_a_link_to_a_file_of_any_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from grounding.registry import SHIPPED
+
+    (tmp_path / "blob").write_bytes((SHIPPED / "on_transfer.safetensors").read_bytes())
+    (tmp_path / "mine.json").write_bytes((SHIPPED / "on_transfer.json").read_bytes())
+    weights = tmp_path / "mine.safetensors"
+    weights.symlink_to("blob")
+    words = ["one_object", "--sampler", f"on={weights}", "--out", str(tmp_path / "plan.json"), "--quiet"]
+    assert run(words) == SOLVED
+    weights.unlink()
+    weights.symlink_to(weights.name)
+    assert run(words) == BAD_INPUT
+    assert str(weights) in capsys.readouterr().err

@@ -55,7 +55,7 @@ class Log:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._new = not path.exists()
+        self._new = not os.path.lexists(path)
         if not self._new:
             _check_own(path)
         try:
@@ -148,7 +148,7 @@ def _check_own(path: Path) -> None:
     Raises:
         InputError: It is no regular file, or its only line, which may have been cut off, begins as none of ours.
     """
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise InputError("the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE)
     with path.open("rb") as stream:
         head = stream.read(LONGEST_LINE)

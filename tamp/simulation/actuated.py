@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from tamp.scratch import scratch_folder
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import World
 from tamp.simulation.silence import silence
@@ -57,7 +57,7 @@ class Actuated(World):
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
         for name in scene.movable:
             self._let_roll(name)
-        with tempfile.TemporaryDirectory() as folder:
+        with scratch_folder() as folder:
             urdf = Path(folder) / "mobile.urdf"
             urdf.write_text(mobile_urdf(robot), encoding="utf-8")
             flags = bullet.URDF_IGNORE_VISUAL_SHAPES

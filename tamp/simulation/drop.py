@@ -6,7 +6,6 @@ Measured (tests/simulation/test_drop.py): compounds give the same distances as t
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from tamp.scratch import scratch_folder
 from tamp.simulation.physics import HULL_PAD, load_bullet
 from tamp.simulation.shapes import centre_of_mass, obj
 from tamp.world.bounds import bounds
@@ -156,7 +156,7 @@ class Drops:
             "halfExtents": [],
             "fileNames": [],
         }
-        with tempfile.TemporaryDirectory() as folder:  # an array of shapes takes its meshes from files only
+        with scratch_folder() as folder:  # an array of shapes takes its meshes from files only
             for number, part in enumerate(item.parts):
                 shape = part.shape
                 arrays["shapeTypes"].append(keys[type(shape)])

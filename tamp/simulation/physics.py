@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import math
 import sys
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +18,7 @@ from typing import Any, Self
 import numpy as np
 
 from tamp.errors import InputError
+from tamp.scratch import scratch_folder
 from tamp.simulation.shapes import centre_of_mass, half_extents, obj
 from tamp.simulation.silence import silence
 from tamp.world.pose import Array, Pose
@@ -203,7 +203,7 @@ class World:
         names = {"shapeType": "shapeTypes", "radius": "radii", "height": "lengths", "halfExtents": "halfExtents"}
         blanks: dict[str, Any] = {"shapeType": 0, "radius": 0.0, "height": 0.0, "halfExtents": [0.0] * 3}
         arrays = {names[key]: [one.get(key, blank) for one in described] for key, blank in blanks.items()}
-        with tempfile.TemporaryDirectory() as folder:  # an array of shapes takes its meshes from files only
+        with scratch_folder() as folder:  # an array of shapes takes its meshes from files only
             files = [""] * len(described)
             for number, one in enumerate(described):
                 if "vertices" in one:

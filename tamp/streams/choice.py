@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -65,7 +66,7 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     """
     name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
     if Path(name).suffix in known.get(ANY, {}):
-        return Choice(str(((folder or Path()) / name).resolve()), alone=mode == "alone")
+        return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
     name, colon, mode = text.partition(":")
     if relation not in known or relation == ANY:
         choices = [other for other in known if other != ANY]

@@ -90,32 +90,32 @@ class Semantics:
 
     def _solutions(self, parts: list[Formula], state: State, binding: Binding, types: Types) -> Iterator[Binding]:
         """Bindings that extend `binding` and make all parts true; `types` are those of variables not yet bound."""
-        if not parts:
+        open_parts: list[Formula] = []
+        waiting = parts[::-1]
+        while waiting:  # and no call for each: a goal may have thousands of parts
+            part = waiting.pop()
+            if isinstance(part, And):
+                waiting += part.parts[::-1]
+            elif not free(part) <= binding.keys():
+                open_parts.append(part)
+            elif not self._true(part, state, binding):
+                return
+        if not open_parts:
             yield binding
             return
-        at = min(range(len(parts)), key=lambda i: self._burden(parts[i], binding))
-        part, others = parts[at], [*parts[:at], *parts[at + 1 :]]
-        burden = self._burden(part, binding)
-        if isinstance(part, And):
-            yield from self._solutions([*part.parts, *others], state, binding, types)
-        elif burden == 0:
-            if self._true(part, state, binding):
-                yield from self._solutions(others, state, binding, types)
-        elif isinstance(part, Atom) and burden < 3:
+        at = min(range(len(open_parts)), key=lambda i: self._burden(open_parts[i]))
+        part, others = open_parts[at], [*open_parts[:at], *open_parts[at + 1 :]]
+        if isinstance(part, Atom) and self._burden(part) < 3:
             for found in self._matches(part, state, binding):
                 if all(self.fits(found[name], types.get(name, ("object",))) for name in found.keys() - binding.keys()):
                     yield from self._solutions(others, state, found, types)
         else:
             name = min(free(part) - binding.keys())
             for value in self._of_type(types.get(name, ("object",))):
-                yield from self._solutions(parts, state, {**binding, name: value}, types)
+                yield from self._solutions(open_parts, state, {**binding, name: value}, types)
 
-    def _burden(self, part: Formula, binding: Mapping[str, str]) -> int:
-        """0 can be decided, 1 is a lookup, 2 asks rules, 3 needs a variable to be enumerated."""
-        if isinstance(part, And):
-            return 0
-        if free(part) <= binding.keys():
-            return 0
+    def _burden(self, part: Formula) -> int:
+        """Of a part with free variables: 1 is a lookup, 2 asks rules, 3 needs a variable to be enumerated."""
         if isinstance(part, Atom) and part.predicate != "=" and not self._is_type(part.predicate):
             return 2 if part.predicate in self._rules else 1
         return 3

@@ -17,7 +17,7 @@ from tamp.errors import InputError
 from tamp.outputs import write_whole
 from tamp.view.film import Film, holding, tool_path
 from tamp.view.looks import body_meshes, robot_meshes
-from tamp.view.mesh import Mesh, unit
+from tamp.view.mesh import Mesh, simplified, unit
 from tamp.view.moving import MOVING, check_suffix
 from tamp.view.raster import Camera, Triangles, render, triangles
 from tamp.world.bounds import bounds
@@ -55,6 +55,9 @@ PAUSE = 10.0
 MOST_BYTES = 600_000_000
 """Of a moving picture's frames in memory."""
 
+MOST_TRIANGLES = 1_000_000
+"""Of all bodies; beyond, each is drawn coarsely: a crowd of thousands has no room for details."""
+
 TILES = 100
 """Of the floor, on each side at most."""
 
@@ -88,7 +91,11 @@ class Studio:
         looks = robot_meshes(film.robot)
         self._robot = {name: [triangles(mesh) for mesh in meshes if len(mesh.faces)] for name, meshes in looks.items()}
         bodies = film.scene.bodies
-        self._bodies = {name: [triangles(mesh) for mesh in body_meshes(body)] for name, body in bodies.items()}
+        meshes = {name: body_meshes(body) for name, body in bodies.items()}
+        crowd = sum(len(mesh.faces) for some in meshes.values() for mesh in some) > MOST_TRIANGLES
+        self._bodies = {
+            name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some] for name, some in meshes.items()
+        }
         self._floor = _floor(film)
         self._trails = _trails(film, self._kinematics)
 
@@ -191,6 +198,12 @@ def _coloured(image: Image.Image, palette: Image.Image | None) -> Image.Image:
     from PIL import Image
 
     return image if palette is None else image.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
+def _coarse(mesh: Mesh) -> Mesh:
+    if len(mesh.faces) <= 50:
+        return mesh
+    return simplified(mesh, float(np.ptp(mesh.vertices, axis=0).max()) / 4)
 
 
 def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> None:

@@ -89,7 +89,7 @@ def test_pauses_of_hours_are_left_out(plan_file: Path, tmp_path: Path, capsys: p
     file.write_text(json.dumps(plan), encoding="utf-8")
     assert exit_of(str(file), "--grasp", "constraint") == 0
     assert "19,990 s of pauses in the plan were left out" in capsys.readouterr().out
-    segment["positions"][-1] = [angle + 0.1 for angle in segment["positions"][-1]]
+    segment["positions"][-1] = [angle * 0.999 for angle in segment["positions"][-1]]
     file.write_text(json.dumps(plan), encoding="utf-8")
     assert exit_of(str(file)) == 2
     assert "physics carries out at most 7,200 s" in capsys.readouterr().err

@@ -97,3 +97,13 @@ def test_effects_read_the_state_before_and_adding_wins(semantics: Semantics) -> 
 def test_facts_can_take_the_place_of_rules(semantics: Semantics) -> None:
     goal = parse_goal("(above c a)", semantics.domain, OBJECTS)
     assert semantics.without(("above",)).holds(goal, State.of([*START, ("above", "c", "a")]))
+
+
+def test_a_conjunction_of_thousands_is_judged_without_a_call_for_each(semantics: Semantics) -> None:
+    state = State.of(START)
+    for formula, truth in (
+        (f"(and {'(at a yard) ' * 5_000})", True),
+        (f"(and {'(and) ' * 5_000} (at a dock))", False),
+        (f"(exists (?x - thing) (and {'(on ?x b) ' * 3_000} (at ?x yard)))", True),
+    ):
+        assert semantics.holds(parse_goal(formula, semantics.domain, OBJECTS), state) == truth
