@@ -13,10 +13,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from tamp import guard
 from tamp.arguments import Arguments, parsed, sampler_choices
 from tamp.data import check_writable
 from tamp.errors import InputError
-from tamp.leave import leave
 from tamp.progress import Progress, say
 
 if TYPE_CHECKING:
@@ -29,13 +29,15 @@ SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def main() -> NoReturn:
-    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 interrupted."""
+    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 or 143 interrupted."""
+    if not guard.is_guarded():
+        guard.guarded("tamp.cli")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without our letters is no reason to fail
     # The time that the user gives counts from here, less what the interpreter took to come here.
     started = time.monotonic() - time.process_time()
-    leave(run(sys.argv[1:], started))
+    guard.leave_as(run(sys.argv[1:], started))
 
 
 def execute(arguments: list[str] | None = None) -> None:
@@ -120,16 +122,16 @@ def _solve(arguments: Arguments, started: float) -> int:
     shown.clear()
     if arguments.statistics is not None:
         add_statistics(arguments.statistics, domain_name, known, solution.statistics)
-    asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
+    stopped = guard.asked() or solution.outcome is Outcome.INTERRUPTED  # then what was found is kept, and nothing begun
     because = None
-    if asked:
+    if arguments.why and not solution.solved and not stopped:
         shown.line(f"{summary(solution)}\n\n  looking for changes that would make it solvable ...")
         because = why(solution, lambda scene: load(scene=scene), max_time=arguments.time, progress=shown.update)
         shown.clear()
-    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify else None
+    verdict = _judge(plan_text(solution)) if solution.solved and arguments.verify and not stopped else None
     holds = solution.solved and (verdict is None or verdict.holds)
     written = write_plan(solution, arguments.out) if holds else None
-    executed = _execute(written, arguments) if written is not None and arguments.execute else None
+    executed = _execute(written, arguments) if written is not None and arguments.execute and not stopped else None
     if arguments.json:
         import json
 
@@ -147,6 +149,9 @@ def _solve(arguments: Arguments, started: float) -> int:
         _conclude(shown, arguments, written, verdict)
         if executed is not None:
             shown.line(f"\n{executed.text()}")
+    if stopped and (wishes.any or arguments.verify or arguments.execute):
+        shown.line("interrupted: the plan was neither judged, carried out nor drawn")
+        return INTERRUPTED
     if wishes.any:
         from tamp.view.open import film_of_solution
 
