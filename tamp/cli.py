@@ -65,6 +65,10 @@ def _solve(arguments: Arguments, started: float) -> int:
     if arguments.files[-1].endswith(".pddl"):
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
+    from tamp import compilation
+
+    shown = Progress(quiet=arguments.quiet or arguments.json)
+    compilation.tell(shown.compiling)
     from tamp.algorithms.solution import Outcome
     from tamp.api import ALGORITHMS
     from tamp.parallel import solve_parallel
@@ -101,7 +105,7 @@ def _solve(arguments: Arguments, started: float) -> int:
         check_writable(arguments.statistics)
         known = read_statistics(arguments.statistics, domain_name)
         problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
-    shown = Progress(quiet=arguments.quiet or arguments.json)
+    shown.clear()
     shown.line(headline(problem))
 
     def improved(plan: Solution) -> None:

@@ -42,7 +42,19 @@ class Progress:
         print(f"\r{text}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True)
         self._shown = terminal
 
+    def compiling(self, count: int) -> None:
+        """Say that kernels are being compiled, of which so many are done: on a terminal in a line that is rewritten."""
+        terminal = sys.stderr.isatty()
+        if self.quiet or (count and not terminal):
+            return
+        text = "  compiling kernels, once for this installation"
+        print(
+            f"\r{text}: {count}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True
+        )
+        self._shown = terminal
+
     def clear(self) -> None:
         """Remove the progress line."""
         if self._shown:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            self._shown = False

@@ -60,7 +60,8 @@ def _parser() -> argparse.ArgumentParser:
         prog="tamp-view",
         description="Show a plan, or a scene without one: in the browser (the default), as a page that plays offline, "
         "as a picture, as a moving picture.",
-        epilog="Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. docs/watch-export-execute.md says what is to be seen.",
+        epilog="Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. "
+        "docs/watch-export-execute.md says what is to be seen.",
     )
     parser.add_argument(
         "what", metavar="PLAN|PROBLEM", help="a plan.json of tamp-solve, a problem.yaml, or a shipped one"
