@@ -185,8 +185,8 @@ def _watch(child: int) -> NoReturn:
         came = signal.sigtimedwait(WATCHED, 0.05 if number else 3600.0)
         if came is not None and came.si_signo in ENDING and not number:
             number, since, waited = came.si_signo, time.monotonic(), _waited(child)
-            _prctl(PR_SET_CHILD_SUBREAPER, 1)
             os.kill(child, number)
+            _prctl(PR_SET_CHILD_SUBREAPER, 1)
         if number and not killed:
             passed = time.monotonic() - since
             if passed > PATIENCE_AT_MOST or passed - (_waited(child) - waited) > PATIENCE:
