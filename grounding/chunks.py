@@ -17,12 +17,16 @@ from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
 from grounding.scenes import OTHERS, Made
 from grounding.supports import support_templates
+from tamp import guard
 from tamp.data import write_whole
 from tamp.errors import InputError
 from tamp.outputs import UNFINISHED
 
 CHUNK = 100
 """Scenes that one process makes before they are kept."""
+
+LOOK = 0.2
+"""Seconds between two looks whether somebody wants it to end."""
 
 ROWS = 3 + max(most for _, most in OTHERS.values())
 """Bodies that a row has room for: the arguments, the other support, the others."""
@@ -140,13 +144,30 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
     if count <= 1:
         yield from ((number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting)
         return
-    from concurrent.futures import ProcessPoolExecutor, as_completed
-    from multiprocessing import get_context
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import wait as wait_for
+    from multiprocessing import active_children, get_context, resource_tracker
 
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        futures = {pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number for number in waiting}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+    resource_tracker.ensure_running()  # which would let signals through while it starts
+    before = active_children()
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent)
+    try:
+        with guard.Held():
+            futures = {
+                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number for number in waiting
+            }
+        while futures:
+            if guard.asked():  # what it raised was dropped
+                raise KeyboardInterrupt
+            for future in wait_for(futures, LOOK, "FIRST_COMPLETED").done:
+                yield futures.pop(future), future.result()
+        pool.shutdown()
+    except BaseException:  # the pool itself would wait for what is under way
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in active_children():
+            if process not in before:
+                process.kill()
+        raise
 
 
 def _packed(job: Job, number: int, start: int, size: int) -> bytes:

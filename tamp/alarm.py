@@ -6,12 +6,15 @@ import gc
 import signal
 import sys
 import threading
-import time
+from collections.abc import Callable, Collection
 from functools import partial
-from types import FrameType, TracebackType
-from typing import Any
+from types import CodeType, FrameType
+from typing import Any, TypeVar
 
-from tamp.clock import Deadline, OutOfTime
+from tamp import guard
+from tamp.clock import STANDSTILL, Deadline, OutOfTime, counted
+
+Result = TypeVar("Result")
 
 GRACE = 0.1
 """Seconds after the deadline at which whatever still runs is interrupted."""
@@ -22,16 +25,12 @@ SOONEST = 1e-4
 AGAIN = 0.25
 """Seconds until the next interruption, should the first one have been swallowed."""
 
-
 SOON = 0.005
 """Seconds until the next try, when the first one met a frame in which nothing can be raised."""
 
-INTERRUPT_AGAIN = 1.0
+INTERRUPT_AGAIN = 0.1
 """Seconds of computing between a Ctrl-C and the same again, should it have been swallowed: numba drops what is raised
 while a kernel's arrays are wrapped, and so does an `except:` in a user's function."""
-
-CALLER = "algorithms/stream.py"
-"""What calls the functions that may never return; frames above it are not to be interrupted again."""
 
 
 def _swallows(frame: FrameType | None) -> bool:
@@ -49,77 +48,117 @@ def _look_away(frame: FrameType, event: str, argument: object) -> None:
 
 
 class Alarm:
-    """Raises OutOfTime in a block shortly after the deadline, even inside a function that never returns; not
+    """Raises OutOfTime in a computation shortly after the deadline, even inside a function that never returns; not
     when it is known already (`Deadline.ended`).
 
-    A Ctrl-C, too, is raised again until it is heard. Works in the main thread of systems with SIGALRM; elsewhere the
-    deadline is only kept by those who look at it. One alarm may run inside another: the outer one's time goes on.
+    Ctrl-C, too, is raised again until it is heard, and SIGTERM in a guarded command. Works in the main thread of
+    systems with SIGALRM; elsewhere the deadline is only kept by those who look at it. One alarm may run inside another:
+    the outer one's time goes on.
 
     Args:
         deadline: When to ring, but for the grace.
         grace: Seconds after the deadline.
         again: Seconds between one ring and the next, should the first one have been swallowed.
-        caller: The end of the file name of what calls the functions that may never return.
+        strangers: The code of those of our functions that call what may never return. A function that they call and
+            that has swallowed a ring meets it again at each of its lines; they themselves and what is above do not.
     """
 
-    def __init__(self, deadline: Deadline, grace: float = GRACE, again: float = AGAIN, caller: str = CALLER) -> None:
-        self._deadline = deadline
-        self._grace, self._again, self._caller = grace, again, caller
-        self._armed = False
-        self._swallowed = False
-        self._began = 0.0
-        self._before: tuple[Any, tuple[float, float]] | None = None
-        self._listens = False
-
-    def __enter__(self) -> Alarm:
-        usable = sys.platform != "win32" and threading.current_thread() is threading.main_thread()
-        if usable and self._deadline.seconds < threading.TIMEOUT_MAX:
-            timer = signal.setitimer(signal.ITIMER_REAL, 0.0)  # first, so that an outer alarm never rings in here
-            self._before = signal.signal(signal.SIGALRM, self._ring), timer
-            self._began = time.monotonic()
-            self._armed = True
-            signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again)
-        if usable and signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # no outer alarm, nor the user
-            self._armed = self._listens = True
-            signal.signal(signal.SIGVTALRM, self._ring)
-            signal.signal(signal.SIGINT, self._interrupt)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    def __init__(
+        self,
+        deadline: Deadline,
+        grace: float = GRACE,
+        again: float = AGAIN,
+        strangers: Collection[CodeType] = (),
     ) -> None:
-        self.disarm()
+        self._deadline = deadline
+        self._grace, self._again, self._strangers = grace, again, frozenset(strangers)
+        self._swallowed = False
+        self._inner: FrameType | None = None
+        self._late = False
 
-    def disarm(self) -> None:
-        """Never ring again; may be called twice, since a ring may come on the way out of the block."""
-        self._armed = False
-        if self._swallowed:
-            sys.settrace(None)
-        if self._listens:
-            self._listens = False
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-        if self._before is not None:
-            handler, (left, interval) = self._before
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-            signal.signal(signal.SIGALRM, handler)
-            self._before = None
+    def run(self, work: Callable[[], Result]) -> Result:
+        """Call a function, in which alone the alarm rings; when this returns or raises, all is as it was.
+
+        Raises:
+            OutOfTime: As the function has let it out.
+            KeyboardInterrupt: The same.
+        """
+        if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
+            return work()
+        timed = self._deadline.seconds < threading.TIMEOUT_MAX
+        ends = [
+            number
+            for number in guard.ENDING
+            if signal.getsignal(number) is guard.hear
+            or (number == signal.SIGINT and signal.getsignal(number) is signal.default_int_handler)
+        ]  # not those that an outer alarm hears, nor those of the user
+        began = counted()
+        left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0) if timed else (0.0, 0.0)
+        mine = [*([signal.SIGALRM] if timed else []), *([signal.SIGVTALRM, *ends] if ends else [])]
+        before: dict[int, Any] = {}
+        try:
+            for number in mine:
+                before[number] = signal.signal(number, self._end if number in ends else self._ring)
+            if timed:
+                self._set()
+            return self._inside(work)
+        finally:
+            if ends:
+                signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+            if timed:
+                signal.setitimer(signal.ITIMER_REAL, 0.0)
+            for number, handler in before.items():
+                signal.signal(number, handler)
+            if self._swallowed:
+                sys.settrace(None)
             if left > 0.0:
-                left -= time.monotonic() - self._began
+                left -= counted() - began
                 signal.setitimer(signal.ITIMER_REAL, max(left, SOONEST), interval)
                 if left <= SOONEST:  # the next alarm may begin before the timer rings
                     signal.raise_signal(signal.SIGALRM)
+            if self._late:  # a signal came between the lines of this function
+                self._late = False
+                raise KeyboardInterrupt
 
-    def _interrupt(self, number: int, frame: FrameType | None) -> None:
-        if not self._armed or self._deadline.ended:  # on the way out of the block
+    def _inside(self, work: Callable[[], Result]) -> Result:
+        """The frame under which the alarm rings: on the way out of it nothing can be raised any more."""
+        self._inner = sys._getframe()
+        try:
+            return work()
+        finally:
+            self._inner = None
+
+    def _set(self) -> None:
+        """Wind the clock."""
+        signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again)
+
+    def _is_inside(self, frame: FrameType | None) -> bool:
+        """Whether a frame is one of the computation's."""
+        while frame is not None and frame is not self._inner:
+            frame = frame.f_back
+        return frame is not None and self._inner is not None
+
+    def _end(self, number: int, frame: FrameType | None) -> None:
+        """Hear Ctrl-C or SIGTERM."""
+        if guard.asked():  # it is being raised already
+            return
+        guard.note(number)
+        if not self._is_inside(frame):
+            self._late = True
+            return
+        if self._deadline.ended:
             raise KeyboardInterrupt
         signal.setitimer(signal.ITIMER_VIRTUAL, INTERRUPT_AGAIN, INTERRUPT_AGAIN)
         self._ring(signal.SIGVTALRM, frame)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        if not self._armed or self._deadline.ended:
+        """Raise, if this is a place for it."""
+        if self._deadline.ended or not self._is_inside(frame):
             return
         timed = number == signal.SIGALRM
+        if timed and (STANDSTILL.depth or self._deadline.left() > 0.0):  # kernels were compiled, or still are
+            self._set()
+            return
         if _swallows(frame):
             again = self._again if timed else INTERRUPT_AGAIN
             signal.setitimer(signal.ITIMER_REAL if timed else signal.ITIMER_VIRTUAL, SOON, again)
@@ -138,7 +177,7 @@ class Alarm:
         """The frames of the function that may never return; none when it is not in one that the ring comes."""
         inner: list[FrameType] = []
         while frame is not None:
-            if frame.f_code.co_filename.endswith(self._caller):
+            if frame.f_code in self._strangers:
                 return inner
             inner.append(frame)
             frame = frame.f_back
@@ -146,6 +185,6 @@ class Alarm:
 
     def _insist(self, error: type[BaseException], frame: FrameType, event: str, argument: object) -> Any:
         """Raise in the handler, too, that catches everything; Python then forgets this trace function by itself."""
-        if event == "line" and self._armed:
+        if event == "line" and self._inner is not None:
             raise error
         return partial(self._insist, error)

@@ -11,6 +11,7 @@ from random import Random
 from tamp.alarm import Alarm
 from tamp.algorithms.anytime import solve_anytime
 from tamp.algorithms.solution import Effort, Outcome, Progress, Result
+from tamp.algorithms.stream import STRANGERS
 from tamp.assembly import assemble, ended_early, random_streams, timed
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
@@ -85,28 +86,21 @@ def optimize(
         if improved is not None:
             improved(best[0])
 
-    alarm = Alarm(deadline)
+    def plan() -> Result:
+        return solve_anytime(
+            task, random_streams(seed), deadline, progress or _silent, better, bounded, Random(seed)
+        )  # fmt: skip
+
     outcome = Outcome.TIMEOUT
     try:
-        with alarm:
-            result = solve_anytime(
-                task,
-                random_streams(seed),
-                deadline,
-                progress or _silent,
-                better,
-                bounded,
-                Random(seed),
-            )
-            if not best:
-                seconds = {"total": deadline.elapsed(), "timing": 0.0}
-                return assemble(problem, result, (), seed, "adaptive", seconds, recorder)
+        result = Alarm(deadline, strangers=STRANGERS).run(plan)
+        if not best:
+            seconds = {"total": deadline.elapsed(), "timing": 0.0}
+            return assemble(problem, result, (), seed, "adaptive", seconds, recorder)
     except OutOfTime:
         pass
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
-    finally:
-        alarm.disarm()
     if not best:
         return ended_early(problem, outcome, seed, "adaptive", deadline.elapsed(), recorder)
     return replace(best[0], seconds={**best[0].seconds, "total": deadline.elapsed()})

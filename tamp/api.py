@@ -10,13 +10,14 @@ from typing import Any
 from tamp.alarm import Alarm
 from tamp.algorithms.registry import ALGORITHMS
 from tamp.algorithms.solution import Effort, Outcome, Progress, Result, StreamTask
+from tamp.algorithms.stream import STRANGERS
 from tamp.assembly import assemble, ended_early, random_streams, timed
 from tamp.clock import Deadline, OutOfTime
 from tamp.contradictions import contradictions
 from tamp.errors import InputError
 from tamp.problem import Problem
 from tamp.recording import Recorder
-from tamp.solution import Solution
+from tamp.solution import Action, Solution
 
 AGAIN = 8
 """Plans that are made at most until the classifiers bear one out."""
@@ -53,19 +54,19 @@ def solve(
     deadline = Deadline(max_time)
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
-    alarm = Alarm(deadline)
+
+    def plan() -> tuple[Result, tuple[Action, ...], float]:
+        result = _borne_out(problem, task, seed, algorithm, deadline, progress or _silent)
+        planned = deadline.elapsed()
+        return result, timed(problem, result), planned
+
     try:
-        with alarm:
-            result = _borne_out(problem, task, seed, algorithm, deadline, progress or _silent)
-            planned = deadline.elapsed()
-            plan = timed(problem, result)
+        result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
     except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
-    finally:
-        alarm.disarm()
     total = deadline.elapsed()
-    return assemble(problem, result, plan, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
+    return assemble(problem, result, actions, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
 
 
 def _borne_out(

@@ -13,9 +13,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from tamp import guard
 from tamp.arguments import Arguments, parsed, sampler_choices
 from tamp.errors import InputError
-from tamp.leave import leave
 from tamp.outputs import check_outputs, check_writable
 from tamp.progress import Progress, say
 from tamp.terminal import spoken
@@ -31,10 +31,12 @@ SOLVED, NO_PLAN, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
 def main() -> NoReturn:
-    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 interrupted."""
+    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 or 143 interrupted."""
+    if not guard.is_guarded():
+        guard.guarded("tamp.cli")
     # The time that the user gives counts from here, less what the interpreter took to come here.
     started = time.monotonic() - time.process_time()
-    leave(spoken(run)(sys.argv[1:], started))
+    guard.leave_as(spoken(run)(sys.argv[1:], started))
 
 
 def execute(arguments: list[str] | None = None) -> None:
@@ -77,6 +79,11 @@ def _solve(arguments: Arguments, started: float) -> int:
     if arguments.files[-1].endswith(".pddl"):
         return _solve_symbolic(arguments, started)
     # These take a second to import; a wrong option is answered before.
+    from tamp import compilation
+
+    shown = Progress(quiet=arguments.quiet or arguments.json)
+    _SHOWN.append(shown)
+    compilation.tell(shown.compiling)
     from tamp.algorithms.solution import Outcome
     from tamp.api import ALGORITHMS
     from tamp.parallel import solve_parallel
@@ -109,8 +116,6 @@ def _solve(arguments: Arguments, started: float) -> int:
         registry=registry(),
         steering=arguments.steering,
     )
-    shown = Progress(quiet=arguments.quiet or arguments.json)
-    _SHOWN.append(shown)
     shown.begin("loading")
     problem = load()
     domain_name = problem.stream_task.task.domain.name
@@ -141,8 +146,10 @@ def _solve(arguments: Arguments, started: float) -> int:
         record=arguments.record or wishes.page,
     )
     shown.clear()
+    stopped = guard.asked() or solution.outcome is Outcome.INTERRUPTED  # then what was found is kept, and nothing begun
     shown.begin("judging")
-    verdict = _judge(plan_text(solution), problem.classifiers) if solution.solved and arguments.verify else None
+    judged = solution.solved and arguments.verify and not stopped
+    verdict = _judge(plan_text(solution), problem.classifiers) if judged else None
     holds = solution.solved and (verdict is None or verdict.holds)
     shown.begin("writing")
     written = write_plan(solution, arguments.out) if holds else None  # first of all: what fails later loses no plan
@@ -152,18 +159,18 @@ def _solve(arguments: Arguments, started: float) -> int:
             add_statistics(arguments.statistics, domain_name, solution.statistics)
         except InputError as error:
             later = error
-    asked = arguments.why and solution.outcome not in (Outcome.SOLVED, Outcome.INTERRUPTED)
     because = None
-    if asked:
+    if arguments.why and not solution.solved and not stopped:
         shown.line(f"{summary(solution, loading)}\n\n  looking for changes that would make it solvable ...")
         because = why(
             solution, lambda scene: load(scene=scene), max_time=arguments.time,
             progress=shown.update, trying=shown.begin,
         )  # fmt: skip
         shown.clear()
-    if written is not None and arguments.execute:
+    executed = None
+    if written is not None and arguments.execute and not stopped:
         shown.begin("executing")
-    executed = _execute(written, arguments) if written is not None and arguments.execute else None
+        executed = _execute(written, arguments)
     if arguments.json:
         import json
 
@@ -181,6 +188,9 @@ def _solve(arguments: Arguments, started: float) -> int:
         _conclude(shown, arguments, written, verdict)
         if executed is not None:
             shown.line(f"\n{executed.text()}")
+    if stopped and (wishes.any or arguments.verify or arguments.execute):
+        shown.line("interrupted: the plan was neither judged, carried out nor drawn")
+        return INTERRUPTED
     if wishes.any:
         from tamp.view.open import film_of_solution
 

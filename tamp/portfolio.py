@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import os
-import signal
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
+from tamp import guard
 from tamp.clock import Deadline
 from tamp.errors import InputError
 
@@ -21,6 +21,9 @@ Tell = Callable[[Any], None]
 
 LATE = 1.0
 """Seconds after the deadline at which a run that has not answered is killed."""
+
+LOOK = 0.2
+"""Seconds between two looks whether somebody wants it to end."""
 
 BEHIND = 10
 """How much nicer the other runs are than the first one, so that it is not slowed down where cores are scarce."""
@@ -76,13 +79,16 @@ def race(
         for number, run in enumerate(runs):
             ours, theirs = context.Pipe(duplex=False)
             process = context.Process(target=_member, args=(run, number, theirs, lifeline, held), daemon=True)
-            process.start()
+            with guard.Held():
+                process.start()
             theirs.close()
             processes.append(process)
             open_[ours] = number
         while open_ and deadline.elapsed() < deadline.seconds + LATE:
+            if guard.asked():  # what it raised was dropped, as in a fork or while an answer was read
+                raise KeyboardInterrupt
             left = deadline.seconds + LATE - deadline.elapsed()
-            ready = set(wait(list(open_), min(left, threading.TIMEOUT_MAX)))
+            ready = set(wait(list(open_), min(left, LOOK)))
             for pipe, number in [item for item in open_.items() if item[0] in ready]:
                 try:
                     kind, content = pipe.recv()
@@ -100,10 +106,11 @@ def race(
                     return First(number, content)
                 answers[number] = content
     finally:
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.join()
+        with guard.Held():
+            for process in processes:
+                process.kill()
+            for process in processes:
+                process.join()
         os.close(lifeline)
         os.close(held)
     if answers:
@@ -116,7 +123,7 @@ def race(
 
 def _member(run: Callable[[Tell], Any], number: int, pipe: Connection, lifeline: int, held: int) -> None:
     """One run, in its process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the one who started it decides
+    guard.obey_only_parent()
     os.close(held)
     threading.Thread(target=_leave_with, args=(lifeline,), daemon=True).start()
     if number:

@@ -77,6 +77,17 @@ class Progress:
         self._now = max(self._now[0], effort.skeletons), max(self._now[1], effort.draws)
         self._tell(OFTEN)
 
+    def compiling(self, count: int) -> None:
+        """Say that kernels are being compiled, of which so many are done: on a terminal in a line that is rewritten."""
+        terminal = sys.stderr.isatty()
+        if self.quiet or (count and not terminal):
+            return
+        text = "  compiling kernels, once for this installation"
+        print(
+            f"\r{text}: {count}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True
+        )
+        self._shown = terminal
+
     def clear(self) -> None:
         """Remove the progress line."""
         with _PRINTING:

@@ -265,6 +265,10 @@ class Streams:
         )
 
 
+STRANGERS = (Streams.draw.__code__,)
+"""For an alarm: what calls the functions that anyone may have written."""
+
+
 def ground(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
     """The facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))

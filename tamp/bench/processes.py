@@ -6,13 +6,14 @@ import contextlib
 import multiprocessing
 import multiprocessing.connection
 import os
-import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any
 
+from tamp import guard
 from tamp.bench.case import Case
 from tamp.bench.crew import GRACE, Ended, Work
 from tamp.errors import InputError
@@ -48,7 +49,10 @@ class Processes:
         self._context = multiprocessing.get_context("spawn")
         for name in THREADS:
             os.environ.setdefault(name, "1")
-        self._workers = [self._hire() for _ in range(size)]
+        resource_tracker.ensure_running()  # which would let signals through while it starts
+        self._workers: list[_Worker] = []
+        for _ in range(size):
+            self._workers.append(self._hire())
 
     def start(self, case: Case) -> None:
         """Give a run to an idle worker."""
@@ -64,6 +68,8 @@ class Processes:
             InputError: A process ended before it was ready: the next one would, too.
         """
         busy = [(worker, worker.case) for worker in self._workers if worker.case is not None]
+        if guard.asked():  # what it raised was dropped
+            raise KeyboardInterrupt
         heard = multiprocessing.connection.wait([worker.pipe for worker, _ in busy], 0.2)
         ended: list[Ended] = []
         for worker, case in busy:
@@ -83,13 +89,17 @@ class Processes:
 
     def close(self) -> None:
         """End all workers."""
-        for worker in self._workers:
-            _end(worker)
+        with guard.Held():
+            for worker in self._workers:
+                worker.process.kill()
+            for worker in self._workers:
+                _end(worker)
 
     def _hire(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=_serve, args=(theirs, *self._job), daemon=True)
-        process.start()
+        with guard.Held():
+            process.start()
         theirs.close()
         return _Worker(process, ours)
 
@@ -115,7 +125,7 @@ def _received(worker: _Worker) -> Any:
 
 def _serve(pipe: Connection, work: Work, prepare: Callable[[], None]) -> None:
     """What a worker's process does all day."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the one who leads, who ends us
+    guard.obey_only_parent()
     prepare()
     try:
         pipe.send(READY)

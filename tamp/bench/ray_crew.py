@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from tamp import guard
 from tamp.bench.case import Case
 from tamp.bench.crew import GRACE, Ended, Work
 from tamp.errors import InputError
@@ -56,6 +57,7 @@ class RayCrew:
         except Exception as error:  # Ray says it in many ways
             said = str(error).strip().splitlines() or [type(error).__name__]
             raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=REMEDY) from None
+        guard.listen()  # Ray has taken SIGTERM for itself
         self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
         # A lost run is given out again by whoever leads, who knows what was written down: Ray does not retry.
         self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
@@ -88,8 +90,9 @@ class RayCrew:
         return ended
 
     def close(self) -> None:
-        """Leave the cluster; one of our own ends."""
-        self._ray.shutdown()
+        """Leave the cluster; one of our own ends. In a command that was asked to end, all of that is who guards it."""
+        if not guard.asked():
+            self._ray.shutdown()
 
 
 def _check_somebody_listens(address: str) -> None:

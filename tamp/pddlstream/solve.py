@@ -13,6 +13,7 @@ from tamp.algorithms.incremental import Incremental
 from tamp.algorithms.registry import ALGORITHMS
 from tamp.algorithms.solution import Effort, Outcome, Result, StreamTask
 from tamp.algorithms.statistics import StreamStatistics
+from tamp.algorithms.stream import STRANGERS
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
 from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
@@ -96,16 +97,11 @@ def solve(
         raise InputError(what, remedy="See PDDLProblem")
     task, warnings, uncalled, names = bind(PDDLProblem(*parts), unit_costs=unit_costs)
     deadline = Deadline(max_time)
-    alarm = Alarm(deadline)
     try:
-        with alarm:
-            result = _run(task, algorithm, seed, deadline)
+        result = Alarm(deadline, strangers=STRANGERS).run(lambda: _run(task, algorithm, seed, deadline))
     except (OutOfTime, KeyboardInterrupt) as end:
-        alarm.disarm()
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
-    finally:
-        alarm.disarm()
     values = result.objects.values
     solved = result.outcome is Outcome.SOLVED
     outcome, explanation = result.outcome, result.explanation

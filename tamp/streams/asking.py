@@ -17,9 +17,6 @@ from tamp.world.scene import Scene
 FAR = 1000.0
 """Metres from the origin beyond which a position is taken for a mistake."""
 
-FILE = "streams/asking.py"
-"""Where the alarm stops to insist: what calls the generator."""
-
 
 class Misbehaved(Exception):
     """A generator did what no generator should; the message says what, with "it" for its name."""
@@ -51,9 +48,9 @@ def ask(
     limit = Deadline(min(seconds, deadline.left()))
     try:
         if math.isinf(seconds):  # the alarm of the run will do
-            return _poses(generator.propose(scene, arguments, count, rng), count)
-        with Alarm(limit, grace=0.0, again=0.02, caller=FILE):
-            return _poses(generator.propose(scene, arguments, count, rng), count)
+            return _proposed(generator, scene, arguments, count, rng)
+        alarm = Alarm(limit, grace=0.0, again=0.02, strangers=STRANGERS)
+        return alarm.run(lambda: _proposed(generator, scene, arguments, count, rng))
     except OutOfTime:
         if deadline.passed:
             raise
@@ -63,6 +60,10 @@ def ask(
     except (Exception, SystemExit, GeneratorExit) as error:
         text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         raise Misbehaved(f"it raised {text}") from error
+
+
+def _proposed(generator: Generator, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    return _poses(generator.propose(scene, arguments, count, rng), count)
 
 
 def _poses(proposed: object, count: int) -> list[Pose]:
@@ -96,3 +97,7 @@ def _pose(item: object) -> Pose:
     if abs(norm - 1.0) < 1e-9:  # as it is, to the last bit
         norm = 1.0
     return Pose((x, y, z), (a / norm, b / norm, c / norm, d / norm))
+
+
+STRANGERS = tuple(function.__code__ for function in (_proposed, _poses, _pose))
+"""Of an alarm: what here runs a generator's own code."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from collections.abc import Callable
@@ -42,35 +43,34 @@ def optimize_symbolic(
     if not best.solved:
         return best
     best = replace(best, history=((deadline.elapsed(), best.cost),))
-    alarm = Alarm(deadline)
-    try:
-        with alarm:
-            grounded = instantiate(problem.task)
-            start = search(grounded, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
-            best = replace(best, bound=min(start.bound, best.cost))
-            improved(best)
-            for name, heuristic, weight in LADDER:
-                last = name == "astar"
-                within = deadline if last else Deadline(SHARE * deadline.left())
-                while best.bound < best.cost:
-                    started = time.perf_counter()
-                    found = search(
-                        grounded, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
-                    )  # fmt: skip
-                    best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
-                    if last or found.reason is Reason.UNSOLVABLE:  # there is none: the bound is the cost
-                        proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
-                        bound = best.cost if found.plan is None and proven else found.bound
-                        best = replace(best, bound=max(best.bound, min(bound, best.cost)))
-                    if found.plan is not None:
-                        best = _better(best, found.plan, name, heuristic, deadline.elapsed(), optimal=last)
-                        improved(best)
-                    if found.plan is None:
-                        break
-    except (OutOfTime, KeyboardInterrupt):
-        pass
-    finally:
-        alarm.disarm()
+
+    def improve() -> None:
+        nonlocal best
+        grounded = instantiate(problem.task)
+        start = search(grounded, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
+        best = replace(best, bound=min(start.bound, best.cost))
+        improved(best)
+        for name, heuristic, weight in LADDER:
+            last = name == "astar"
+            within = deadline if last else Deadline(SHARE * deadline.left())
+            while best.bound < best.cost:
+                started = time.perf_counter()
+                found = search(
+                    grounded, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
+                )  # fmt: skip
+                best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
+                if last or found.reason is Reason.UNSOLVABLE:  # there is none: the bound is the cost
+                    proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
+                    bound = best.cost if found.plan is None and proven else found.bound
+                    best = replace(best, bound=max(best.bound, min(bound, best.cost)))
+                if found.plan is not None:
+                    best = _better(best, found.plan, name, heuristic, deadline.elapsed(), optimal=last)
+                    improved(best)
+                if found.plan is None:
+                    break
+
+    with contextlib.suppress(OutOfTime, KeyboardInterrupt):
+        Alarm(deadline).run(improve)
     optimal = math.isclose(best.bound, best.cost, rel_tol=1e-9, abs_tol=1e-9)
     return replace(best, optimal=optimal, seconds={**best.seconds, "total": deadline.elapsed()})
 

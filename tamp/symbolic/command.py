@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from tamp import guard
 from tamp.algorithms.solution import Outcome
 from tamp.errors import InputError
 from tamp.symbolic.anytime import optimize_symbolic
@@ -79,6 +80,7 @@ def plan_files(
     else:
         solution = solve_symbolic_parallel(loaded, jobs=jobs, search=search, heuristic=heuristic, max_time=left())
     show(summary(solution))
-    verdict = judge(plan_text(solution)) if solution.solved and judge is not None else None
+    stopped = guard.asked()  # what was found is kept, and nothing begun
+    verdict = judge(plan_text(solution)) if solution.solved and judge is not None and not stopped else None
     holds = solution.solved and (verdict is None or verdict.holds)
     return Ended(solution, verdict, write_symbolic_plan(solution, out) if holds else None)

@@ -101,15 +101,11 @@ def solve_symbolic(
     """
     search, heuristic = choose(search, heuristic)
     deadline = Deadline(max_time)
-    alarm = Alarm(deadline)
     try:
-        with alarm:
-            return _solve(problem, search, heuristic, deadline)
+        return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline))
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return SymbolicSolution(problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()})
-    finally:
-        alarm.disarm()
 
 
 def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline) -> SymbolicSolution:

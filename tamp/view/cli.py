@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from tamp import guard
 from tamp.command_line import Parser
 from tamp.errors import InputError
 from tamp.outputs import check_outputs
@@ -17,7 +18,7 @@ from tamp.view.wishes import Wishes, fulfil
 
 @spoken
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit with 0 when it was shown, 2 for bad input."""
+    """Exit with 0 when it was written, 2 for bad input, 130 or 143 when a signal ended it, as it ends the server."""
     try:
         _view(_parser().parse_args(arguments))
     except InputError as error:
@@ -25,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
-    return 0
+    return 130 if guard.asked() else 0
 
 
 def _view(options: argparse.Namespace) -> None:
@@ -68,7 +69,8 @@ def _parser() -> Parser:
         prog="tamp-view",
         description="Show a plan, or a scene without one: in the browser (the default), as a page that plays offline, "
         "as a picture, as a moving picture.",
-        epilog="Exit status: 0 shown, 2 bad input. docs/watch-export-execute.md says what is to be seen.",
+        epilog="Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. "
+        "docs/watch-export-execute.md says what is to be seen.",
     )
     parser.add_argument(
         "what", metavar="PLAN|PROBLEM", help="a plan.json of tamp-solve, a problem.yaml, or a shipped one"

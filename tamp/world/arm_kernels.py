@@ -95,7 +95,9 @@ def _solve(A, b):
 @njit(**INNER)
 def _step(J, error, q, lower, upper, drift, step):
     """Write into step (7,) a damped least-squares step; joints that it would push out of their limits are frozen."""
-    active, wish = np.ones(7), np.empty(7)
+    active, wish = np.empty(7), np.empty(7)
+    for i in range(7):
+        active[i] = 1.0
     A, b = np.empty((6, 6)), np.empty(6)
     for _ in range(7):
         for i in range(7):
@@ -138,7 +140,7 @@ def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, toleran
 
     The tolerance holds for the position's distance in metres and for the largest difference of a rotation's entries.
     """
-    kept = np.empty_like(candidates)
+    kept = np.empty((len(candidates), 7))
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
     count = 0
     for n in range(len(candidates)):

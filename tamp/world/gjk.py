@@ -145,17 +145,6 @@ def _outside(s, i, j, k, other):
 
 
 @njit(**JIT)
-def _square(s, n, weights):
-    """Square of the norm of the weighted sum of the first n rows of s."""
-    x = y = z = 0.0
-    for i in range(n):
-        x += weights[i] * s[i, 0]
-        y += weights[i] * s[i, 1]
-        z += weights[i] * s[i, 2]
-    return x * x + y * y + z * z
-
-
-@njit(**JIT)
 def _reduce(s, n, weights):
     """Find the nearest point of the simplex s[:n] to the origin; keep only the rows that carry it.
 
@@ -176,7 +165,12 @@ def _reduce(s, n, weights):
                 continue
             weights[left_out] = 0.0
             weights[i], weights[j], weights[k] = _on_triangle(s, i, j, k)
-            square = _square(s, n, weights)
+            x = y = z = 0.0
+            for row in range(4):
+                x += weights[row] * s[row, 0]
+                y += weights[row] * s[row, 1]
+                z += weights[row] * s[row, 2]
+            square = x * x + y * y + z * z
             if square < best:
                 best = square
                 b0, b1, b2, b3 = weights[0], weights[1], weights[2], weights[3]

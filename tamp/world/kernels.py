@@ -98,13 +98,6 @@ def place_part(i, frames, change, parts, part_poses, placed, reach):
     reach[i, 11] = total + change[0]
 
 
-@njit(**JIT)
-def place_parts(frames, change, parts, part_poses, placed, reach):
-    """Place all parts."""
-    for i in range(parts.shape[0]):
-        place_part(i, frames, change, parts, part_poses, placed, reach)
-
-
 @njit(**INLINE)
 def _from_core(shapes, i, poses, x, y, z):
     """Lower bound of a world point's distance from part i: exact but for hulls, whose box stands in for them."""

@@ -25,7 +25,6 @@ from tamp.world.kernels import (
     demand,
     place_frames,
     place_part,
-    place_parts,
     spheres_apart,
 )
 from tamp.world.pose import Array
@@ -82,7 +81,7 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
     for r in range(3):
         box[n, r], box[n, 3 + r] = math.inf, -math.inf
     for i in range(n):
-        _box(i, demand(i, FLOOR, half, padding, parts, reach), parts, placed, reach, box)
+        _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
         for r in range(3):
             box[n, r], box[n, 3 + r] = min(box[n, r], box[i, r]), max(box[n, 3 + r], box[i, 3 + r])
         if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
@@ -114,7 +113,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         room = unpack(tables, np.int64(0))[0]
         for conf in (start, end):
             if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
-                return verdict(HIT, 0, ROOM)
+                return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
         joints, vertices, leaves = unpack(tables, np.int64(1)), unpack(tables, np.int64(2)), unpack(tables, np.int64(3))
         parts, part_poses, pairs = unpack(tables, np.int64(4)), unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
         obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
@@ -134,7 +133,9 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             change[k] = abs(end[k] - start[k])
             moves = moves or change[k] > 0.0
         change[0] = math.hypot(change[0], change[1])
-        ready = np.zeros(n if moves else 0, dtype=np.int64)
+        ready = np.empty(n, dtype=np.int64)
+        for k in range(n):
+            ready[k] = 0
         found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
 
         # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The first three, the ends
@@ -155,7 +156,8 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             place_frames(conf, joints, frames)
             fresh = head < 3
             if fresh:
-                place_parts(frames, change, parts, part_poses, placed, reach)
+                for k in range(n):
+                    place_part(k, frames, change, parts, part_poses, placed, reach)
                 first, last = 0, _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
             else:
                 first, last = lists[head, 0], lists[head, 1]
@@ -179,15 +181,15 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                 if answer == APART:
                     continue
                 if answer == CLOSE:
-                    return verdict(HIT, i, other)
+                    return verdict(np.int64(HIT), i, other)
                 if far <= padding or count == TASKS:
-                    return verdict(UNDECIDED, i, other)
+                    return verdict(np.int64(UNDECIDED), i, other)
                 tasks[count, 0], tasks[count, 1] = i, other
                 guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
                 count += 1
             if count > before:
                 if tail + 2 > INTERVALS:
-                    return verdict(UNDECIDED, tasks[before, 0], tasks[before, 1])
+                    return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
                 for side in (-0.5, 0.5):
                     intervals[tail, 0], intervals[tail, 1] = middle + side * half, 0.5 * half
                     lists[tail, 0], lists[tail, 1] = before, count

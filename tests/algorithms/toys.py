@@ -10,7 +10,7 @@ from tamp.alarm import Alarm
 from tamp.algorithms.adaptive import solve_adaptive
 from tamp.algorithms.incremental import solve_incremental
 from tamp.algorithms.solution import Outcome, Result, StreamTask
-from tamp.algorithms.stream import BoundStream, Objects
+from tamp.algorithms.stream import STRANGERS, BoundStream, Objects
 from tamp.clock import Deadline, OutOfTime
 from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.pddl.structs import Task
@@ -42,14 +42,13 @@ def stream_task(
 def solve(algorithm: str, problem: StreamTask, *, seconds: float = 8.0, seed: int = 0) -> Result:
     """Run an algorithm as the api does: under an alarm, every stream call with a generator of its own."""
     deadline = Deadline(seconds)
-    alarm = Alarm(deadline)
     try:
-        with alarm:
-            return ALGORITHMS[algorithm](
+        return Alarm(deadline, strangers=STRANGERS).run(
+            lambda: ALGORITHMS[algorithm](
                 problem, lambda key: random.Random(f"{seed} {key}"), deadline, lambda effort: None
             )
+        )
     except OutOfTime:
-        alarm.disarm()
         return Result(Outcome.TIMEOUT, Objects({}, {}))
 
 

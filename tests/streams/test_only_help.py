@@ -177,10 +177,9 @@ def test_an_alarm_within_an_alarm_goes_on() -> None:
 
     def inner() -> None:
         for _ in range(200):
-            with Alarm(Deadline(10.0), grace=0.0):
-                time.sleep(0.01)
+            Alarm(Deadline(10.0), grace=0.0).run(lambda: time.sleep(0.01))
 
     started = time.monotonic()
-    with pytest.raises(OutOfTime), Alarm(Deadline(0.3), grace=0.0):
-        inner()
+    with pytest.raises(OutOfTime):
+        Alarm(Deadline(0.3), grace=0.0).run(inner)
     assert time.monotonic() - started > 0.29
