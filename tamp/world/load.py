@@ -10,7 +10,7 @@ from types import MappingProxyType
 from tamp.data import find_problem
 from tamp.errors import InputError
 from tamp.world.bodies import Draft, read_body
-from tamp.world.placing import FLOOR, place_bodies
+from tamp.world.placing import FARTHEST, FLOOR, place_bodies
 from tamp.world.scene import RobotStart, Room, Scene
 from tamp.world.yaml_nodes import Node, Passage, read_yaml
 
@@ -93,6 +93,8 @@ def _room(node: Node) -> Room:
         low, high = entries[axis].numbers(2)
         if not low < high:
             raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
+        if max(-low, high) > FARTHEST:
+            raise entries[axis].error(f"the room reaches farther than {FARTHEST:g} m from the world's origin")
         limits.append((low, high))
     return Room(*limits)
 
