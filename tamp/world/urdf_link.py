@@ -25,6 +25,10 @@ FARTHEST = 1e6
 """Metres, or radians: larger numbers are mistakes, and lose the millimetres."""
 
 
+class UnknownGeometry(InputError):
+    """A geometry that URDF does not have, such as those of one simulator."""
+
+
 @dataclass(frozen=True)
 class Capsule:
     """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the cylinder alone."""
@@ -134,8 +138,8 @@ def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Ele
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
     if shape.tag == "plane":
-        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
-    raise InputError(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
+        raise UnknownGeometry(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
+    raise UnknownGeometry(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 from tamp.errors import InputError
 from tamp.world.pose import Pose
-from tamp.world.urdf_link import MOST_ELEMENTS, Colour, Element, elements, named_colours, origin_pose
+from tamp.world.urdf_link import MOST_ELEMENTS, Colour, Element, UnknownGeometry, elements, named_colours, origin_pose
 from tamp.world.xml_file import read_xml
 
 LARGEST_MASS = 1e6
@@ -57,12 +57,14 @@ def read_object(path: Path) -> UrdfObject:
         what = "a soft body (<deformable>)" if root.find("deformable") is not None else "no link"
         raise InputError(f"'{path.name}' has {what}: an object has one link, or several that joints hold together")
     poses, warnings = _link_poses(path, root, links)
-    collisions: list[Element] = []
-    for name, pose in poses.items():
-        collisions += [_moved(pose, element) for element in elements(path, links[name], "collision")]
-        if len(collisions) > MOST_ELEMENTS:
-            raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} collision elements")
     visuals, reason = _visuals(path, root, links, poses)
+    try:
+        collisions = _collisions(path, links, poses)
+    except UnknownGeometry as error:
+        if not visuals:
+            raise
+        collisions = []
+        warnings.append(error.message)
     if not collisions:
         if not visuals:
             said = f": {reason}" if reason else ""
@@ -124,6 +126,16 @@ def _link_poses(
         joints = f"joints {shown} are" if several else f"joint {shown} is"
         warnings.append(f"'{path.name}': its {joints} held at 0, for an object is one rigid body")
     return {name: poses[name] for name in links}, warnings
+
+
+def _collisions(path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]) -> list[Element]:
+    """The collision elements of all links in the root's frame."""
+    found: list[Element] = []
+    for name, pose in poses.items():
+        found += [_moved(pose, element) for element in elements(path, links[name], "collision")]
+        if len(found) > MOST_ELEMENTS:
+            raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} collision elements")
+    return found
 
 
 def _visuals(
