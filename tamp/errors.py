@@ -6,15 +6,6 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-MOST_CHOICES = 60
-"""Valid words that a message lists."""
-
-LONGEST_MESSAGE = 1000
-"""Characters: a message that repeats a word of a megabyte is cut."""
-
-LONGEST_WORD = 200
-"""Characters: a longer word is no slip of the keyboard, and comparing it takes quadratic time."""
-
 
 class InputError(Exception):
     """Bad input from the user: where it stands, what was found, what would have been valid.
@@ -42,7 +33,7 @@ class InputError(Exception):
         choices: Iterable[str] = (),
         remedy: str = "",
     ) -> None:
-        self.message = message if len(message) <= LONGEST_MESSAGE else f"{message[:LONGEST_MESSAGE]}..."
+        self.message = message
         self.file = None if file is None else str(file)
         self.line = line
         self.column = column
@@ -65,8 +56,7 @@ class InputError(Exception):
         place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
         text = f"{place}: {self.message}" if place else self.message
         if self.choices:
-            more = f", and {len(self.choices) - MOST_CHOICES} more" if len(self.choices) > MOST_CHOICES else ""
-            text += f". Choices: {', '.join(self.choices[:MOST_CHOICES])}{more}"
+            text += f". Choices: {', '.join(self.choices)}"
         if self.suggestion:
             text += f". Did you mean '{self.suggestion}'?"
         if self.remedy:
@@ -76,7 +66,5 @@ class InputError(Exception):
 
 def closest(word: str, choices: Iterable[str]) -> str | None:
     """The choice that `word` was probably meant to be, or None when nothing is near."""
-    if len(word) > LONGEST_WORD:
-        return None
     matches = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)
     return matches[0] if matches else None

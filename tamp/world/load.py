@@ -30,6 +30,7 @@ class LoadedProblem:
         metric: In PDDL.
         samplers: Sampler by relation, as `--sampler` gives them.
         meshes: The mesh files that were read.
+        drawn: The mesh files that are only drawn, which no plan depends on.
         warnings: What was repaired or looks odd, one sentence each.
         lines: 1-based line of each body and of `robot`, for later errors about them.
     """
@@ -43,6 +44,7 @@ class LoadedProblem:
     samplers: Mapping[str, str]
     meshes: tuple[Path, ...]
     warnings: tuple[str, ...]
+    drawn: tuple[Path, ...]
     lines: Mapping[str, int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
@@ -81,6 +83,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         metric=entries["metric"].passage() if "metric" in entries else None,
         samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
+        drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
         warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings),
         lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
     )

@@ -26,6 +26,7 @@ MAX_DEPTH = 100
 MAX_MERGES = 1000
 """Mappings that one may take in by `<<`, also those that these take in."""
 
+_LONGEST = 500
 _SHOWN = 60
 """Characters of a wrong word that are told."""
 
@@ -55,7 +56,8 @@ class Node:
     ) -> InputError:
         """An error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
-        message = " ".join(message.split())  # a word of the file may hold line breaks
+        message = " ".join(message[:_LONGEST].split())  # a word of the file may hold line breaks, or a megabyte
+        found = None if found is None else found[:_LONGEST]
         return InputError(
             where + message, file=self._file, line=self.line, found=found, choices=choices, remedy=remedy
         )  # fmt: skip
