@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tamp.api import solve
+from tamp.cli import run
 from tamp.plan_file import plan_document
 from tamp.problem import load_problem
 from tamp.simulation.physics import World
@@ -48,3 +49,8 @@ def test_the_floor_is_under_the_room(tmp_path: Path) -> None:
         world.step(1.0)
         after = world.pose("can")
     assert np.abs(after - before).max() < 0.003
+
+
+def test_a_plan_two_kilometres_out_is_carried_out(tmp_path: Path) -> None:
+    file, out = scene_at(tmp_path, 2000.0, -300.0), tmp_path / "plan.json"
+    assert run([str(file), "--time", "60", "--execute", "--quiet", "--out", str(out)]) == 0
