@@ -22,7 +22,7 @@ from tamp.world.raw_file import read_raw
 MOST_BYTES = 80_000_000
 """Larger mesh files are refused: reading them would take minutes and gigabytes."""
 
-MOST_TRIANGLES = 2_000_000
+MOST_TRIANGLES = 1_000_000
 """More are refused; a body has some thousand."""
 
 Triangles = tuple[Array, NDArray[np.int64]]
@@ -46,6 +46,8 @@ def read_triangles(path: Path) -> Triangles:
     if reader is None:
         raise InputError(f"'{name}' is neither {_KNOWN}")
     content = read_raw(path, MOST_BYTES)
+    if reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES:  # before minutes go into reading them
+        raise InputError(f"the mesh '{name}' has more than {MOST_TRIANGLES:,} faces: simplify it")
     try:
         vertices, faces = reader(content, path)
     except InputError:
