@@ -43,7 +43,6 @@ CHAIN = """\
 <robot name="chain">
   <link name="a"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
   <link name="b"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
-  <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
 </robot>
 """
 

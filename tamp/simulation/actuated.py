@@ -10,6 +10,7 @@ import numpy as np
 from tamp.scratch import scratch_folder
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import World
+from tamp.simulation.shapes import link_frame
 from tamp.simulation.silence import silence
 from tamp.world.pose import Array, Pose
 from tamp.world.robot import Robot
@@ -137,7 +138,8 @@ class Actuated(World):
         state = self._bullet.getLinkState(
             self._mover, self._hand, computeForwardKinematics=1, physicsClientId=self.client
         )  # fmt: skip
-        return Pose(tuple(state[4]), tuple(state[5])).matrix @ self._T_hand_tool
+        x, y, z, *turn = link_frame(state)
+        return Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])).matrix @ self._T_hand_tool
 
     def speed(self, body: str) -> tuple[float, float]:
         """Of a movable body: metres and radians a second."""

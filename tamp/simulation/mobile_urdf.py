@@ -15,7 +15,7 @@ BASE_MASS = 100.0
 """Kilograms: heavy enough for an arm's swing not to shake it."""
 
 _INERTIAL = '<inertial><mass value="{}"/><inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
-_LIMIT = '<limit lower="-1000" upper="1000" effort="100000" velocity="10"/>'
+_LIMIT = '<limit lower="-200000" upper="200000" effort="100000" velocity="10"/>'
 
 
 def mobile_urdf(robot: Robot) -> str:

@@ -19,7 +19,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.scratch import scratch_folder
-from tamp.simulation.shapes import centre_of_mass, half_extents, obj
+from tamp.simulation.shapes import centre_of_mass, floor_under, half_extents, link_frame, obj
 from tamp.simulation.silence import silence
 from tamp.world.pose import Array, Pose
 from tamp.world.robot import Robot
@@ -125,7 +125,7 @@ class World:
     def link_frames(self) -> Array:
         """Position (m) and quaternion x, y, z, w of each link's frame, in the order of `links`, shape (l, 7)."""
         states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
-        return np.array(self._base_frames + [(*state[4], *state[5]) for state in states])
+        return np.array(self._base_frames + [link_frame(state) for state in states])
 
     def link_poses(self) -> dict[str, Array]:
         """T_world_link of the links as they stand, shape (4, 4) each; the base has its frame on the floor."""
@@ -170,13 +170,13 @@ class World:
 
     def _add_floor(self) -> Solid:
         self._owners: dict[tuple[int, int], str] = {}
-        half = np.array([50.0, 50.0, 0.5])
+        centre, half = floor_under(self.scene)
         shape = self._bullet.createCollisionShape(
             self._bullet.GEOM_BOX, halfExtents=half.tolist(), physicsClientId=self.client
         )  # fmt: skip
-        handle = self._bullet.createMultiBody(0.0, shape, -1, [0.0, 0.0, -0.5], physicsClientId=self.client)
+        handle = self._bullet.createMultiBody(0.0, shape, -1, centre.tolist(), physicsClientId=self.client)
         self._owners[handle, -1] = FLOOR
-        return Solid(FLOOR, handle, -1, np.eye(4), np.array([0.0, 0.0, -0.5]), half)
+        return Solid(FLOOR, handle, -1, np.eye(4), centre, half)
 
     def _add_body(self, body: Body) -> None:
         if self.dynamic and body.movable:

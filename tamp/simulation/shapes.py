@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
-from tamp.world.pose import Array
-from tamp.world.scene import Box, Cylinder, Hull, Part, Shape, Sphere
+from tamp.world.pose import Array, Pose
+from tamp.world.scene import Box, Cylinder, Hull, Part, Scene, Shape, Sphere
 
+_SINGLE = 100.0
 ROUND = 48
 """Points on a circle where a round shape is described by points."""
 
@@ -57,6 +59,27 @@ def centre_of_mass(parts: Iterable[Part]) -> Array:
         total += volume
         moment += volume * part.pose.apply(centre[None])[0]
     return moment / total
+
+
+def floor_under(scene: Scene) -> tuple[Array, Array]:
+    """Centre (3,) and half edge lengths (3,) of a floor that reaches 50 m beyond the room and all bodies."""
+    room = scene.room
+    spots = [(x, y) for x in room.x for y in room.y]
+    spots += [body.pose.position[:2] for body in scene.bodies.values()]
+    low, high = np.min(spots, axis=0), np.max(spots, axis=0)
+    return np.array([*(low + high) / 2, -0.5]), np.array([*(high - low) / 2 + 50.0, 0.5])
+
+
+def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
+    """Position (m) and quaternion (xyzw) of a link's frame from pybullet's state of the link.
+
+    pybullet tells the frame of a link in single precision, that of its centre of mass in double: far from the world's
+    origin (0.06 mm at 1 km) the frame is taken from the latter.
+    """
+    if max(abs(state[4][0]), abs(state[4][1])) < _SINGLE:
+        return (*state[4], *state[5])
+    frame = Pose(state[0], state[1]) @ Pose(state[2], state[3]).inverse()
+    return (*frame.position, *frame.quaternion)
 
 
 def obj(shape: Shape) -> str:

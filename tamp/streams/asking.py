@@ -12,10 +12,10 @@ from tamp.alarm import Alarm
 from tamp.clock import Deadline, OutOfTime
 from tamp.streams.relations import Generator
 from tamp.world.pose import Pose
-from tamp.world.scene import Scene
+from tamp.world.scene import Room, Scene
 
 FAR = 1000.0
-"""Metres from the origin beyond which a position is taken for a mistake."""
+"""Metres from the room beyond which a position is taken for a mistake."""
 
 
 class Misbehaved(Exception):
@@ -63,17 +63,17 @@ def ask(
 
 
 def _proposed(generator: Generator, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-    return _poses(generator.propose(scene, arguments, count, rng), count)
+    return _poses(generator.propose(scene, arguments, count, rng), count, scene.room)
 
 
-def _poses(proposed: object, count: int) -> list[Pose]:
+def _poses(proposed: object, count: int, room: Room) -> list[Pose]:
     if not isinstance(proposed, Iterable):
         raise Misbehaved(f"it proposes a {type(proposed).__name__}, not a list of poses")
     poses: list[Pose] = []
     wrong = ""
     for item in islice(proposed, count):
         try:
-            poses.append(_pose(item))
+            poses.append(_pose(item, room))
         except Misbehaved as error:
             wrong = str(error)
     if wrong and not poses:
@@ -81,7 +81,7 @@ def _poses(proposed: object, count: int) -> list[Pose]:
     return poses
 
 
-def _pose(item: object) -> Pose:
+def _pose(item: object, room: Room) -> Pose:
     if not isinstance(item, Pose):
         raise Misbehaved(f"it proposes a {type(item).__name__}, not a pose")
     try:
@@ -92,7 +92,8 @@ def _pose(item: object) -> Pose:
     norm = math.hypot(a, b, c, d)
     if not (math.isfinite(norm) and norm > 1e-6 and all(math.isfinite(number) for number in (x, y, z))):
         raise Misbehaved("it proposes numbers that are not finite, or no rotation")
-    if max(abs(x), abs(y), abs(z)) > FAR:
+    beyond = max(room.x[0] - x, x - room.x[1], room.y[0] - y, y - room.y[1], abs(z))
+    if beyond > FAR:
         raise Misbehaved(f"it proposes a position more than {FAR:g} m away")
     if abs(norm - 1.0) < 1e-9:  # as it is, to the last bit
         norm = 1.0

@@ -97,7 +97,7 @@ def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]
         found = [
             (np.asarray(one.vertices, dtype=float), np.asarray(one.faces, dtype=np.int64), _material(one))
             for one in loaded.dump()
-            if hasattr(one, "faces")
+            if isinstance(one, trimesh.Trimesh)
         ]
     except Exception as error:  # trimesh raises whatever its readers stumble on
         raise InputError(f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}") from None

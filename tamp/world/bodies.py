@@ -16,6 +16,7 @@ from tamp.world.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_tr
 from tamp.world.pose import Pose
 from tamp.world.scene import Body, Box, Cavity, Cylinder, Part, Sphere, Surface, Visual
 from tamp.world.tops import NARROWEST, top_of
+from tamp.world.urdf_object import LARGEST_MASS
 from tamp.world.yaml_nodes import Node
 
 COLOURS: Mapping[str, tuple[float, float, float]] = {
@@ -33,6 +34,10 @@ _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
 _COMMON = (*PLACEMENT, "fixed", "mass", "friction", "colour", "surfaces", "cavities")
 _OPTIONS = {"mesh": ("scale",)}
 _LARGEST_MOVABLE = 5.0
+_LARGEST = 1e5
+_MOST_BOARDS = 100
+_MOST_FRICTION = 100.0
+_SMALLEST = 1e-5
 
 
 @dataclass(frozen=True)
@@ -82,8 +87,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         movable = not entries["fixed"].flag()
     if kind == "furniture" and movable:
         raise entries["fixed"].error("furniture is always fixed")
-    if movable:
-        _check_size(parts, entries[kind])
+    _check_size(parts, entries[kind], movable)
     derived = furniture.surfaces
     if kind != "furniture" and not movable:
         triangles = mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
@@ -94,10 +98,8 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         parts,
         Pose(),
         movable,
-        mass=_or(entries["mass"].number(positive=True) if "mass" in entries else mesh and mesh.mass, Body.mass),
-        friction=_or(
-            entries["friction"].number(low=0.0) if "friction" in entries else mesh and mesh.friction, Body.friction
-        ),
+        mass=_number(entries.get("mass"), mesh and mesh.mass, Body.mass, positive=True, high=LARGEST_MASS),
+        friction=_number(entries.get("friction"), mesh and mesh.friction, Body.friction, low=0.0, high=_MOST_FRICTION),
         colour=_colour(entries.get("colour"), kind, mesh),
         surfaces=_surfaces(name, entries["surfaces"]) if "surfaces" in entries else derived,
         cavities=_cavities(name, entries["cavities"]) if "cavities" in entries else furniture.cavities,
@@ -167,7 +169,9 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
     if "compartments" in entries:
         counts = entries["compartments"]
         rows, columns = (
-            (item.integer(low=1) for item in counts.items(2)) if counts.is_list() else (counts.integer(low=1), 1)
+            (item.integer(low=1, high=_MOST_BOARDS) for item in counts.items(2))
+            if counts.is_list()
+            else (counts.integer(low=1, high=_MOST_BOARDS), 1)
         )
     options = Options(
         rows=rows,
@@ -226,14 +230,23 @@ def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
     return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
 
 
-def _or(value: float | None, default: float) -> float:
-    return default if value is None else value
+def _number(
+    node: Node | None, read: float | None, default: float, positive: bool = False, low: float = 0.0, high: float = 0.0
+) -> float:
+    """What the problem says, else what the mesh's file says, else the default."""
+    if node is not None:
+        return node.number(positive=positive, low=low, high=high)
+    return default if read is None else read
 
 
-def _check_size(parts: tuple[Part, ...], node: Node) -> None:
+def _check_size(parts: tuple[Part, ...], node: Node, movable: bool) -> None:
     low, high = bounds(parts, Pose())
-    largest = float((high - low).max())
-    if largest > _LARGEST_MOVABLE:
+    largest, smallest = float((high - low).max()), float((high - low).min())
+    if not largest <= _LARGEST:
+        raise node.error(f"it is {largest:g} m large", remedy="Lengths are metres")
+    if smallest < _SMALLEST:
+        raise node.error(f"it is {smallest:g} m thin", remedy="Lengths are metres")
+    if movable and largest > _LARGEST_MOVABLE:
         raise node.error(f"it is {largest:g} m large, too large to be moved", remedy="Lengths are metres")
 
 

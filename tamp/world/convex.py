@@ -11,6 +11,7 @@ from tamp.world.pose import Array
 TOLERANCE = 0.0005
 """Metres that a point may lie outside of a simplified hull."""
 
+_BLOCK = 20_000
 _THINNEST = 0.001
 
 
@@ -42,12 +43,24 @@ def simplified(points: Array) -> Array:
             equations = ConvexHull(corners[chosen]).equations
         except QhullError:  # the few corners lie in a plane
             return corners
-        beyond = corners @ equations[:, :3].T + equations[:, 3]
-        farthest = np.unique(np.argmax(beyond, axis=0)[beyond.max(axis=0) > TOLERANCE])
+        outermost, beyond = _outermost(corners, equations)
+        farthest = np.unique(outermost[beyond > TOLERANCE])
         if not len(farthest):
             return corners[chosen]
         chosen = np.union1d(chosen, farthest)
     return corners
+
+
+def _outermost(points: Array, equations: Array) -> tuple[NDArray[np.int64], Array]:
+    """For each plane (k, 4) the point that lies farthest beyond it, and how far; a block of points at a time."""
+    best, index = np.full(len(equations), -np.inf), np.zeros(len(equations), dtype=np.int64)
+    for start in range(0, len(points), _BLOCK):
+        beyond = points[start : start + _BLOCK] @ equations[:, :3].T + equations[:, 3]
+        found = np.argmax(beyond, axis=0)
+        height = beyond[found, np.arange(len(equations))]
+        higher = height > best
+        best[higher], index[higher] = height[higher], found[higher] + start
+    return index, best
 
 
 def thickened(points: Array) -> Array:

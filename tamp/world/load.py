@@ -10,7 +10,7 @@ from types import MappingProxyType
 from tamp.data import find_problem
 from tamp.errors import InputError
 from tamp.world.bodies import Draft, read_body
-from tamp.world.placing import FLOOR, place_bodies
+from tamp.world.placing import FARTHEST, FLOOR, place_bodies
 from tamp.world.scene import RobotStart, Room, Scene
 from tamp.world.steadying import steady
 from tamp.world.yaml_nodes import Node, Passage, read_yaml
@@ -31,6 +31,7 @@ class LoadedProblem:
         metric: In PDDL.
         samplers: Sampler by relation, as `--sampler` gives them.
         meshes: The mesh files that were read.
+        drawn: The mesh files that are only drawn, which no plan depends on.
         warnings: What was repaired or looks odd, one sentence each.
         lines: 1-based line of each body and of `robot`, for later errors about them.
     """
@@ -44,6 +45,7 @@ class LoadedProblem:
     samplers: Mapping[str, str]
     meshes: tuple[Path, ...]
     warnings: tuple[str, ...]
+    drawn: tuple[Path, ...]
     lines: Mapping[str, int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
@@ -83,6 +85,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         metric=entries["metric"].passage() if "metric" in entries else None,
         samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
+        drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
         warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
         lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
     )
@@ -95,6 +98,8 @@ def _room(node: Node) -> Room:
         low, high = entries[axis].numbers(2)
         if not low < high:
             raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
+        if max(-low, high) > FARTHEST:
+            raise entries[axis].error(f"the room reaches farther than {FARTHEST:g} m from the world's origin")
         limits.append((low, high))
     return Room(*limits)
 

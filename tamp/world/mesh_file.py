@@ -22,13 +22,15 @@ from tamp.world.raw_file import read_raw
 MOST_BYTES = 80_000_000
 """Larger mesh files are refused: reading them would take minutes and gigabytes."""
 
-MOST_TRIANGLES = 2_000_000
+MOST_TRIANGLES = 1_000_000
 """More are refused; a body has some thousand."""
 
 Triangles = tuple[Array, NDArray[np.int64]]
 SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf")
 _KNOWN = "OBJ, STL, PLY, COLLADA (.dae), glTF (.glb, .gltf) nor URDF"
 _FACET = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
+_CORNER_0 = re.compile(rb"^f[^\n]*\s0[/\s]", re.MULTILINE)
+_PLY_REMARK = re.compile(rb"^(comment|obj_info)[^\n]*\n", re.MULTILINE)
 _PLY_COUNT = re.compile(rb"^element\s+(\S+)\s+(\S+)\s*$", re.MULTILINE)
 _PLY_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2}
 
@@ -44,6 +46,8 @@ def read_triangles(path: Path) -> Triangles:
     if reader is None:
         raise InputError(f"'{name}' is neither {_KNOWN}")
     content = read_raw(path, MOST_BYTES)
+    if reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES:  # before minutes go into reading them
+        raise InputError(f"the mesh '{name}' has more than {MOST_TRIANGLES:,} faces: simplify it")
     try:
         vertices, faces = reader(content, path)
     except InputError:
@@ -53,6 +57,8 @@ def read_triangles(path: Path) -> Triangles:
         why = next((words for kind, words in known.items() if isinstance(error, kind)), str(error))
         why = " ".join(why.split())[:200] or type(error).__name__
         raise InputError(f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY") from None
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputError(f"cannot read the mesh '{name}': its corners have no three coordinates")
     if not len(vertices) or not len(faces):
         raise InputError(f"the mesh '{name}' is empty: it holds no triangles")
     if len(faces) > MOST_TRIANGLES:
@@ -68,23 +74,28 @@ def quiet() -> None:
 
 
 def _obj(content: bytes, path: Path) -> Triangles:
-    return _by_trimesh(ascii_text(content), "obj")
+    text = ascii_text(content)
+    if _CORNER_0.search(text):
+        raise InputError(f"cannot read the mesh '{path.name}': a face names corner 0, but they count from 1")
+    return _by_trimesh(text, "obj")
 
 
 def _ply(content: bytes, path: Path) -> Triangles:
     end = content.find(b"end_header", 0, 100_000)
     if not content.startswith(b"ply") or end < 0:
         raise InputError(f"cannot read the mesh '{path.name}': it has no header of a PLY file")
-    header = content[:end]
-    claimed = 0
-    for element, count in _PLY_COUNT.findall(header.replace(b"\r", b"")):
+    header, body = content[:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n"), content[end:]
+    header = _PLY_REMARK.sub(b"", header)
+    claimed, rows = 0, 0
+    for element, count in _PLY_COUNT.findall(header):
         if not count.isdigit() or len(count) > 12:
             raise InputError(f"cannot read the mesh '{path.name}': {count[:20]!r} is no number of elements")
         claimed += int(count) * _ply_row(header, element)
-    if claimed > len(content):
-        raise InputError(f"cannot read the mesh '{path.name}': it is cut off, its header tells of more than it holds")
+        rows += int(count)
     text = b"format ascii" in header
-    return _by_trimesh(ascii_text(content) if text else content, "ply")
+    if claimed > len(body) or (text and rows > len(body.splitlines()) - 1):
+        raise InputError(f"cannot read the mesh '{path.name}': it is cut off, its header tells of more than it holds")
+    return _by_trimesh(header + (ascii_text(body) if text else body), "ply")
 
 
 def _ply_row(header: bytes, element: bytes) -> int:
@@ -158,11 +169,12 @@ def check_gltf(content: bytes, name: str) -> None:
     try:
         document = json.loads(text)
         counts = [accessor["count"] for accessor in document.get("accessors", [])]
-        total = sum(counts)
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        total = sum(max(0, int(count)) for count in counts)
+        whole = all(isinstance(count, int) and count >= 0 for count in counts)
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise InputError(f"cannot read the mesh '{name}': it is no glTF file") from None
-    if not isinstance(total, int) or total > 10 * MOST_TRIANGLES:
-        raise InputError(f"cannot read the mesh '{name}': it claims {total:.3g} numbers")
+    if not whole or total > 10 * MOST_TRIANGLES:
+        raise InputError(f"cannot read the mesh '{name}': it claims too many numbers, or less than none")
 
 
 class Beside:
@@ -199,7 +211,8 @@ def ascii_text(content: bytes) -> bytes:
     """Text with only ASCII in it: names and comments in any encoding lose their other letters, numbers nothing."""
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         content = content.decode("utf-16", errors="replace").encode("utf-8")
-    content = content.removeprefix(b"\xef\xbb\xbf").replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\\\n", b" ")
     return content.translate(_ASCII)
 
 

@@ -84,7 +84,7 @@ def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
             continue
         with os.scandir(folder) as entries:
             for _, entry in zip(range(_ENTRIES), entries, strict=False):
-                if entry.name.lower().endswith(SUFFIXES):
+                if entry.name.lower().endswith(SUFFIXES) and entry.is_file():
                     found.add(str(path.parent / entry.name))
     return found
 

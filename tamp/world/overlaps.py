@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import islice
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from tamp.world.scene import Body, Box, Cylinder, Part, Scene, Sphere
 
 TOLERANCE = 0.001
 """Metres that two bodies may lie in each other at the start, so that touching is no mistake."""
+
+_ENOUGH = 20
 
 
 @dataclass(frozen=True)
@@ -29,9 +31,10 @@ def check_overlaps(problem: LoadedProblem) -> None:
     """Refuse a problem in which bodies overlap by more than 1 mm at the start.
 
     Raises:
-        InputError: Two bodies overlap; the deepest pair is named, at the line of the later one.
+        InputError: Two bodies overlap; the deepest of the first pairs is named, at the line of the later one.
     """
-    deepest = max(find_overlaps(problem.scene), key=lambda overlap: overlap.depth, default=None)
+    found = islice(find_overlaps(problem.scene), _ENOUGH)
+    deepest = max(found, key=lambda overlap: overlap.depth, default=None)
     if deepest is None:
         return
     first, second = deepest.first, deepest.second
@@ -47,14 +50,16 @@ def find_overlaps(scene: Scene) -> Iterator[Overlap]:
 
     The depth is the least distance by which a convex part must move to leave another (FCL on the exact shapes).
     """
-    limits = {name: bounds(body.parts, body.pose) for name, body in scene.bodies.items()}
-    for first, second in combinations(scene.bodies.values(), 2):
-        (low, high), (other_low, other_high) = limits[first.name], limits[second.name]
-        if np.any(low > other_high - TOLERANCE) or np.any(other_low > high - TOLERANCE):
-            continue
-        depth = _depth(first, second)
-        if depth > TOLERANCE:
-            yield Overlap(first.name, second.name, depth)
+    bodies = list(scene.bodies.values())
+    limits = [bounds(body.parts, body.pose) for body in bodies]
+    lows, highs = (np.array([corners[end] for corners in limits]).reshape(-1, 3) for end in (0, 1))
+    for index, body in enumerate(bodies):
+        later = slice(index + 1, None)
+        near = np.all((lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE), axis=1)
+        for other in np.flatnonzero(near) + index + 1:
+            depth = _depth(body, bodies[other])
+            if depth > TOLERANCE:
+                yield Overlap(body.name, bodies[other].name, depth)
 
 
 def _depth(first: Body, second: Body) -> float:

@@ -18,6 +18,10 @@ from tamp.world.yaml_nodes import Node
 FLOOR = "floor"
 """What `on:` calls the room's floor, at z = 0; it is no surface of the scene."""
 
+FARTHEST = 1e5
+"""Metres from the world's origin: farther out numbers lose the tenths of a millimetre that contacts need."""
+
+_HIGHEST_PILE = 200
 _SNAP = 0.002
 _UPRIGHT = math.cos(math.radians(1.0))
 
@@ -85,10 +89,14 @@ class _Placing:
         if name in above:
             circle = " on ".join((*above[above.index(name) :], name))
             raise draft.entries["on"].error(f"these stand on each other in a circle: {circle}")
+        if len(above) > _HIGHEST_PILE:
+            raise draft.node.error(f"it carries more than {_HIGHEST_PILE} bodies, one on the other")
         if "on" in draft.entries:
             self.placed[name] = self.stood(draft, (*above, name))
         else:
             self.placed[name] = self.posed(draft)
+        if max(map(abs, self.placed[name].pose.position)) > FARTHEST:
+            raise draft.node.error(f"it is farther than {FARTHEST:g} m from the world's origin")
         self.check_level(self.placed[name], draft.node)
 
     def posed(self, draft: Draft) -> Body:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,6 +16,17 @@ from tamp.world.xml_file import read_xml
 Scale = tuple[float, float, float]
 Colour = tuple[float, float, float, float]
 KNOWN = ("box", "cylinder", "sphere", "capsule", "mesh")
+
+
+MOST_ELEMENTS = 2000
+"""Collision, or visual, elements of one body."""
+
+FARTHEST = 1e6
+"""Metres, or radians: larger numbers are mistakes, and lose the millimetres."""
+
+
+class UnknownGeometry(InputError):
+    """A geometry that URDF does not have, such as those of one simulator."""
 
 
 @dataclass(frozen=True)
@@ -51,22 +63,26 @@ def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
         InputError: Not XML, or a geometry that is unknown, not finite or not positive.
     """
     root = read_xml(path)
-    return {link.get("name", ""): elements(path, root, link, "visual") for link in root.findall("link")}
+    colours = named_colours(root)
+    return {link.get("name", ""): elements(path, link, "visual", colours) for link in root.findall("link")}
 
 
 def elements(
-    path: Path, root: ElementTree.Element, link: ElementTree.Element, kind: str
-) -> tuple[Element, ...]:  # fmt: skip
-    """The `collision` or `visual` elements of a link that have a geometry.
+    path: Path, link: ElementTree.Element, kind: str, colours: Mapping[str, Colour] | None = None
+) -> tuple[Element, ...]:
+    """The `collision` or `visual` elements of a link that have a geometry; `colours`: of the materials by name.
 
     Raises:
-        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist.
+        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist; too many.
     """
     found: list[Element] = []
-    for element in link.findall(kind):
-        geometry = element.find("geometry")
+    for element in link.findall(kind)[: MOST_ELEMENTS + 1]:
+        geometry, material = element.find("geometry"), element.find("material")
         if geometry is not None:
-            found.append(_element(path, element, geometry, material_colour(root, element.find("material"))))
+            colour = None if material is None else _rgba(material) or (colours or {}).get(material.get("name", ""))
+            found.append(_element(path, element, geometry, colour))
+    if len(found) > MOST_ELEMENTS:
+        raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} {kind} elements")
     return tuple(found)
 
 
@@ -81,23 +97,26 @@ def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
     return Pose.from_xyz_rpy(_vector(path, origin, "xyz", zero), _vector(path, origin, "rpy", zero))
 
 
-def material_colour(root: ElementTree.Element, material: ElementTree.Element | None) -> Colour | None:
-    """The colour of a <material>: its own, or that of the file's material, or of an earlier visual's, of its name."""
-    if material is None:
+def named_colours(root: ElementTree.Element) -> dict[str, Colour]:
+    """The colours of a file's materials by name: the file's own first, then those of its links' visual elements."""
+    found: dict[str, Colour] = {}
+    for material in (*root.findall("material"), *root.findall("link/visual/material")):
+        colour = _rgba(material)
+        if colour is not None:
+            found.setdefault(material.get("name", ""), colour)
+    return found
+
+
+def _rgba(material: ElementTree.Element) -> Colour | None:
+    colour = material.find("color")
+    words = colour.get("rgba", "").split() if colour is not None else []
+    if len(words) != 4:
         return None
-    name = material.get("name")
-    named = [other for other in root.findall("material") if other.get("name") == name]
-    earlier = [other for other in root.findall("link/visual/material") if name and other.get("name") == name]
-    for candidate in (material, *named, *earlier):
-        colour = candidate.find("color")
-        words = colour.get("rgba", "").split() if colour is not None else []
-        if len(words) == 4:
-            try:
-                r, g, b, a = (min(1.0, max(0.0, float(word))) for word in words)
-            except ValueError:
-                return None
-            return (r, g, b, a)
-    return None
+    try:
+        r, g, b, a = (min(1.0, max(0.0, float(word))) for word in words)
+    except ValueError:
+        return None
+    return (r, g, b, a)
 
 
 def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None) -> Element:
@@ -119,8 +138,8 @@ def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Ele
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
     if shape.tag == "plane":
-        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
-    raise InputError(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
+        raise UnknownGeometry(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
+    raise UnknownGeometry(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
@@ -189,4 +208,6 @@ def _numbers(
         raise InputError(f"{where}: expected {count} numbers, found '{shown}'")
     if not all(math.isfinite(value) for value in values) or (positive and min(values) <= 0):
         raise InputError(f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite")
+    if max(map(abs, values), default=0.0) > FARTHEST:
+        raise InputError(f"{where}: '{shown}' is beyond {FARTHEST:g}")
     return values

@@ -9,11 +9,8 @@ from xml.etree import ElementTree
 
 from tamp.errors import InputError
 from tamp.world.pose import Pose
-from tamp.world.urdf_link import Colour, Element, elements, material_colour, origin_pose
+from tamp.world.urdf_link import MOST_ELEMENTS, Colour, Element, UnknownGeometry, elements, named_colours, origin_pose
 from tamp.world.xml_file import read_xml
-
-MOST_ELEMENTS = 2000
-"""Collision elements of one body."""
 
 LARGEST_MASS = 1e6
 """Kilograms."""
@@ -60,12 +57,14 @@ def read_object(path: Path) -> UrdfObject:
         what = "a soft body (<deformable>)" if root.find("deformable") is not None else "no link"
         raise InputError(f"'{path.name}' has {what}: an object has one link, or several that joints hold together")
     poses, warnings = _link_poses(path, root, links)
-    collisions: list[Element] = []
-    for name, pose in poses.items():
-        collisions += [_moved(pose, element) for element in elements(path, root, links[name], "collision")]
-        if len(collisions) > MOST_ELEMENTS:
-            raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} collision elements")
     visuals, reason = _visuals(path, root, links, poses)
+    try:
+        collisions = _collisions(path, links, poses)
+    except UnknownGeometry as error:
+        if not visuals:
+            raise
+        collisions = []
+        warnings.append(error.message)
     if not collisions:
         if not visuals:
             said = f": {reason}" if reason else ""
@@ -74,13 +73,11 @@ def read_object(path: Path) -> UrdfObject:
         warnings.append(f"'{path.name}' has no collision geometry: what it shows is taken for it")
     elif reason:
         warnings.append(f"{reason}: the collision shape is drawn")
-    materials = (link.find("visual/material") for link in links.values())
-    colours = (material_colour(root, material) for material in materials if material is not None)
     mass, centre = _inertia(path, links, poses)
     return UrdfObject(
         tuple(collisions),
         visuals,
-        next((colour for colour in colours if colour is not None), None),
+        next((one.colour for one in visuals if one.colour is not None), next(iter(named_colours(root).values()), None)),
         mass,
         centre,
         _friction(path, links, poses),
@@ -131,18 +128,31 @@ def _link_poses(
     return {name: poses[name] for name in links}, warnings
 
 
+def _collisions(path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]) -> list[Element]:
+    """The collision elements of all links in the root's frame."""
+    found: list[Element] = []
+    for name, pose in poses.items():
+        found += [_moved(pose, element) for element in elements(path, links[name], "collision")]
+        if len(found) > MOST_ELEMENTS:
+            raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} collision elements")
+    return found
+
+
 def _visuals(
     path: Path, root: ElementTree.Element, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
 ) -> tuple[tuple[Element, ...], str]:
     """The visual elements of all links, or none and the reason why they cannot be drawn."""
+    colours = named_colours(root)
     try:
         found = [
             _moved(pose, element)
             for name, pose in poses.items()
-            for element in elements(path, root, links[name], "visual")
+            for element in elements(path, links[name], "visual", colours)
         ]
     except InputError as error:
         return (), error.message
+    if len(found) > MOST_ELEMENTS:
+        return (), f"'{path.name}' has more than {MOST_ELEMENTS} visual elements"
     for element in found:
         if element.mesh is not None and element.mesh.stat().st_size == 0:
             return (), f"'{path.name}' shows the mesh '{element.mesh.name}', which is empty"

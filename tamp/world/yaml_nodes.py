@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
-import re
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
 
 from tamp.errors import InputError
+from tamp.world.passage import Passage
 
 # libyaml's parser is ten times faster; it is missing only where PyYAML was built without it.
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TAG = "tag:yaml.org,2002:"
-_ANGLE = re.compile(r"^(?P<number>.*?)\s*(?P<unit>deg|rad|°)?$", re.DOTALL)
+_UNITS = ("deg", "rad", "°")
 
 MAX_BYTES = 1_000_000
 """Larger files are refused: they are something else, and would take long to say so."""
@@ -24,20 +23,12 @@ MAX_BYTES = 1_000_000
 MAX_DEPTH = 100
 """Deeper nesting is refused."""
 
+MAX_MERGES = 1000
+"""Mappings that one may take in by `<<`, also those that these take in."""
 
-@dataclass(frozen=True)
-class Passage:
-    """A piece of PDDL inside a YAML file, as it stands there, line breaks included.
-
-    Attributes:
-        text: The PDDL.
-        line: 1-based line in the file of its first character.
-        column: 1-based column of its first character.
-    """
-
-    text: str
-    line: int
-    column: int
+_LONGEST = 500
+_SHOWN = 60
+"""Characters of a wrong word that are told."""
 
 
 class Node:
@@ -65,7 +56,8 @@ class Node:
     ) -> InputError:
         """An error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
-        message = " ".join(message.split())  # a word of the file may hold line breaks
+        message = " ".join(message[:_LONGEST].split())  # a word of the file may hold line breaks, or a megabyte
+        found = None if found is None else found[:_LONGEST]
         return InputError(
             where + message, file=self._file, line=self.line, found=found, choices=choices, remedy=remedy
         )  # fmt: skip
@@ -83,16 +75,25 @@ class Node:
         if not isinstance(self._node, yaml.MappingNode):
             wanted = f" with {', '.join(allowed)}" if allowed else ""
             raise self.error(f"expected a mapping{wanted}, found {self._described()}")
-        entries = self._entries(self._node)
+        entries = self._entries(self._node, {}, 0)
         for key, entry in entries.items():
             if allowed is not None and key not in allowed:
-                raise _at(entry, self.error(f"unknown key '{key}'", found=key, choices=allowed))
+                raise _at(entry, self.error(f"unknown key '{_short(key)}'", found=key, choices=allowed))
         for key in required:
             if key not in entries:
                 raise self.error(f"'{key}' is missing")
         return entries
 
-    def _entries(self, node: yaml.MappingNode) -> dict[str, Node]:
+    def _entries(self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int) -> dict[str, Node]:
+        """The entries of a mapping, with those that it merges; `known`: of the mappings merged before, by identity."""
+        if id(node) in known:
+            found = known[id(node)]
+            if found is None:
+                raise self.error("'<<' merges a mapping into itself")
+            return found
+        if depth > MAX_DEPTH or len(known) > MAX_MERGES:
+            raise self.error(f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep")
+        known[id(node)] = None
         entries: dict[str, Node] = {}
         merged: list[yaml.Node] = []
         for key, value in node.value:
@@ -104,12 +105,16 @@ class Node:
             child = self._child(value, key.value, key.start_mark.line + 1)
             if key.value in entries:
                 first = entries[key.value].line
-                raise _at(child, self.error(f"'{key.value}' stands twice, first in line {first}"))
+                raise _at(child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}"))
             entries[key.value] = child
+        if len(merged) > MAX_MERGES:
+            raise self.error(f"'<<' merges more than {MAX_MERGES} mappings")
         for base in merged:
             if not isinstance(base, yaml.MappingNode):
                 raise self.error("'<<' merges mappings only")
-            entries = {**self._entries(base), **entries}
+            for key, child in self._entries(base, known, depth + 1).items():
+                entries.setdefault(key, child)
+        known[id(node)] = entries
         return entries
 
     def items(self, count: int | None = None) -> list[Node]:
@@ -139,7 +144,7 @@ class Node:
         if not value or self._node.tag == _TAG + "null":
             raise self.error("has no value")
         if choices is not None and value not in choices:
-            raise self.error(f"unknown {kind} '{value}'", found=value, choices=choices)
+            raise self.error(f"unknown {kind} '{_short(value)}'", found=value, choices=choices)
         return value
 
     def number(self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf) -> float:
@@ -150,9 +155,9 @@ class Node:
         """
         return self._checked(self.text(), positive, low, high)
 
-    def integer(self, *, low: int) -> int:
-        """A whole number of at least `low`."""
-        value = self.number(low=low)
+    def integer(self, *, low: int, high: float = math.inf) -> int:
+        """A whole number in [low, high]."""
+        value = self.number(low=low, high=high)
         if value != int(value):
             raise self.error(f"{value:g} is not a whole number")
         return int(value)
@@ -167,8 +172,9 @@ class Node:
         Raises:
             InputError: Not an angle, or a plain number beyond a full turn, which was surely meant in degrees.
         """
-        match = _ANGLE.match(self.text())
-        number, unit = (match["number"], match["unit"]) if match else (self.text(), None)
+        text = self.text()
+        unit = next((unit for unit in _UNITS if text.endswith(unit)), None)
+        number = text.removesuffix(unit).rstrip() if unit else text
         value = self._checked(number, False, -math.inf, math.inf)
         if unit in ("deg", "°"):
             return math.radians(value)
@@ -180,7 +186,7 @@ class Node:
         """True or false."""
         value = self.text().lower()
         if value not in ("true", "yes", "false", "no"):
-            raise self.error(f"'{value}' is neither true nor false")
+            raise self.error(f"'{_short(value)}' is neither true nor false")
         return value in ("true", "yes")
 
     def is_list(self) -> bool:
@@ -210,9 +216,9 @@ class Node:
         try:
             value = float(word.removeprefix(".") if word.lower() in (".nan", ".inf") else word)
         except ValueError:
-            raise self.error(f"'{word}' is not a number") from None
+            raise self.error(f"'{_short(word)}' is not a number") from None
         if not math.isfinite(value):
-            raise self.error(f"{word} is not a finite number")
+            raise self.error(f"{_short(word)} is not a finite number")
         if positive and value <= 0:
             raise self.error(f"must be positive, found {value:g}")
         if not low <= value <= high:
@@ -221,6 +227,7 @@ class Node:
         return value
 
     def _child(self, node: yaml.Node, key: str, line: int) -> Node:
+        key = _short(key)
         name = key if not self.name else f"{self.name}{key}" if key.startswith("[") else f"{self.name}.{key}"
         return Node(node, self._file, self._source, name, line)
 
@@ -230,7 +237,7 @@ class Node:
         if isinstance(self._node, yaml.MappingNode):
             return "a mapping"
         word = str(self._node.value)
-        return f"'{word[:60]}{'...' if len(word) > 60 else ''}'" if word else "nothing"
+        return f"'{_short(word)}'" if word else "nothing"
 
 
 def read_yaml(file: Path) -> Node:
@@ -275,6 +282,11 @@ def _check_depth(text: str, file: Path) -> None:
                 raise InputError(f"nested more than {MAX_DEPTH} deep", file=file, line=line, column=column)
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
+
+
+def _short(word: str) -> str:
+    """A word as it is told: not the megabyte that it may be."""
+    return word if len(word) <= _SHOWN else f"{word[:_SHOWN]}..."
 
 
 def _indent(line: str) -> int:

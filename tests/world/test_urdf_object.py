@@ -160,6 +160,15 @@ def test_only_visuals_is_said(tmp_path: Path) -> None:
         load_mesh(written(tmp_path, text.replace('<box size="0.06 0.08 0.14"/>', '<mesh filename="gone.obj"/>')))
 
 
+def test_a_simulators_own_geometry_is_replaced_by_what_is_shown(tmp_path: Path) -> None:
+    shown = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+    text = BRICK.format(shown).replace('<box size="0.06 0.08 0.14"/>', '<cdf filename="x.cdf"/>')
+    mesh = load_mesh(written(tmp_path, text))
+    assert mesh.parts == (Part(Box((0.1, 0.1, 0.1))),) and "<cdf>" in mesh.warnings[0]
+    with pytest.raises(InputError, match="the geometry <cdf>"):
+        load_mesh(written(tmp_path, text.replace(shown, "")))
+
+
 def test_a_capsule_is_a_cylinder_with_balls(tmp_path: Path) -> None:
     text = BRICK.format("").replace('<box size="0.06 0.08 0.14"/>', '<capsule radius="0.03" length="0.1"/>')
     mesh = load_mesh(written(tmp_path, text))
