@@ -10,23 +10,33 @@ from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
 from tamp.streams.drawing import draw
+from tamp.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.streams.grasps import sample_grasps
 from tamp.streams.reach import within_reach
 from tamp.streams.resting import Face, fits, rest
 from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
 from tamp.world.pose import Pose
-from tamp.world.scene import CONTACT_GAP, Box, Cavity, Hull, Part, Surface
+from tamp.world.robot import Robot
+from tamp.world.scene import CONTACT_GAP, Body, Box, Cavity, Hull, Part, Surface
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
     """Grasps with which the robot can carry the body at home without touching it."""
-    found = False
-    for grasp in sample_grasps(context.scene.bodies[body], context.robot, call.rng):
-        found = True
+
+    def refused(grasp: Grasp) -> Rejection | None:
         carried = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
         hit = carried.hits(context.conf(_middle(context), context.home), padding=0.002)
-        yield grasp if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
+        return None if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
+
+    shape, found = context.scene.bodies[body], False
+    too_heavy = _too_heavy(shape, context.robot)
+    if too_heavy is not None:
+        yield too_heavy
+        return
+    for grasp in sample_grasps(shape, context.robot, call.rng, (context.carrying_up,), refused):
+        found = True
+        yield grasp
     if found:
         yield Rejection("no further grasp was found", given_up=True)
     else:
@@ -34,6 +44,17 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
         simple = len(parts) == 1 and not isinstance(parts[0].shape, Hull)
         opening = context.robot.opening * 100
         yield Rejection(f"no grasp: every width is over the hand's {opening:.0f} cm", given_up=not simple)
+
+
+def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
+    """Why a body cannot be lifted at all, by the arm's payload or by what the fingers' friction holds."""
+    if body.mass > robot.payload:
+        return Rejection(f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg")
+    holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY
+    if body.mass > holds:
+        what = f"{body.name} weighs {body.mass:g} kg and would slip: with its friction of {body.friction:g} the fingers"
+        return Rejection(f"{what}, at {robot.force:g} N, hold {holds:.2g} kg", given_up=True)
+    return None
 
 
 def sample_on(context: Context, body: str, surface: str, call: Call) -> Iterator[Pose | Rejection]:
