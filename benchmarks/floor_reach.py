@@ -20,6 +20,7 @@ from tamp.problem import load_problem
 from tamp.simulation.physics import World
 from tamp.streams.context import Context
 from tamp.streams.grasps import sample_grasps
+from tamp.streams.values import Grasp
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
 
@@ -37,7 +38,8 @@ def measure(context: Context, name: str, pose: Pose, rng: np.random.Generator) -
     """How often the arm reaches a body at a pose, and how often it is free of collisions then."""
     body = replace(context.scene.bodies[name], pose=pose)
     pairs = reached = free = 0
-    for grasp in islice(sample_grasps(body, context.robot, rng), GRASPS):
+    grasps = (grasp for grasp in sample_grasps(body, context.robot, rng) if isinstance(grasp, Grasp))
+    for grasp in islice(grasps, GRASPS):
         T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
         for base in context.reachability.sample(T_world_tool, rng, PLACES):
             T_base_tool = Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).inverse().matrix @ T_world_tool

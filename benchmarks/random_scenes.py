@@ -89,10 +89,10 @@ def random_scene(seed: int, hulls: bool = True) -> str:
     """A problem file's text."""
     rng = np.random.default_rng(seed)
     lines: list[str] = []
-    places = _furniture(lines, rng)
-    objects = _objects(lines, places, rng, hulls)
+    places = furniture(lines, rng)
+    things = objects(lines, places, rng, hulls)
     goals: list[str] = []
-    for name, place, height in objects[: int(rng.integers(1, len(objects) + 1))] if objects else ():
+    for name, place, height in things[: int(rng.integers(1, len(things) + 1))] if things else ():
         others = [p for p in places if p is not place and p.height > height + 0.1 and min(p.size) > 0.12]
         if others:
             there = others[int(rng.integers(len(others)))]
@@ -105,7 +105,7 @@ def random_scene(seed: int, hulls: bool = True) -> str:
     )
 
 
-def _furniture(lines: list[str], rng: np.random.Generator) -> list[Place]:
+def furniture(lines: list[str], rng: np.random.Generator) -> list[Place]:
     """Two to four pieces around the robot, their fronts towards it; the first is a table."""
     places: list[Place] = []
     taken: list[tuple[float, float, float]] = []
@@ -155,12 +155,12 @@ def _furniture(lines: list[str], rng: np.random.Generator) -> list[Place]:
     return places
 
 
-def _objects(
+def objects(
     lines: list[str], places: list[Place], rng: np.random.Generator, hulls: bool
 ) -> list[tuple[str, Place, float]]:
     """One to six things on tables and tops: name, where it stands, its height."""
     tops = [place for place in places if place.relation == "on" and place.height == math.inf]
-    objects: list[tuple[str, Place, float]] = []
+    found: list[tuple[str, Place, float]] = []
     for number in range(int(rng.integers(1, 7))):
         place = tops[int(rng.integers(len(tops)))]
         turned = f"yaw: {rng.uniform(-180, 180):.0f} deg"
@@ -186,8 +186,8 @@ def _objects(
             f"  thing{number}: {{{shape}, on: {place.name}, at: [{spot[0]:.3f}, {spot[1]:.3f}], {turned}, "
             f"mass: {rng.uniform(0.1, 0.6):.2f}}}"
         )
-        objects.append((f"thing{number}", place, height))
-    return objects
+        found.append((f"thing{number}", place, height))
+    return found
 
 
 def _random_urdf(rng: np.random.Generator) -> tuple[str, float, float, str]:

@@ -81,6 +81,11 @@ class Context:
         arm = self.scene.robot.arm
         return np.array(self.robot.home if arm is None else arm)
 
+    @cached_property
+    def carrying_up(self) -> Array:
+        """The direction of up in the tool's frame while the arm is at home, shape (3,)."""
+        return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
+
     def resting(self, body: str) -> Resting:
         """The ways in which a body can rest."""
         return resting_of(self.scene.bodies[body])

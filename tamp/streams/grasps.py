@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from tamp.streams.hand_fit import CONE, WIDEST, HandFit
+from tamp.rejection import Rejection
+from tamp.streams.firmness import FIRM, strain
+from tamp.streams.hand_fit import CONE, ROOMY, Closed, HandFit
 from tamp.streams.solid import Solid
 from tamp.streams.values import Grasp
 from tamp.world.pose import Array, Pose
@@ -41,23 +43,90 @@ UNDER = 0.1
 BATCH = 64
 """Surface points drawn at once."""
 
+TOGETHER = 12
+"""Random grasps that are drawn together, and given with the least strained first."""
+
+LOOKED_AT = 150
+"""Random grasps looked at for those, at most: most may be of no use."""
+
 PATIENCE = 4000
 """Random proposals in a row that may fail before the stream ends: the body cannot be grasped, or in no new way."""
 
 
-def sample_grasps(body: Body, robot: Robot, rng: np.random.Generator) -> Iterator[Grasp]:
+def _welcome(_: Grasp) -> None:
+    """Refuses none."""
+
+
+def sample_grasps(
+    body: Body,
+    robot: Robot,
+    rng: np.random.Generator,
+    ups: Sequence[Array] = (),
+    refused: Callable[[Grasp], Rejection | None] = _welcome,
+) -> Iterator[Grasp | Rejection]:
     """Grasps of a body: first the canonical ones in random order, then random antipodal ones without end.
 
     Canonical are grasps from above at the middle and from the sides at half height, from the sides near the top, then
     slanted ones, and last those with a finger under the body; above and side are meant with the body as it stands at
     the start. Each was closed exactly: the open hand is free of the body at the grasp and while it draws back, and both
-    pads meet the body within the friction cone. Ends only when nothing (new) is found any more: a body that is too wide
-    everywhere gives none.
+    pads meet the body within the friction cone. Those in which the body's weight would strain the grasp, or that leave
+    the open hand little room, come after those, with the first random ones; random grasps come a few at a time, the
+    least strained first. Ends only when nothing (new) is found any more: a body that is too wide everywhere gives none.
+
+    Args:
+        body: Its mass, friction and centre of mass weigh the grasps.
+        robot: Its hand.
+        rng: The order and the random grasps.
+        ups: Directions of up in the tool's frame in which it carries, beside that in which it grasps, (3,) each.
+        refused: Why a grasp is of no use, whose place another one takes.
     """
     solid = Solid(body)
     fit = HandFit(body, solid, robot)
     up = body.pose.rotation[2]
-    axes = _closing_axes(body, solid, up, rng)
+
+    def strained(closed: Closed) -> float:
+        """How much the grasp is strained; one without room beside the body as much as the limit at least."""
+        held = closed.T_body_tool[:3, :3].T @ up
+        much = strain(
+            body, solid.centre, closed.T_body_tool, closed.opening, closed.patches, robot.force, (held, *ups)
+        )  # fmt: skip
+        return much + FIRM if robot.opening - closed.opening < ROOMY else much
+
+    waiting: list[tuple[float, Grasp]] = []
+    for closed in _canonical(body, solid, fit, up, rng):
+        grasp, much = _grasp(body, closed), strained(closed)
+        why = refused(grasp)
+        if why is not None:
+            yield why
+        elif much <= FIRM:
+            yield grasp
+        else:
+            waiting.append((much, grasp))
+    failures = 0
+    proposals = _antipodal(solid, up, fit.widest, rng)
+    while failures < PATIENCE:
+        wanted, looked = len(waiting) + TOGETHER, 0
+        while len(waiting) < wanted and failures < PATIENCE and looked < LOOKED_AT:
+            proposal = next(proposals)
+            closed = None if proposal is None else fit.close(proposal)
+            failures = failures + 1 if closed is None else 0
+            if closed is None:
+                continue
+            looked += 1
+            grasp = _grasp(body, closed)
+            why = refused(grasp)
+            if why is not None:
+                yield why
+            else:
+                waiting.append((strained(closed), grasp))
+        for _, grasp in sorted(waiting, key=lambda pair: pair[0]):
+            yield grasp
+        waiting = []
+
+
+def _canonical(body: Body, solid: Solid, fit: HandFit, up: Array, rng: np.random.Generator) -> Iterator[Closed]:
+    """Those that an engineer would try first."""
+    axes = _closing_axes(body, solid, up, fit.widest, rng)
     straight = _straight(axes, up)
     level = [pair for pair in straight if abs(pair[0] @ up) < LEVEL_CLOSING]
     rest = [pair for pair in straight if abs(pair[0] @ up) >= LEVEL_CLOSING]
@@ -68,19 +137,11 @@ def sample_grasps(body: Body, robot: Robot, rng: np.random.Generator) -> Iterato
             closing, approach = directions[index]
             closed = fit.close(_at_middle(solid, closing, approach, up, high))
             if closed is not None:
-                yield _grasp(body, *closed)
-    failures = 0
-    for proposal in _antipodal(solid, up, rng):
-        closed = None if proposal is None else fit.close(proposal)
-        failures = failures + 1 if closed is None else 0
-        if closed is not None:
-            yield _grasp(body, *closed)
-        if failures >= PATIENCE:
-            return
+                yield closed
 
 
-def _grasp(body: Body, T_body_tool: Array, opening: float) -> Grasp:
-    return Grasp(body.name, Pose.from_matrix(T_body_tool).inverse(), float(opening))
+def _grasp(body: Body, closed: Closed) -> Grasp:
+    return Grasp(body.name, Pose.from_matrix(closed.T_body_tool).inverse(), float(closed.opening))
 
 
 def _straight(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
@@ -94,14 +155,14 @@ def _slanted(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
     return [(axis, a) for axis in level for a in _approaches(axis, up, STEP) if -0.9 < a @ up < -0.4]
 
 
-def _closing_axes(body: Body, solid: Solid, up: Array, rng: np.random.Generator) -> list[Array]:
+def _closing_axes(body: Body, solid: Solid, up: Array, widest: float, rng: np.random.Generator) -> list[Array]:
     """Directions (3,) in which the fingers may close, each with both signs.
 
     A box's edges; for other bodies the horizontal directions in which they are narrowest, and some all around.
     """
     shape, R = body.parts[0].shape, body.parts[0].pose.rotation
     if len(body.parts) == 1 and isinstance(shape, Box):
-        axes = [R[:, i] for i in range(3) if shape.size[i] <= WIDEST]
+        axes = [R[:, i] for i in range(3) if shape.size[i] <= widest]
     else:
         around = R[:, 2] if isinstance(shape, Cylinder) else up
         level = np.cross(around, up)
@@ -155,7 +216,7 @@ def _deep(solid: Solid, point: Array, approach: Array, depth: float) -> Array:
     return point + (start + min(depth, thickness - TIP - 0.003) - point @ approach) * approach
 
 
-def _antipodal(solid: Solid, up: Array, rng: np.random.Generator) -> Iterator[Array | None]:
+def _antipodal(solid: Solid, up: Array, widest: float, rng: np.random.Generator) -> Iterator[Array | None]:
     """Random tool poses whose closing line meets the surface squarely on both sides; None for a draw without."""
     while True:
         points, normals = solid.surface_points(rng, BATCH)
@@ -164,7 +225,7 @@ def _antipodal(solid: Solid, up: Array, rng: np.random.Generator) -> Iterator[Ar
         closings /= np.linalg.norm(closings, axis=1, keepdims=True)
         _, ends, _, planes = solid.crossings(points, closings)
         square = np.einsum("ipj,ij->ip", solid.normals(planes), closings) >= math.cos(CONE)
-        narrow = np.any((ends > 0.002) & (ends <= WIDEST) & square, axis=1)
+        narrow = np.any((ends > 0.002) & (ends <= widest) & square, axis=1)
         narrow &= (np.abs(closings @ up) < STEEP) | (rng.random(BATCH) < UNDER)
         # Far from under or over the centre of mass the body would turn in the hand.
         aside = solid.centre - points
@@ -172,14 +233,17 @@ def _antipodal(solid: Solid, up: Array, rng: np.random.Generator) -> Iterator[Ar
             aside = aside - np.einsum("ij,ij->i", aside, along)[:, None] * along
         near = rng.random(BATCH) < np.exp(-np.sum(aside**2, axis=1) / 0.03**2) + 0.1
         yield from (
-            _around(solid, points[i], closings[i], up, rng) if narrow[i] and near[i] else None for i in range(BATCH)
+            _around(solid, points[i], closings[i], up, widest, rng) if narrow[i] and near[i] else None
+            for i in range(BATCH)
         )
 
 
-def _around(solid: Solid, point: Array, closing: Array, up: Array, rng: np.random.Generator) -> Array | None:
+def _around(
+    solid: Solid, point: Array, closing: Array, up: Array, widest: float, rng: np.random.Generator
+) -> Array | None:
     """A tool pose with a random approach about the line through a surface point."""
     width = solid.solid_at(point, closing)
-    if width is None or width.start < -0.002 or width.end > WIDEST:
+    if width is None or width.start < -0.002 or width.end > widest:
         return None
     if -(width.start_normal @ closing) < math.cos(CONE) or width.end_normal @ closing < math.cos(CONE):
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,8 +16,11 @@ from tamp.world.scene import Body
 CONE = math.atan(0.4)
 """Half angle of the friction cone at a contact, radians."""
 
-WIDEST = 0.075
-"""The largest width that is grasped, metres: the open hand needs some room on both sides."""
+CLEARANCE = 0.001
+"""Metres that the open hand needs beside what it grasps, on both sides together."""
+
+ROOMY = 0.005
+"""A grasp that leaves the open hand less is weak: where the arm is not exact, a finger may push the body away."""
 
 SLACK = 5e-4
 """Metres by which the opening exceeds the body's width, so that holding is not a collision."""
@@ -31,6 +35,17 @@ PAD = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0,
 """Sample points of a pad (9, 3) around the tool's origin: it is 17 mm wide and high."""
 
 
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """A closed hand: T_body_tool (4, 4) centred between the contacts, the opening while holding, metres, and where each
+    pad touches, points (k, 3) in the tool's frame.
+    """
+
+    T_body_tool: Array
+    opening: float
+    patches: tuple[Array, Array]
+
+
 class HandFit:
     """The hand and one body, as FCL objects in the body's frame."""
 
@@ -42,8 +57,13 @@ class HandFit:
         self._hand, self._left, self._right = FclBody(hand.parts), FclBody(left.parts), FclBody(right.parts)
         self._T_tool_hand = robot.T_hand_tool.inverse().matrix
 
-    def close(self, T_body_tool: Array) -> tuple[Array, float] | None:
-        """Close the hand at a pose (4, 4): the tool's pose centred between the contacts, and the opening while holding.
+    @property
+    def widest(self) -> float:
+        """The largest width that is grasped, metres."""
+        return self._robot.opening - CLEARANCE
+
+    def close(self, T_body_tool: Array) -> Closed | None:
+        """Close the hand at a pose (4, 4).
 
         None when the open hand hits the body there or while drawing back along its axis, when the fingers meet nothing,
         or when the contacts do not oppose each other within the friction cone.
@@ -52,19 +72,20 @@ class HandFit:
         if self._hits(T_body_tool, widest):
             return None
         left, right = (self._first_contact(T_body_tool, finger) for finger in (0, 1))
-        if left is None or right is None or left + right > WIDEST:
+        if left is None or right is None or left + right > self.widest:
             return None
         T = T_body_tool.copy()
         T[:3, 3] += T[:3, 1] * (left - right) / 2
         opening = left + right + SLACK
-        if not self._opposed(T, opening):
+        patches = self._opposed(T, opening)
+        if patches is None:
             return None
         for back in np.arange(0.0, CLEAR_APPROACH + 1e-9, 0.02):
             moved = T.copy()
             moved[:3, 3] -= back * T[:3, 2]
             if self._hits(moved, widest):
                 return None
-        return T, opening
+        return Closed(T, opening, patches)
 
     def _hits(self, T_body_tool: Array, finger: float) -> bool:
         """Whether the hand with both fingers at `finger` metres from the middle touches the body."""
@@ -101,13 +122,13 @@ class HandFit:
                 free = middle
         return free
 
-    def _opposed(self, T_body_tool: Array, opening: float) -> bool:
-        """Whether both pads touch the body, opposite each other and squarely enough not to slip."""
+    def _opposed(self, T_body_tool: Array, opening: float) -> tuple[Array, Array] | None:
+        """Where both pads touch the body, opposite each other and squarely enough not to slip; None where not."""
         closing = T_body_tool[:3, 1]
         origins = PAD @ T_body_tool[:3, :3].T + T_body_tool[:3, 3]
         starts, ends, start_planes, end_planes = self._solid.crossings(origins, closing)
         between = (ends > starts) & (starts < opening / 2) & (ends > -opening / 2)
-        centres = []
+        patches: list[Array] = []
         for side, places, planes in ((1.0, ends, end_planes), (-1.0, -starts, start_planes)):
             reach = np.where(between, places, -np.inf)
             outermost = np.argmax(reach, axis=1)
@@ -116,6 +137,8 @@ class HandFit:
             normals = self._solid.normals(planes[rows, outermost])
             square = touching & (side * normals @ closing > math.cos(CONE))
             if square.sum() < 3:
-                return False
-            centres.append(PAD[square].mean(axis=0))
-        return bool(np.linalg.norm(centres[0] - centres[1]) < 0.005)
+                return None
+            patches.append(PAD[square])
+        if np.linalg.norm(patches[0].mean(axis=0) - patches[1].mean(axis=0)) >= 0.005:
+            return None
+        return patches[0], patches[1]

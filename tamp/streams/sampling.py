@@ -8,26 +8,47 @@ from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
 from tamp.streams.drawing import draw
+from tamp.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.streams.grasps import sample_grasps
 from tamp.streams.refusals import no_grasp, no_room
 from tamp.streams.resting import rest
 from tamp.streams.values import Grasp
 from tamp.world.pose import Pose
-from tamp.world.scene import Cavity, Surface
+from tamp.world.robot import Robot
+from tamp.world.scene import Body, Cavity, Surface
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
     """Grasps with which the robot can carry the body at home without touching it."""
-    found = False
-    for grasp in sample_grasps(context.scene.bodies[body], context.robot, call.rng):
-        found = True
+
+    def refused(grasp: Grasp) -> Rejection | None:
         carried = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
         hit = carried.hits(context.conf(_middle(context), context.home), padding=0.002)
-        yield grasp if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
+        return None if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
+
+    shape, found = context.scene.bodies[body], False
+    too_heavy = _too_heavy(shape, context.robot)
+    if too_heavy is not None:
+        yield too_heavy
+        return
+    for grasp in sample_grasps(shape, context.robot, call.rng, (context.carrying_up,), refused):
+        found = True
+        yield grasp
     if found:
         yield Rejection("no further grasp was found", given_up=True)
     else:
         yield no_grasp(context.scene.bodies[body], context.robot.opening)
+
+
+def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
+    """Why a body cannot be lifted at all, by the arm's payload or by what the fingers' friction holds."""
+    if body.mass > robot.payload:
+        return Rejection(f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg")
+    holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY
+    if body.mass > holds:
+        what = f"{body.name} weighs {body.mass:g} kg and would slip: with its friction of {body.friction:g} the fingers"
+        return Rejection(f"{what}, at {robot.force:g} N, hold {holds:.2g} kg", given_up=True)
+    return None
 
 
 def sample_on(context: Context, body: str, surface: str, call: Call) -> Iterator[Pose | Rejection]:

@@ -41,6 +41,8 @@ class Robot:
         velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second (squared).
         home: The arm's compact carrying configuration, in which the base drives.
         opening: The largest opening of the fingers, metres.
+        force: With which each finger presses, newtons.
+        payload: The most that the arm lifts, kilograms.
         allowed: Pairs of links, each sorted, that are never checked for collision.
         urdf: The arm's and the hand's description.
     """
@@ -60,6 +62,8 @@ class Robot:
     opening: float
     allowed: frozenset[tuple[str, str]]
     urdf: Path
+    force: float = 50.0
+    payload: float = math.inf
 
 
 MARGIN = math.radians(0.5)
@@ -116,6 +120,8 @@ def panda_mobile() -> Robot:
         opening=0.08,
         allowed=frozenset(_pairs(PANDA_ALLOWED)),
         urdf=urdf,
+        force=50.0,  # the hand presses with 70 N for long, 140 N for a moment
+        payload=3.0,
     )
 
 

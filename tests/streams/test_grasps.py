@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tamp.call import Call
+from tamp.clock import Deadline
+from tamp.problem import load_problem
+from tamp.rejection import Rejection
+from tamp.streams.firmness import GRAVITY, strain
 from tamp.streams.grasps import sample_grasps
-from tamp.streams.hand_fit import CONE
+from tamp.streams.hand_fit import CLEARANCE, CONE
+from tamp.streams.sampling import sample_grasp
 from tamp.streams.solid import Solid
 from tamp.streams.values import Grasp
 from tamp.world.fcl_bodies import FclBody, touch
@@ -51,7 +59,8 @@ def robot() -> Robot:
 
 
 def first(robot: Robot, thing: Body, count: int, seed: int = 0) -> list[Grasp]:
-    return list(itertools.islice(sample_grasps(thing, robot, np.random.default_rng(seed)), count))
+    grasps = (one for one in sample_grasps(thing, robot, np.random.default_rng(seed)) if isinstance(one, Grasp))
+    return list(itertools.islice(grasps, count))
 
 
 def hand_hits(robot: Robot, thing: Body, T_body_tool: np.ndarray, opening: float, links: slice) -> bool:
@@ -154,3 +163,61 @@ def test_a_thin_body_on_its_support_is_not_grasped_through_it(robot: Robot) -> N
             assert T[2, 3] - 0.009 > -0.01
             checked += 1
     assert checked > 0
+
+
+@pytest.mark.parametrize(
+    ("width", "fits"), [(0.074, True), (0.076, True), (0.0785, True), (0.0795, False), (0.09, False)]
+)
+def test_the_hand_grasps_up_to_its_opening_less_the_clearance(robot: Robot, width: float, fits: bool) -> None:
+    grasps = first(robot, body(Box((width, width, 0.12))), 3)
+    assert bool(grasps) is fits
+    for grasp in grasps:
+        assert width <= grasp.opening <= robot.opening - CLEARANCE + 0.002
+
+
+def test_a_grasp_is_strained_by_weight_times_lever() -> None:
+    thing = replace(body(Box((0.3, 0.05, 0.05))), mass=0.5)
+    patch = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
+    up = np.array([0.0, 0.0, -1.0])
+
+    def much(x: float, mass: float = 0.5, friction: float = 0.5, force: float = 50.0) -> float:
+        T = np.eye(4)
+        T[0, 3] = x
+        one = replace(thing, mass=mass, friction=friction)
+        return strain(one, np.zeros(3), T, 0.05, (patch, patch), force, (up,))
+
+    levers = [much(x) for x in (0.0, 0.03, 0.06, 0.12)]
+    assert levers == sorted(levers) and levers[0] < 0.2
+    # By hand: 2 pads x 25 N x the mean distance on the patch against 1.3 x 0.5 kg x 9.81 m/s2 x 12 cm.
+    arm = 1.3 * 0.5 * GRAVITY * 0.12 / (2 * 25.0 * (0.001 + float(np.linalg.norm(patch, axis=1).mean())))
+    assert much(0.12) == pytest.approx(arm, rel=0.15)
+    assert much(0.12) == much(-0.12)
+    assert much(0.06, mass=1.0) > much(0.06) > much(0.06, friction=1.0) > much(0.06, friction=1.0, force=100.0)
+
+
+def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
+    long = replace(body(Box((0.5, 0.05, 0.06))), mass=1.0)
+    aside = [abs(grasp.T_tool_body.inverse().position[0]) for grasp in first(robot, long, 40)]
+    assert max(aside[:8]) < 0.03
+    assert max(aside) > 0.06  # none is lost
+
+
+def load(folder: Path, thing: str) -> list[object]:
+    """The first answers of the grasp stream about a thing."""
+    file = folder / "scene.yaml"
+    file.write_text(
+        "domain: cupboard\nrobot: {model: panda_mobile, base: [0, 0, 0]}\nroom: {x: [-2, 2], y: [-2, 2]}\n"
+        f"bodies:\n  table: {{furniture: table, size: [0.8, 0.6, 0.7], at: [1.2, 0, 0]}}\n  thing: {{{thing}}}\n"
+        "goal: (on thing table)\n"
+    )
+    call = Call(np.random.default_rng(0), Deadline(60.0), ())
+    return list(itertools.islice(sample_grasp(load_problem(file).context, "thing", call), 3))
+
+
+def test_what_is_too_heavy_is_refused_in_words(tmp_path: Path) -> None:
+    (said,) = load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 3.5")
+    assert isinstance(said, Rejection) and said.reason == "thing weighs 3.5 kg, the robot lifts 3 kg"
+    (said,) = load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0, friction: 0.1")
+    assert isinstance(said, Rejection) and said.given_up
+    assert "would slip: with its friction of 0.1 the fingers, at 50 N, hold 1 kg" in said.reason
+    assert all(isinstance(one, Grasp) for one in load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0"))
