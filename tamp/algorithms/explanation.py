@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
@@ -66,6 +67,7 @@ def explain_infeasible(
         words = fact[2:] if fact[0] == "not" else fact[1:]
         meaning = grounded.meanings.get(fact[0])
         text = meaning or f"({' '.join(fact)})"
+        words = tuple(re.findall(r"[^\s()]+", meaning)) if meaning else words
         causes: list[str] = []
         for key, rejection in dead.items():
             if set(_names(problem, key[1])) & set(words):
