@@ -8,19 +8,25 @@ import sys
 from collections.abc import Sequence
 
 from tamp.errors import InputError
+from tamp.progress import Progress
 from tamp.verification.verify import verify
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the plan holds, 1 when it does not, 2 when it cannot be read, 130 when interrupted."""
     options = _parser().parse_args(arguments)
+    shown = Progress(quiet=options.quiet or options.json)
+    shown.begin("judging")
     try:
         report = verify(options.plan, options.problem, options.domain)
     except InputError as error:
+        shown.end()
         print(error, file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
+    finally:
+        shown.end()
     if options.json:
         print(json.dumps(report.json(), indent=1))
     elif not options.quiet:
