@@ -24,6 +24,9 @@ from tamp.search.operators import Grounded
 SOON = 3.0
 """Seconds in which goals that exclude each other are looked for once it is proven that there is no plan."""
 
+SELDOM = 0.05
+"""What never worked is the cause where it failed at least so often, as a share of the failures of what failed most."""
+
 LINES = 6
 """How many causes are worth reading."""
 
@@ -107,7 +110,10 @@ def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally
     """
     running = streams.running
     endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    lines = [row.text() for row in rows if row.never] or [row.text() for row in rows if row.failures > row.successes]
+    least = SELDOM * max((row.failures for row in rows), default=0)  # one that failed once or twice is no cause
+    never = [row for row in rows if row.never and row.failures >= least]
+    mostly = sorted((row for row in rows if row.failures > row.successes), key=lambda row: -row.failures)
+    lines = [row.text() for row in never or mostly]
     blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
     lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
     lines = lines if tried else _never_worked(problem, streams)
