@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -9,14 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.awkward_scenes import scene
 from tamp.algorithms.solution import Outcome
 from tamp.api import solve
+from tamp.plan_file import plan_text
 from tamp.problem import load_problem
 from tamp.rejection import Rejection
 from tamp.streams.heights import highest
 from tamp.streams.hulls import body_hull
 from tamp.streams.refusals import narrowest, no_grasp, no_room
 from tamp.streams.resting import resting_of
+from tamp.verification.verify import verify
 from tamp.world.pose import Pose
 from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 from tests.streams.scenes import problem_with
@@ -163,3 +167,26 @@ def test_what_stands_on_it_for_good_is_named_whatever_else_is_there(others: int,
     outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 8.0)
     assert outcome is Outcome.INFEASIBLE
     assert "(on cup board) cannot be reached: cup stays loaded with slab" in said
+
+
+def test_a_ball_on_it_that_can_be_put_nowhere_is_named_without_a_proof(tmp_path: Path) -> None:
+    thing = "cup: {box: [0.06, 0.06, 0.1], on: table, at: [0.0, 0.0]}\n  ball: {sphere: 0.03, on: cup}"
+    outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 8.0)
+    assert outcome is Outcome.EXHAUSTED and "cup is loaded with ball" in said.splitlines()[0]
+    assert "a sphere rests on no stable face" in said
+
+
+def test_a_fixed_lid_is_a_load(tmp_path: Path) -> None:
+    thing = "cup: {box: [0.06, 0.06, 0.1], on: table, at: [0.0, 0.0]}"
+    thing += "\n  lid: {box: [0.04, 0.04, 0.05], on: cup, fixed: true}"
+    outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 2.0)
+    assert outcome is Outcome.TIMEOUT and "loaded with lid, which is fixed" in said
+
+
+def test_a_pear_on_its_side_is_put_on_its_side(tmp_path: Path) -> None:
+    _, text = scene(5, tmp_path)
+    path = tmp_path / "pear.yaml"
+    path.write_text(text, encoding="utf-8")
+    solution = solve(load_problem(path), max_time=30.0)
+    assert solution.outcome is Outcome.SOLVED and solution.plan
+    assert verify(json.loads(plan_text(solution))).holds
