@@ -18,8 +18,8 @@ from tamp.problem import load_problem
 from tamp.rejection import Rejection
 from tamp.streams.heights import highest
 from tamp.streams.hulls import body_hull
-from tamp.streams.refusals import narrowest, no_grasp, no_room
-from tamp.streams.resting import resting_of
+from tamp.streams.refusals import covered, narrowest, no_grasp, no_room
+from tamp.streams.resting import resting_of, settle
 from tamp.verification.verify import verify
 from tamp.world.pose import Pose
 from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
@@ -190,3 +190,50 @@ def test_a_pear_on_its_side_is_put_on_its_side(tmp_path: Path) -> None:
     solution = solve(load_problem(path), max_time=30.0)
     assert solution.outcome is Outcome.SOLVED and solution.plan
     assert verify(json.loads(plan_text(solution))).holds
+
+
+STAND = """
+domain: cupboard
+robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
+room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
+bodies:
+  stand: {{box: [0.4, 0.3, 0.6], at: [-1.4, 0.3, 0.3], yaw: {yaw:.2f}, fixed: true}}
+{things}
+  cup: {{{cup}, on: floor, at: [1.0, 0.0]}}
+goal: (on cup stand)
+"""
+
+
+def test_no_place_is_free_where_all_are_called_taken(tmp_path: Path, rng: np.random.Generator) -> None:
+    """Against brute force: 400 random placements each."""
+    proven = free = 0
+    for number in range(40):
+        least = (0.2, 0.2, 0.05) if number % 3 == 0 else (0.37, 0.27, 0.05)
+        size = rng.uniform(least, (0.4, 0.3, 0.3))
+        x, y = rng.uniform(-0.01, 0.01, 2)
+        box = ", ".join(f"{side:.3f}" for side in size)
+        things = f"  t: {{box: [{box}], on: stand, at: [{x:.3f}, {y:.3f}], fixed: true, surfaces: {{}}}}"
+        cup = ("box: [0.05, 0.06, 0.1]", "cylinder: {radius: 0.03, height: 0.09}")[number % 4 // 2]
+        path = tmp_path / "stand.yaml"
+        path.write_text(STAND.format(yaw=rng.uniform(0, 3), things=things, cup=cup), encoding="utf-8")
+        context = load_problem(path).context
+        stand = context.scene.surfaces["stand"]
+        found = False
+        for _ in range(400):
+            face = context.resting("cup").faces[int(rng.integers(len(context.resting("cup").faces)))]
+            x, y = (rng.uniform(-side / 2, side / 2) for side in stand.size)
+            pose = settle(face, rng.uniform(-3, 3), x, y, stand, context.scene.world_pose(stand))
+            found |= isinstance(pose, Pose) and context.collisions.between("cup", pose, {}) is None
+        proof = covered(context, "cup", stand)
+        assert proof is None or not found
+        proven += proof is not None
+        free += found
+    assert proven >= 10 and free >= 5
+
+
+def test_a_covered_place_is_proven_so(tmp_path: Path) -> None:
+    path = tmp_path / "stand.yaml"
+    things = "  monitor: {box: [0.39, 0.29, 0.3], on: stand, fixed: true, surfaces: {}}"
+    path.write_text(STAND.format(yaw=0.4, things=things, cup="box: [0.05, 0.06, 0.1]"), encoding="utf-8")
+    solution = solve(load_problem(path), max_time=20.0)
+    assert solution.outcome is Outcome.INFEASIBLE and "every place there hits monitor" in solution.explanation[0]
