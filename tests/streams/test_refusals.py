@@ -16,14 +16,17 @@ from tamp.api import solve
 from tamp.plan_file import plan_text
 from tamp.problem import load_problem
 from tamp.rejection import Rejection
+from tamp.streams.approach import approach_hits
+from tamp.streams.flat import too_flat
 from tamp.streams.heights import highest
 from tamp.streams.hulls import body_hull
 from tamp.streams.refusals import covered, narrowest, no_grasp, no_room
 from tamp.streams.resting import resting_of, settle
+from tamp.streams.sampling import sample_grasp
 from tamp.verification.verify import verify
 from tamp.world.pose import Pose
 from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
-from tests.streams.scenes import problem_with
+from tests.streams.scenes import call, problem_with, values
 
 OPENING = 0.08
 
@@ -155,7 +158,31 @@ def test_too_high_says_to_where_the_hand_reaches(height: float, tmp_path: Path) 
 def test_too_flat_is_said_of_a_wide_plate(tmp_path: Path) -> None:
     thing = "cup: {box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.0]}"
     outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 2.0)
-    assert outcome is Outcome.TIMEOUT and "too flat to be grasped (6 mm tall)" in said
+    assert outcome is Outcome.INFEASIBLE and "too flat to be grasped (6 mm tall, 15 cm wide)" in said
+
+
+@pytest.mark.parametrize(
+    ("thing", "flat"),
+    [
+        ("box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.0]", True),
+        ("box: [0.15, 0.15, 0.03], on: table, at: [0.0, 0.0], yaw: 30 deg", True),
+        ("cylinder: {radius: 0.1, height: 0.01}, on: table, at: [0.0, 0.0]", True),
+        ("cylinder: {radius: 0.042, height: 0.01}, on: table, at: [0.0, 0.0]", False),
+        ("box: [0.15, 0.078, 0.006], on: table, at: [0.0, 0.0]", False),
+        ("box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.3]", False),  # it stands out over the edge
+    ],
+)
+def test_flat_is_proven_only_where_no_finger_gets_under_it(thing: str, flat: bool, tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text(HIGH.format(height=1.0, thing=f"cup: {{{thing}}}", goal="board"), encoding="utf-8")
+    problem = load_problem(path)
+    assert (too_flat(problem.context, "cup", problem.scene.bodies["cup"].pose) is not None) is flat
+    if flat:  # the same by brute force: the hand hits the table with every grasp that there is
+        tries = sample_grasp(problem.context, "cup", call())
+        grasps = values(tries, 60, most=400)
+        pose = problem.scene.bodies["cup"].pose
+        fixed = [(name, problem.scene.bodies[name].pose) for name in problem.scene.fixed]
+        assert all(approach_hits(problem.context, pose, grasp, fixed) for grasp in grasps)
 
 
 @pytest.mark.parametrize("others", [0, 12])
