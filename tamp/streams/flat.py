@@ -34,34 +34,43 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
     is around, lies on one convex part of a fixed body.
     """
     shape = context.scene.bodies[body]
-    if len(shape.parts) != 1:
+    if len(shape.parts) != 1 or _is_narrow(shape.parts[0].shape, context.robot.opening):
         return None
-    placed = pose @ shape.parts[0].pose
-    width = _width(shape.parts[0].shape, placed)
+    part = shape.parts[0]
+    width = _width(part.shape, pose.rotation[2] @ part.pose.rotation)
     if width is None or width <= context.robot.opening + HALF_MILLIMETRE:
         return None
     low, high = bounds(shape.parts, pose)
     if high[2] - low[2] > context.robot.opening:  # there is no grasp of it at all, which others say
         return None
-    corners = _underside(placed, shape.parts[0].shape)
-    for name in context.scene.fixed:
-        other = context.scene.bodies[name]
-        for part in other.parts:
-            vertices, triangles = part_mesh(part)
-            below = cut(other.pose.apply(vertices), triangles, float(low[2]) - UNDER)
-            if below is not None and (distances(corners, below) <= 0.0).all():
-                tall = f"{1000 * (high[2] - low[2]):.0f} mm tall, {100 * width:.0f} cm wide"
-                return f"too flat to be grasped ({tall}): no finger gets between it and {name}"
+    corners = _underside(pose @ part.pose, part.shape)
+    least, most, under = corners.min(axis=0), corners.max(axis=0), float(low[2]) - UNDER
+    parts, lows, highs = context.fixed_parts
+    around = (lows[:, 2] < under) & (under < highs[:, 2])
+    around &= (lows[:, :2] < least).all(axis=1) & (most < highs[:, :2]).all(axis=1)
+    for index in np.flatnonzero(around):
+        name, piece, where = parts[index]
+        vertices, triangles = part_mesh(piece)
+        below = cut(where.apply(vertices), triangles, under)
+        if below is not None and (distances(corners, below) <= 0.0).all():
+            tall = f"{1000 * (high[2] - low[2]):.0f} mm tall, {100 * width:.0f} cm wide"
+            return f"too flat to be grasped ({tall}): no finger gets between it and {name}"
     return None
 
 
-def _width(shape: object, placed: Pose) -> float | None:
-    """The least distance between contacts on two sides of a box or can that lies flat, metres."""
+def _is_narrow(shape: object, opening: float) -> bool:
+    """Whether the hand gets around it whichever side is down; most bodies are so."""
     if isinstance(shape, Box):
-        up = np.abs(placed.rotation[2])
-        axis = int(np.argmax(up))
-        return min(size for i, size in enumerate(shape.size) if i != axis) if up[axis] >= LEVEL else None
-    if isinstance(shape, Cylinder) and abs(placed.rotation[2, 2]) >= LEVEL:
+        return sum(size <= opening for size in shape.size) >= 2
+    return not isinstance(shape, Cylinder) or 2 * shape.radius * math.cos(CONE) <= opening
+
+
+def _width(shape: object, up: Array) -> float | None:
+    """The least distance, metres, of contacts on two sides of a box or can that lies flat; `up` (3,) in its frame."""
+    if isinstance(shape, Box):
+        level = [size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL]
+        return min(level) if len(level) == 2 else None
+    if isinstance(shape, Cylinder) and abs(float(up[2])) >= LEVEL:
         return 2 * shape.radius * math.cos(CONE)
     return None
 

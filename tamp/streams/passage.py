@@ -81,6 +81,7 @@ class Passage:
         self.cell = max(FINEST, math.sqrt((x[1] - x[0]) * (y[1] - y[0]) / CELLS))
         self.known = box is not None and self.cell <= COARSEST
         self._start = np.array(scene.robot.base[:2])
+        self._open: list[tuple[float, float]] = []
 
     @property
     def slack(self) -> float:
@@ -112,6 +113,9 @@ class Passage:
 
     def open_towards(self, target: Array, reach: float) -> bool:
         """Whether the disc gets within `reach` metres of a point (2,) in a straight line, or in two."""
+        x, y = float(target[0]), float(target[1])
+        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):  # as for most poses, after the first few
+            return True
         for middle in (None, *(self._start + 1.2 * np.array([math.cos(a), math.sin(a)]) for a in np.arange(8) * 0.785)):
             first = self._start if middle is None else middle
             way = target - first
@@ -119,6 +123,7 @@ class Passage:
             last = first + way * max(0.0, 1.0 - 0.8 * reach / max(distance, 1e-9))
             corners = [self._start, last] if middle is None else [self._start, middle, last]
             if all(self._inside(point) for point in corners) and self._free(corners):
+                self._open.append((float(last[0]), float(last[1])))
                 return True
         return False
 
