@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tamp.alarm import Alarm
 from tamp.algorithms.explanation import explain_infeasible
@@ -12,6 +12,7 @@ from tamp.algorithms.optimistic import type_facts
 from tamp.algorithms.solution import Outcome, StreamTask
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
+from tamp.pddl.structs import Formula
 from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
 from tamp.search.heuristics import ADMISSIBLE
 from tamp.search.instantiate import instantiate
@@ -143,4 +144,8 @@ def _why(problem: SymbolicProblem, grounded: Grounded, deadline: Deadline) -> tu
     task = problem.task
     facts = {*task.initial, *type_facts(task), *grounded.reachable, *grounded.initial}
     missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
-    return explain_infeasible(StreamTask(task, (), {}), grounded, {}, missing, deadline)
+
+    def ground(goal: Formula) -> Grounded:
+        return instantiate(replace(task, goal=goal))
+
+    return explain_infeasible(StreamTask(task, (), {}), grounded, {}, missing, deadline, ground)
