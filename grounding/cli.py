@@ -20,6 +20,7 @@ from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
 from tamp.outputs import check_outputs, check_writable
+from tamp.progress import Progress
 from tamp.terminal import spoken
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
@@ -37,6 +38,13 @@ def main(arguments: list[str] | None = None) -> None:
 def run(arguments: list[str]) -> int:
     """Run tamp-learn and return its exit code."""
     try:
+        return _run(arguments)
+    finally:
+        _SHOWN.end()
+
+
+def _run(arguments: list[str]) -> int:
+    try:
         chosen = parsed(arguments)
         if isinstance(chosen, Generate):
             _generate(chosen)
@@ -51,9 +59,11 @@ def run(arguments: list[str]) -> int:
         else:
             _evaluate(chosen)
     except InputError as error:
+        _SHOWN.end()
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        _SHOWN.end()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     return DONE
@@ -251,13 +261,16 @@ def _commit() -> str:
     return said.stdout.strip()
 
 
-_WIDTH = 60
+_SHOWN = Progress(quiet=False)
+"""What says how far the work is."""
 
 
 def _show(text: str, *, last: bool = False) -> None:
-    """A line on a terminal that is rewritten."""
-    if sys.stderr.isatty():
-        print(f"\r{text:<{_WIDTH}}", end="\r" if last else "", file=sys.stderr, flush=True)
+    """How far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
+    if last:
+        _SHOWN.clear()
+    else:
+        _SHOWN.news(text)  # the first one starts the clock
 
 
 if __name__ == "__main__":

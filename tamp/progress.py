@@ -54,8 +54,16 @@ class Progress:
         self._before = self._counted
         self._now = (0, 0)
         if self._stop is None and not self.quiet:
+            self._started = self._last = time.monotonic()
             self._stop = threading.Event()
             threading.Thread(target=self._speak, args=(self._stop,), daemon=True).start()
+
+    def news(self, phase: str) -> None:
+        """Say from now on that the work has come so far."""
+        if self._stop is None:
+            self.begin(phase)
+        self.phase = phase
+        self._tell(OFTEN)
 
     def end(self) -> None:
         """Say nothing more by itself."""
@@ -118,5 +126,5 @@ class Progress:
                 self.quiet = True
 
     def _speak(self, stop: threading.Event) -> None:
-        while not stop.wait(WITHOUT_NEWS / 2):
+        while not stop.wait(WITHOUT_NEWS / 2):  # the terminal's clock runs on while there is no news
             self._tell(WITHOUT_NEWS)

@@ -163,7 +163,7 @@ def _effort(solution: Solution, loading: float) -> list[str]:
         if part is not None:
             parts[part] = parts.get(part, 0.0) + seconds
     rest = "improving" if solution.improvements else "other"
-    times = [f"{part} {share} %" for part, share in _shares(parts, total, rest)]
+    times = [f"{part} {share} %" for part, share in time_shares(parts, total, rest)]
     passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
     effort = solution.effort
     searched = [
@@ -184,7 +184,7 @@ def _effort(solution: Solution, loading: float) -> list[str]:
     ]
 
 
-def _shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
+def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
     """Whole percents of the time that add up to a hundred, the largest part first; `rest` is what no part claims."""
     told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
     told[rest] = max(0.0, total - sum(told.values()))

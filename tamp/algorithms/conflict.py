@@ -8,7 +8,7 @@ from itertools import combinations
 
 from tamp.algorithms.optimistic import MARK
 from tamp.clock import Deadline
-from tamp.pddl.structs import And, Fact, Formula
+from tamp.pddl.structs import And, Fact, Formula, Not
 from tamp.search.forward import Reason, search
 from tamp.search.goal_ways import goal_parts
 from tamp.search.mutex import excluded
@@ -51,6 +51,10 @@ def _is_odd(fact: Fact, grounded: Grounded) -> bool:
 def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, ...]:
     """The fewest conjuncts of a goal with variables that pairs of facts show to be too many; none if they do not."""
     parts = goal.parts if isinstance(goal, And) else (goal,)
+    denied = {part.body for part in parts if isinstance(part, Not)}
+    for part in parts:
+        if part in denied:
+            return tuple(sorted((show(part), show(Not(part)))))
     fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:PAIRS]
     for some in fewer:
         if deadline.passed or len(some) == len(parts):

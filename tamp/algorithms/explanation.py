@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
@@ -22,6 +23,9 @@ from tamp.search.operators import Grounded
 
 SOON = 3.0
 """Seconds in which goals that exclude each other are looked for once it is proven that there is no plan."""
+
+SELDOM = 0.05
+"""What never worked is the cause where it failed at least so often, as a share of the failures of what failed most."""
 
 LINES = 6
 """How many causes are worth reading."""
@@ -66,6 +70,7 @@ def explain_infeasible(
         words = fact[2:] if fact[0] == "not" else fact[1:]
         meaning = grounded.meanings.get(fact[0])
         text = meaning or f"({' '.join(fact)})"
+        words = tuple(re.findall(r"[^\s()]+", meaning)) if meaning else words
         causes: list[str] = []
         for key, rejection in dead.items():
             if set(_names(problem, key[1])) & set(words):
@@ -105,7 +110,10 @@ def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally
     """
     running = streams.running
     endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    lines = [row.text() for row in rows if row.never] or [row.text() for row in rows if row.failures > row.successes]
+    least = SELDOM * max((row.failures for row in rows), default=0)  # one that failed once or twice is no cause
+    never = [row for row in rows if row.never and row.failures >= least]
+    mostly = sorted((row for row in rows if row.failures > row.successes), key=lambda row: -row.failures)
+    lines = [row.text() for row in never or mostly]
     blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
     lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
     lines = lines if tried else _never_worked(problem, streams)

@@ -17,6 +17,8 @@ from tamp.algorithms.stream import Instance
 from tamp.clock import Deadline, OutOfTime
 from tamp.collector import seldom_collecting
 from tamp.pddl.structs import Fact
+from tamp.search.instantiate import Instantiator
+from tamp.search.mutex import excluded
 from tamp.search.operators import Grounded
 
 PER_LEVEL = 2
@@ -69,6 +71,8 @@ class Incremental(Run):
             OutOfTime: The deadline passed, and `most` was given.
         """
         try:
+            if most is None and self._excluded_from_the_start():
+                return self.hopeless()
             while True:
                 fresh = self._sample()
                 result = self._searched(ROUNDS if fresh else None)
@@ -85,6 +89,19 @@ class Incremental(Run):
             return self.stopped(Outcome.TIMEOUT)
         except KeyboardInterrupt:
             return self.stopped(Outcome.INTERRUPTED)
+
+    def _excluded_from_the_start(self) -> bool:
+        """Whether goals exclude each other whatever the streams give: sampling would never say so."""
+        optimism = imagine(self.useful, self.known)
+        if not optimism.complete:
+            return False
+        optimism.assumed = self.assumed
+        types = {**self.objects.types, **optimism.types}
+        grounded = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
+        if excluded(grounded, self.deadline) is None:
+            return False
+        self.optimism, self.grounded = optimism, grounded
+        return True
 
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from tamp.algorithms.missing import plain_atoms
 from tamp.algorithms.solution import StreamTask
 from tamp.pddl.structs import And, Atom, Fact, Formula, Not
-from tamp.search.lasting import lasting
+from tamp.search.lasting import forbidden_by, lasting
 from tamp.search.operators import Grounded, Operator
 
 CALLS = 2
@@ -26,7 +26,8 @@ def kept_from(
         goal: As text.
     """
     wanted = set(goal.replace("(", " ").replace(")", " ").split())
-    for operator, facts in lasting(grounded).forbidden:
+    for_good = lasting(grounded).forbidden
+    for operator, facts in for_good or forbidden_by(grounded, grounded.initial):
         about = [word for word in operator.arguments if word in wanted]
         if not about:
             continue
@@ -35,12 +36,15 @@ def kept_from(
             reasons = [f"{call}: {why}" for call, (names, why) in calls.items() if not names.isdisjoint(others)]
             because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
             state = _state(problem, operator, fact)
+            if not for_good and (state is None or not others or not reasons):
+                continue  # it may be only for now
             if state is None:
                 yield f"{operator.name} wants ({' '.join(fact)}) not to hold, which nothing makes false{because}"
                 continue
             things = " ".join(word for word in state[1:] if isinstance(problem.values.get(word), str))
             with_others = f" with {' and '.join(others)}" if others else ""
-            yield f"{things} stays {state[0]}{with_others}, so that {operator.name} is never possible{because}"
+            never = f", so that {operator.name} is never possible" if for_good else ""
+            yield f"{things} {'stays' if for_good else 'is'} {state[0]}{with_others}{never}{because}"
 
 
 def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+import weakref
 from collections.abc import Mapping
 from typing import Any, TextIO
 
 from tamp.bench.summary import succeeded
 from tamp.bench.table import short
+from tamp.progress import Progress
 
 SELDOM = 5.0
 """Seconds between two lines where no terminal can rewrite one."""
@@ -28,11 +30,17 @@ class Watch:
         self._started = time.monotonic()
         self._last = 0.0
         self._done = self._solved = 0
+        self._meanwhile = Progress(quiet or stream is not None)
+        self._meanwhile.begin(f"0/{total} runs ended")
+        weakref.finalize(self, self._meanwhile.end)
 
     def ended(self, line: Mapping[str, Any], left: int) -> None:
         """A run has ended, and so many are still to come."""
         self._done += 1
         self._solved += succeeded(line)
+        self._meanwhile.begin(f"{self._total - left}/{self._total} runs ended")
+        if not left:
+            self._meanwhile.end()
         now = time.monotonic()
         terminal = self._stream.isatty()
         if self._quiet or (not terminal and left and now - self._last < SELDOM):

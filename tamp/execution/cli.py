@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tamp.command_line import Parser
 from tamp.errors import InputError
-from tamp.progress import say
+from tamp.progress import Progress, say
 from tamp.streams.choice import Registry
 
 REACHED, NOT_REACHED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -27,14 +27,20 @@ def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     options = Options(
         given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, tuple(given.sampler)
     )
+    shown = Progress(quiet=given.quiet or given.json)
+    shown.begin("executing")
     try:
         done = carry_out(given.plan, options, registry())
     except InputError as error:
+        shown.end()
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        shown.end()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    finally:
+        shown.end()
     if given.json:
         say(json.dumps(done.json(), indent=1))
     elif not given.quiet:

@@ -22,7 +22,7 @@ class Reason(Enum):
     TIME = "the time is up"
 
 
-AUDIT = 100
+AUDIT = 500
 """States after which a search asks whether pairs of facts prove that there is no plan: most plans are found before."""
 
 

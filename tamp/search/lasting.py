@@ -51,6 +51,21 @@ def lasting(grounded: Grounded) -> Lasting:
         alive = kept
 
 
+def forbidden_by(grounded: Grounded, facts: frozenset[Fact]) -> list[tuple[Operator, frozenset[Fact]]]:
+    """The operators that a state forbids whatever streams give, each with the facts that it wants not to hold."""
+    state = set(facts)
+    _derive(state, [axiom for axiom in grounded.axioms if not axiom.negative])
+    refused: dict[Blocking, dict[Row, list[Guard]]] = {}
+    found: list[tuple[Operator, frozenset[Fact]]] = []
+    for operator in grounded.operators:
+        against = set(operator.negative & state)
+        for guard in _final(operator, refused):
+            against |= guard.facts if guard.facts <= state else set()
+        if against:
+            found.append((operator, frozenset(against)))
+    return found
+
+
 def _final(operator: Operator, refused: dict[Blocking, dict[Row, list[Guard]]]) -> Iterator[Guard]:
     """The guards of an operator that nothing lifts; those that only a price would ask for are not made."""
     guards = operator.guards

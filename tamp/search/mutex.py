@@ -80,6 +80,10 @@ class Mutexes:
         for part, ways in zip(self._parts, possible, strict=True):
             if not ways:
                 return (part.literal,)
+        named = {part.literal for part in self._parts}
+        for fact, wanted in sorted(named):
+            if wanted and (fact, False) in named:
+                return ((fact, True), (fact, False))
         for i, j in combinations(range(len(possible)), 2):
             self._look()
             if not any(self._together(a, b) for a in possible[i] for b in possible[j]):

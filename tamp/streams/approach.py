@@ -30,7 +30,10 @@ def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: C
     """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
     fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
     hit = approach_hits(context, pose, grasp, fixed)
-    return True if hit is None else Rejection(f"{_flat(context, body, pose, hit)}hand hits {hit}")
+    if hit is None:
+        return True
+    loaded = f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    return Rejection(f"{loaded or _flat(context, body, pose, hit)}hand hits {hit}")
 
 
 def test_approach_clear(

@@ -20,7 +20,7 @@ from tamp.world.kinematics import Kinematics
 from tamp.world.pose import Array, Pose
 from tamp.world.reachability import Reachability
 from tamp.world.robot import Robot
-from tamp.world.scene import Scene
+from tamp.world.scene import Part, Scene
 
 
 @dataclass
@@ -74,6 +74,14 @@ class Context:
     def passage(self) -> Passage:
         """How wide the ways of the base are among the fixed bodies."""
         return Passage(self.scene, self.robot)
+
+    @cached_property
+    def fixed_parts(self) -> tuple[list[tuple[str, Part, Pose]], Array, Array]:
+        """Of the fixed bodies: name, part and pose of the body; and all parts' lowest and highest corners, (n, 3)."""
+        bodies = [self.scene.bodies[name] for name in self.scene.fixed]
+        parts = [(body.name, part, body.pose) for body in bodies for part in body.parts]
+        boxes = np.array([bounds((part,), pose) for _, part, pose in parts]).reshape(-1, 2, 3)
+        return parts, boxes[:, 0], boxes[:, 1]
 
     @cached_property
     def home(self) -> Array:

@@ -15,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.streams.hulls import outline, part_mesh
+from tamp.streams.hulls import part_mesh
+from tamp.streams.slices import cut, distances
 from tamp.world.pose import Array
 from tamp.world.robot import Robot
 from tamp.world.scene import Box, Scene
@@ -80,6 +81,7 @@ class Passage:
         self.cell = max(FINEST, math.sqrt((x[1] - x[0]) * (y[1] - y[0]) / CELLS))
         self.known = box is not None and self.cell <= COARSEST
         self._start = np.array(scene.robot.base[:2])
+        self._open: list[tuple[float, float]] = []
 
     @property
     def slack(self) -> float:
@@ -97,7 +99,7 @@ class Passage:
                 vertices, triangles = part_mesh(part)
                 placed = body.pose.apply(vertices)
                 for share in SLICES:
-                    corners = _cut(placed, triangles, low + share * (high - low))
+                    corners = cut(placed, triangles, low + share * (high - low))
                     if corners is not None:
                         found.append(Slice(name, corners))
         return found
@@ -106,11 +108,14 @@ class Passage:
         """The distances (n,) of points (n, 2) from the slices; infinite without any."""
         least = np.full(len(points), np.inf)
         for piece in self.slices:
-            np.minimum(least, _distances(points, piece.corners), out=least)
+            np.minimum(least, distances(points, piece.corners), out=least)
         return least
 
     def open_towards(self, target: Array, reach: float) -> bool:
         """Whether the disc gets within `reach` metres of a point (2,) in a straight line, or in two."""
+        x, y = float(target[0]), float(target[1])
+        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):  # as for most poses, after the first few
+            return True
         for middle in (None, *(self._start + 1.2 * np.array([math.cos(a), math.sin(a)]) for a in np.arange(8) * 0.785)):
             first = self._start if middle is None else middle
             way = target - first
@@ -118,6 +123,7 @@ class Passage:
             last = first + way * max(0.0, 1.0 - 0.8 * reach / max(distance, 1e-9))
             corners = [self._start, last] if middle is None else [self._start, middle, last]
             if all(self._inside(point) for point in corners) and self._free(corners):
+                self._open.append((float(last[0]), float(last[1])))
                 return True
         return False
 
@@ -227,32 +233,6 @@ def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
         return None
     size, (x, y, z) = parts[0].shape.size, parts[0].pose.position
     return min(size[0] / 2 - abs(x), size[1] / 2 - abs(y)), (z - size[2] / 2, z + size[2] / 2)
-
-
-def _cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array | None:
-    """The polygon in which a convex mesh meets a level plane; None where it does not, or only just."""
-    above = vertices[:, 2] - height
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    a, b = edges[:, 0], edges[:, 1]
-    crossing = above[a] * above[b] < 0.0
-    if not crossing.any():
-        return None
-    share = above[a[crossing]] / (above[a[crossing]] - above[b[crossing]])
-    points = vertices[a[crossing]] + share[:, None] * (vertices[b[crossing]] - vertices[a[crossing]])
-    corners = outline(points[:, :2])
-    return corners if len(corners) >= 3 else None
-
-
-def _distances(points: Array, corners: Array) -> Array:
-    """Of points (n, 2) from a convex polygon; zero inside."""
-    inside = np.ones(len(points), dtype=bool)
-    least = np.full(len(points), np.inf)
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        edge, to = b - a, points - a
-        share = np.clip(to @ edge / max(float(edge @ edge), 1e-12), 0.0, 1.0)
-        np.minimum(least, np.hypot(*(to - share[:, None] * edge).T), out=least)
-        inside &= edge[0] * to[:, 1] - edge[1] * to[:, 0] >= 0.0
-    return np.where(inside, 0.0, least)
 
 
 def _nearest(point: Array, corners: Array) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from tamp.call import Call
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
+from tamp.streams.flat import too_flat
 from tamp.streams.heights import too_high
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
@@ -19,7 +20,13 @@ PAD = 0.02
 
 
 def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool | Rejection:
-    """Whether any base pose in the room could bring any point of the arm to the body: false only when proven."""
+    """Whether any base pose in the room could bring any point of the arm to the body, and a hand around it.
+
+    False only when the contrary is proven.
+    """
+    flat = too_flat(context, body, pose)
+    if flat is not None:
+        return Rejection(flat)
     return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
 
 

@@ -12,9 +12,10 @@ import numpy as np
 from tamp.rejection import Rejection
 from tamp.streams.context import Context
 from tamp.streams.hand_fit import CONE
-from tamp.streams.hulls import body_hull
+from tamp.streams.hulls import body_hull, part_mesh
 from tamp.streams.reach import within_reach
 from tamp.streams.resting import Face, facets, fits
+from tamp.streams.slices import cut, distances
 from tamp.world.bounds import bounds
 from tamp.world.pose import Array, Pose
 from tamp.world.scene import CONTACT_GAP, Body, Box, Cavity, Cylinder, Part, Sphere, Surface
@@ -27,6 +28,15 @@ HALF_MILLIMETRE = 5e-4
 
 MOST_FACETS = 300
 """Ways up that are looked at for a proof; a body with more is taken for a curved one, of which nothing is proven."""
+
+FINE = 0.004
+"""Spacing of the places that are looked at for a proof that all are taken, metres,"""
+
+PLACES = 40_000
+"""and how many they are at most: in a larger region they are farther apart."""
+
+JUST_ABOVE = 0.002
+"""Height above a region at which a body on it and what is in its way are cut, metres."""
 
 HEADROOM = 2.0
 """Metres above a surface up to which a body on it may be grasped."""
@@ -83,6 +93,49 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
         what = f"protrudes ({body} takes {size} m, {region.name} has {space} m)"
         return Rejection(what, given_up=_could_fit(shape, room, region))
     return _out_of_reach(context, body, region, room)
+
+
+def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
+    """Why a body of one convex part finds no free place among the fixed bodies in a region; None unless proven.
+
+    Wherever it rests, its centre of mass is over the region and well inside the side that is down; so a disc around it,
+    just above the region, must be free.
+    """
+    shape, ways = context.scene.bodies[body], context.resting(body).ways
+    if len(shape.parts) != 1 or not ways:
+        return None
+    radius = min(_room_around(face) * max(0.0, 1.0 - 4 * JUST_ABOVE / face.extent) for face in ways)
+    cell = max(FINE, math.sqrt(region.size[0] * region.size[1] / PLACES))
+    if radius <= cell:
+        return None
+    x, y = (np.arange(-side / 2, side / 2 + cell, cell) for side in region.size[:2])
+    grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    T_world_region = context.scene.world_pose(region)
+    places = T_world_region.apply(np.column_stack([grid, np.zeros(len(grid))]))
+    if np.ptp(places[:, 2]) > HALF_MILLIMETRE:
+        return None
+    least, names = np.full(len(grid), np.inf), list[str]()
+    for name in context.scene.fixed:
+        other = context.scene.bodies[name]
+        before = least.copy()
+        for part in other.parts:
+            vertices, triangles = part_mesh(part)
+            corners = cut(other.pose.apply(vertices), triangles, float(places[0, 2]) + JUST_ABOVE)
+            if corners is not None:
+                np.minimum(least, distances(places[:, :2], corners), out=least)
+        if (least < np.minimum(before, radius)).any():
+            names.append(name)
+    if not (least < radius - cell).all():
+        return None
+    return Rejection(f"every place there hits {' or '.join(names)}")
+
+
+def _room_around(face: Face) -> float:
+    """How far the centre of mass is from the edges of the side that is down, metres; zero where it is not inside."""
+    edges = np.roll(face.base, -1, axis=0) - face.base
+    to = face.centre - face.base
+    across = edges[:, 0] * to[:, 1] - edges[:, 1] * to[:, 0]
+    return max(0.0, float((across / np.maximum(np.linalg.norm(edges, axis=1), 1e-12)).min()))
 
 
 def _out_of_reach(context: Context, body: str, region: Surface | Cavity, room: float) -> Rejection | None:

@@ -38,6 +38,9 @@ STABLE = math.radians(8.0)
 ROUND = 0.0015
 """Points this little above the lowest one count as touching where a body lies on a curved side, metres."""
 
+LEAN = 0.002
+"""By so much a curved side carries beyond its lowest points: meshes have few of them, metres."""
+
 BALANCE = 0.015
 """How far inside the supported part of an overhanging base the centre of mass must lie, metres."""
 
@@ -237,7 +240,7 @@ def curved_face(body: Body) -> Face | None:
     turned = vertices @ rotation.T
     low, high = bounds(body.parts, Pose((0.0, 0.0, 0.0), body.pose.quaternion))
     touching = turned[turned[:, 2] < float(turned[:, 2].min()) + ROUND, :2]
-    corners = np.array([(-ROUND, -ROUND), (ROUND, -ROUND), (ROUND, ROUND), (-ROUND, ROUND)])
+    corners = LEAN * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     base = outline((touching[:, None] + corners).reshape(-1, 2))
     centre = rotation @ centre_of_mass(body)
     angle = _tipping_angle(base, centre[:2], float(centre[2] - low[2]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from tamp.call import Call
@@ -10,12 +11,15 @@ from tamp.streams.context import Context
 from tamp.streams.drawing import draw
 from tamp.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.streams.grasps import sample_grasps
-from tamp.streams.refusals import no_grasp, no_room
+from tamp.streams.refusals import covered, no_grasp, no_room
 from tamp.streams.resting import rest
 from tamp.streams.values import Grasp
 from tamp.world.pose import Pose
 from tamp.world.robot import Robot
 from tamp.world.scene import Body, Cavity, Surface
+
+HOPELESS = 32
+"""Tries without any success after which it is worth asking whether a region is covered altogether."""
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
@@ -78,7 +82,13 @@ def _placements(
         hit = context.collisions.between(body, pose, {})
         return pose if hit is None else Rejection(f"hits {hit}")
 
-    yield from draw(context, relation, context.mixtures[relation], (body, region.name), judge, call)
+    failures = 0.0
+    for result in draw(context, relation, context.mixtures[relation], (body, region.name), judge, call):
+        failures = failures + 1 if isinstance(result, Rejection) else -math.inf
+        if failures == HOPELESS and (proof := covered(context, body, region)) is not None:
+            yield proof
+            return
+        yield result
 
 
 def _middle(context: Context) -> tuple[float, float, float]:

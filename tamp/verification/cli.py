@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from tamp.command_line import Parser
 from tamp.errors import InputError
+from tamp.progress import Progress
 from tamp.terminal import spoken
 from tamp.verification.classifiers import classifiers_of
 from tamp.verification.tolerances import tolerances
@@ -21,15 +22,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     With --strict also with 1 when it holds but for what could not be checked.
     """
+    shown = Progress(quiet=True)
     try:
         options = _parser().parse_args(arguments)
+        shown = Progress(quiet=options.quiet or options.json)
+        shown.begin("judging")
         classifiers = classifiers_of(options.sampler)
         report = verify(options.plan, options.problem, options.domain, streams=options.streams, classifiers=classifiers)
     except InputError as error:
+        shown.end()
         print(f"error: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
+    finally:
+        shown.end()
     accepted = report.holds and (report.checked or not options.strict)
     if options.json:
         print(json.dumps({**report.json(), "accepted": accepted}, indent=1))

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import pytest
 
+from tamp.algorithms.explanation import explain_failures
 from tamp.algorithms.solution import Outcome
-from tamp.algorithms.tally import in_the_way
+from tamp.algorithms.stream import Objects, Streams
+from tamp.algorithms.tally import Tally, in_the_way
 from tamp.call import Call
+from tamp.clock import Deadline
 from tamp.rejection import Rejection
 from tests.algorithms.toys import ALGORITHMS, solve, stream_task
 
@@ -89,3 +93,16 @@ def test_the_call_that_raised_proves_nothing() -> None:
     functions = {"sample-grasp": sample_grasp}
     problem = stream_task(GRASP, GRASPS, functions, {"mug": ("thing",)}, "(free)", "(held mug)")
     assert solve("adaptive", problem).outcome is Outcome.EXHAUSTED
+
+
+def test_what_failed_once_is_not_blamed_before_what_failed_a_hundred_times() -> None:
+    rows = [
+        Tally("place cup", "test-pose-clear", 1, 0, Counter({"hits can": 1})),
+        Tally("pick cup", "inverse-kinematics", 120, 2, Counter({"hits wall": 118})),
+    ]
+    problem = stream_task(KITCHEN, NO_STREAMS, {}, THINGS, "", "(cooked egg)")
+    (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
+    assert first.startswith("pick cup: inverse-kinematics worked 2 times in 120 tries")
+    rows[0] = Tally("place cup", "test-pose-clear", 30, 0, Counter({"hits can": 30}))
+    (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
+    assert first == "place cup: test-pose-clear never worked in 30 tries: 30 hits can"

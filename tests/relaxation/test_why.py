@@ -10,9 +10,13 @@ import pytest
 
 from benchmarks.infeasible import named
 from benchmarks.infeasible_scenes import KINDS
+from tamp.algorithms.solution import Outcome
 from tamp.cli import NO_PLAN, SOLVED, run
-from tamp.problem import load_problem
+from tamp.problem import Problem, load_problem
 from tamp.relaxation.changes import changes
+from tamp.relaxation.why import Why, why
+from tamp.solution import Action, Solution
+from tamp.trajectories import Trajectory
 
 BY_NAME = {make.__name__: (number, make) for number, make in enumerate(KINDS)}
 
@@ -74,3 +78,50 @@ def test_the_benchmark_names_causes_that_are_there(kind: str, seed: int) -> None
     case = make(np.random.default_rng((number, seed)))
     assert not named(case, ("no plan in the time given",)) and not named(case, ())
     assert named(case, (" ".join(group[0] for group in case.cause),))
+
+
+def outcomes(monkeypatch: pytest.MonkeyPatch, chance: dict[str, set[int]], spent: list[float]) -> None:
+    """Let planning succeed for the seeds that are given for a scene's lack of a body, or for the whole scene."""
+
+    def solved(problem: Problem, *, max_time: float, seed: int, progress: object = None) -> Solution:
+        gone = next((name for name in chance if name and name not in problem.scene.bodies), "")
+        spent.append(max_time)
+        if seed in chance.get(gone, set()):
+            action = Action("pick", (), (), Trajectory(()), 0.0, 1.0)
+            return Solution(problem, Outcome.SOLVED, seed, "adaptive", plan=(action,), seconds={"total": 0.1})
+        return Solution(problem, Outcome.TIMEOUT, seed, "adaptive", seconds={"total": max_time})
+
+    monkeypatch.setattr("tamp.relaxation.why.solve", solved)
+
+
+def asked(folder: Path, outcome: Outcome = Outcome.TIMEOUT) -> Why:
+    path = written("covered", folder, 2)
+    problem = load_problem(path)
+    solution = Solution(problem, outcome, 0, "adaptive", seconds={"total": 30.0})
+    return why(solution, lambda scene: load_problem(path, scene=scene), max_time=30.0)
+
+
+def test_a_body_is_named_only_where_three_seeds_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spent: list[float] = []
+    outcomes(monkeypatch, {"monitor": {0, 1, 2}, "other_0": {0, 1}}, spent)
+    found = asked(tmp_path)
+    assert [one.text for one in found.relaxations] == ["without monitor"]
+    assert ("without other_0", 2) in found.failed and len(set(spent)) == 1
+    text = found.text()
+    assert "It would be solvable without monitor" in text
+    assert "tried as well, and did not help: " in text and "without other_0 (helps with 2 of 3 seeds)" in text
+
+
+def test_luck_is_no_cause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    outcomes(monkeypatch, {"monitor": {0, 1, 2}, "": {1}}, [])
+    found = asked(tmp_path)
+    assert found.relaxations == () and found.unchanged == (1,)
+    assert "With --seed 1 a plan is found as it is" in found.text() and "without monitor" not in found.text()
+
+
+def test_what_is_proven_needs_no_second_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spent: list[float] = []
+    outcomes(monkeypatch, {"monitor": {0, 1, 2}}, spent)
+    found = asked(tmp_path, Outcome.INFEASIBLE)
+    assert [one.text for one in found.relaxations] == ["without monitor"]
+    assert len(spent) == 3 + len(found.failed)
