@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -22,6 +21,7 @@ from tamp.problem import Problem, load_problem
 from tamp.rejection import Rejection
 from tamp.solution import Solution
 from tamp.streams.context import Context
+from tests.clock import unhindered, waited
 from tests.test_cli import ENCLOSED, SOLVE
 
 BUDGET = 1.0
@@ -102,22 +102,9 @@ def slow_rejections(context: Context, *inputs: object, call: Call) -> Iterator[o
 
 
 def timed(problem: Problem, budget: float = BUDGET, algorithm: str = "adaptive") -> tuple[Solution, float]:
-    started = unhindered(os.getpid())
+    started = unhindered()
     solution = solve(problem, max_time=budget, seed=0, algorithm=algorithm)
-    return solution, unhindered(os.getpid()) - started
-
-
-def unhindered(process: int) -> float:
-    """The monotonic clock, less the time for which a process was ready to run and others had the cores."""
-    return time.monotonic() - waited(process)
-
-
-def waited(process: int) -> float:
-    """Seconds for which the main thread of a process has waited for a core."""
-    try:
-        return int(Path(f"/proc/{process}/schedstat").read_text(encoding="ascii").split()[1]) * 1e-9
-    except (OSError, IndexError):
-        return 0.0
+    return solution, unhindered() - started
 
 
 @pytest.mark.parametrize(

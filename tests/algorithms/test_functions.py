@@ -12,6 +12,7 @@ from tamp.call import Call
 from tamp.rejection import Rejection
 from tests.algorithms.line import Line
 from tests.algorithms.toys import ALGORITHMS, replay, solve, stream_task
+from tests.clock import unhindered
 
 
 @pytest.fixture
@@ -121,9 +122,9 @@ def stubborn(block: str, call: Call) -> Iterator[float]:
 @pytest.mark.parametrize("function", [spins, sleeps, stubborn])
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_function_without_end_is_interrupted(algorithm: str, function: Callable[..., object], line: Line) -> None:
-    started = time.monotonic()
+    started = unhindered()
     result = solve(algorithm, line.problem("(on a right)", sample_grasp=function), seconds=0.5)
-    assert time.monotonic() - started <= 1.0
+    assert unhindered() - started <= 1.0
     assert result.outcome is Outcome.TIMEOUT
     assert result.explanation
 
@@ -134,9 +135,9 @@ def test_generator_of_rejections_ends_in_time(algorithm: str, line: Line) -> Non
         while True:
             yield Rejection("no antipodal points")
 
-    started = time.monotonic()
+    started = unhindered()
     result = solve(algorithm, line.problem("(on a right)", sample_grasp=sample_grasp), seconds=1.0)
-    assert time.monotonic() - started <= 1.5
+    assert unhindered() - started <= 1.5
     assert result.outcome in (Outcome.EXHAUSTED, Outcome.TIMEOUT)
     if algorithm == "adaptive":
         assert "no antipodal points" in " ".join(result.explanation)
