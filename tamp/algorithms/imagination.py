@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from tamp.algorithms.anything import anything
 from tamp.algorithms.costs import Costs
 from tamp.algorithms.optimistic import (
     ENOUGH,
@@ -52,7 +53,12 @@ class Imagination:
         self.depth = 1
         self.shallow: int | None = None
         self.aside = self.bystanders()
-        useful = relevant(problem.streams, used_predicates(task))
+        wanted = anything(task)
+        useful = relevant(
+            problem.streams,
+            used_predicates(task),
+            lambda types: any(task.domain.fits(types, want) for want in wanted),
+        )
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
         self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]

@@ -8,11 +8,12 @@ from heapq import heapify, heappop, heappush
 from tamp.algorithms.optimistic import MARK, Guess
 from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Step, Term
 from tamp.pddl.structs import Fact
+from tamp.search.trace import End
 
 
 def build_skeleton(
     steps: Sequence[Step],
-    goal: tuple[frozenset[Fact], frozenset[Fact]],
+    end: End,
     maker: Callable[[Fact], Guess | None],
     promise: Callable[[str], Fact],
 ) -> Skeleton:
@@ -23,14 +24,14 @@ def build_skeleton(
 
     Args:
         steps: The plan.
-        goal: The final state, and the static facts that support the goal in it.
+        end: The final state, and what the goal rests on in it.
         maker: Who certifies an optimistic fact; None for known ones.
         promise: What the call that gives a placeholder certifies of it.
     """
     builder = _Builder(maker, promise)
     for number, step in enumerate(steps):
         builder.take(number, step)
-    builder.finish(len(steps), *goal)
+    builder.finish(len(steps), end)
     return builder.skeleton(tuple(steps))
 
 
@@ -91,9 +92,7 @@ class _Builder:
         for fact in step.state:
             self._state.setdefault(fact, fact[1:])
         self._shown[number] = {fact: self._state[fact] for fact in step.state}
-        local: dict[str, Term] = {}
-        for fact in sorted(step.positive):
-            self._adopt(fact, local)
+        local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
         for usage in step.usages:
@@ -109,17 +108,13 @@ class _Builder:
         for fact in step.added:
             self._state[fact] = self._lift(fact[1:], local)
 
-    def finish(self, number: int, final: frozenset[Fact], static: frozenset[Fact]) -> None:
+    def finish(self, number: int, end: End) -> None:
         """What the goal rests on in the final state."""
-        self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in final}
-        needed = {name for fact in static for name in fact[1:] if name.startswith(MARK)}
-        local: dict[str, Term] = {}
-        for fact in sorted(final):
-            if not needed.isdisjoint(fact[1:]):
-                self._adopt(fact, local)
-        for fact in sorted(static):
+        self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in end.state}
+        local = self._read(end.read, end.state, end.derived)
+        for fact in sorted(end.static):
             self._require(fact, local, number)
-        self._certify(static, local)
+        self._certify(end.static, local)
 
     def skeleton(self, steps: tuple[Step, ...]) -> Skeleton:
         """The result, every term resolved."""
@@ -137,6 +132,22 @@ class _Builder:
         actions = tuple((name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions)
         certified = dict.fromkeys((p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified)
         return Skeleton(steps, actions, _ordered(self._nodes), tuple(certified))
+
+    def _read(self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]) -> dict[str, Term]:
+        """The terms of the placeholders that are read in a state.
+
+        Besides those in the facts read, derivations may rest on a test for something that the state has: nothing stands
+        there, *or* it is clear of it.
+        """
+        local: dict[str, Term] = {}
+        for fact in sorted(read):
+            self._adopt(fact, local)
+        open_ = {name for fact in derived for name in fact[1:] if name.startswith(MARK) and name not in local}
+        if open_:
+            for fact in sorted(state):
+                if not open_.isdisjoint(fact[1:]):
+                    self._adopt(fact, local)
+        return local
 
     def _adopt(self, fact: Fact, local: dict[str, Term]) -> None:
         for name, term in zip(fact[1:], self._state.get(fact, fact[1:]), strict=True):

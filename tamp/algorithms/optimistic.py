@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -193,8 +193,16 @@ def imagine(
     return optimism
 
 
-def relevant(streams: Iterable[BoundStream], predicates: Iterable[str]) -> list[BoundStream]:
-    """The streams whose certified facts the given predicates, or other relevant streams, can use."""
+def relevant(
+    streams: Iterable[BoundStream], predicates: Iterable[str], asked: Callable[[tuple[str, ...]], bool] | None = None
+) -> list[BoundStream]:
+    """The streams whose certified facts the given predicates, or other relevant streams, can use.
+
+    Args:
+        streams: Those to choose from.
+        predicates: Those that conditions mention.
+        asked: Whether something of these types is asked for, whatever is certified of it (see `anything`).
+    """
     needed = set(predicates)
     remaining = list(streams)
     chosen: list[BoundStream] = []
@@ -202,7 +210,8 @@ def relevant(streams: Iterable[BoundStream], predicates: Iterable[str]) -> list[
     while progress:
         progress = False
         for stream in list(remaining):
-            if any(atom.predicate in needed for atom in stream.declaration.certified):
+            used = any(atom.predicate in needed for atom in stream.declaration.certified)
+            if used or (asked is not None and any(asked(types) for types in stream.output_types)):
                 remaining.remove(stream)
                 chosen.append(stream)
                 needed.update(atom.predicate for atom in stream.declaration.domain)

@@ -57,6 +57,7 @@ class Run(Imagination):
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
         self.latest: Skeleton | None = None
+        self.prices: dict[Fact, float] = {}
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -71,6 +72,7 @@ class Run(Imagination):
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
+        self.prices = prices
         found = search(
             grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below
         )  # fmt: skip
@@ -98,11 +100,14 @@ class Run(Imagination):
         return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
-        """The plan's skeleton; the same one when the plan was found before."""
-        signature = tuple((operator.name, operator.arguments) for operator in plan.operators)
+        """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
+        steps, end = to_steps(self.grounded, plan, self.prices)
+        signature = (
+            tuple((step.name, step.arguments, step.static, step.usages) for step in steps),
+            end.static,
+        )
         if signature not in self.skeletons:
-            steps, goal = to_steps(self.grounded, plan)
-            self.skeletons[signature] = build_skeleton(steps, goal, self.optimism.maker, self.optimism.promise)
+            self.skeletons[signature] = build_skeleton(steps, end, self.optimism.maker, self.optimism.promise)
             self.effort.skeletons = len(self.skeletons)
         return self.skeletons[signature]
 

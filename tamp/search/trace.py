@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from tamp.pddl.structs import Fact
 from tamp.search.axioms import derive, supports
 from tamp.search.blocking import LazyGuards
-from tamp.search.operators import Facts, Grounded, Guard, Operator
+from tamp.search.operators import NONE, Facts, Grounded, Guard, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,26 +20,48 @@ class Step:
         state: The fluent facts before it.
         static: What it rests on there: its static preconditions, the facts that lift its triggered guards, the static
             facts in the derivations of its derived preconditions and of the conditional effects that take place.
+        derived: Those of the static facts that derivations rest on.
+        read: The fluent facts that its preconditions, the effects that take place, and the derivations rest on.
+        added: What it makes true there.
+        deleted: What of the state it makes false.
         guards: Those triggered there.
     """
 
     operator: Operator
     state: Facts
     static: Facts
+    derived: Facts = NONE
+    read: Facts = NONE
+    added: Facts = NONE
+    deleted: Facts = NONE
     guards: tuple[Guard, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
+class End:
+    """The state in the end, and what the goal rests on there: static facts, those of them in derivations, fluents."""
+
+    state: Facts
+    static: Facts
+    derived: Facts
+    read: Facts
+
+
+@dataclass(frozen=True, slots=True)
 class Trace:
-    """All steps, the state in the end, and the static facts that the goal rests on there."""
+    """All steps and the end."""
 
     steps: tuple[Step, ...]
-    final: Facts
-    goal: Facts
+    end: End
 
 
-def trace(grounded: Grounded, operators: Iterable[Operator]) -> Trace:
+def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None) -> Trace:
     """Replay a plan's operators from the initial state.
+
+    Args:
+        grounded: The task.
+        operators: The plan.
+        price: Of static facts; what is derived rests on the cheapest ones.
 
     Raises:
         ValueError: An operator is not applicable, or the goal does not hold in the end.
@@ -46,13 +69,14 @@ def trace(grounded: Grounded, operators: Iterable[Operator]) -> Trace:
     state = grounded.initial
     steps: list[Step] = []
     for operator in operators:
-        step, state = _applied(grounded, operator, state)
+        step, state = _applied(grounded, operator, state, price)
         steps.append(step)
-    why = derive(grounded.axioms, state)
+    why = derive(grounded.axioms, state, price)
     holds = state | why.keys()
     if not grounded.goal.positive <= holds or not grounded.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
-    return Trace(tuple(steps), state, grounded.goal.static | supports(why, grounded.goal.positive))
+    derived, read = supports(why, grounded.goal.positive)
+    return Trace(tuple(steps), End(state, grounded.goal.static | derived, derived, read))
 
 
 def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
@@ -75,13 +99,16 @@ def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]])
     return any(goal.positive <= holds and goal.negative.isdisjoint(holds) for holds in holding)
 
 
-def _applied(grounded: Grounded, operator: Operator, state: Facts) -> tuple[Step, Facts]:
+def _applied(
+    grounded: Grounded, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
+) -> tuple[Step, Facts]:
     """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
-    why = derive(grounded.axioms, state)
+    why = derive(grounded.axioms, state, price)
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
         raise ValueError(f"{operator} is not applicable")
-    static = set(operator.static | supports(why, operator.positive))
+    derived, read = supports(why, operator.positive)
+    static = set(operator.static)
     guards = triggered(operator, state)
     for guard in guards:
         if guard.lifted_by is None:
@@ -92,8 +119,12 @@ def _applied(grounded: Grounded, operator: Operator, state: Facts) -> tuple[Step
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
             added |= effect.added
             deleted |= effect.deleted
-            static |= effect.static | supports(why, effect.positive)
-    return Step(operator, state, frozenset(static), guards), (state - deleted) | added
+            static |= effect.static
+            more, seen = supports(why, effect.positive)
+            derived, read = derived | more, read | seen
+    after = (state - deleted) | added
+    gone = state - after
+    return Step(operator, state, frozenset(static | derived), derived, read, added, gone, guards), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:
