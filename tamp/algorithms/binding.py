@@ -116,7 +116,7 @@ class Binder:
     ) -> _Level:
         node = skeleton.nodes[index]
         inputs = tuple(_value(term, values) for term in node.inputs)
-        fluents = frozenset[Fact](
+        fluents = node.given.union(
             (fact[0], *(_value(term, values) for term in fact[1]))
             for fact, _ in node.fluents
             if all(isinstance(term, str) or term in values for term in fact[1])

@@ -67,6 +67,9 @@ class Imagination:
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
         self.real: dict[Fact, None] = {}
         self.known = [*sorted(task.initial), *type_facts(task)]
+        changing = task.domain.fluent_predicates
+        shown = {name for stream in problem.streams for name in stream.declaration.fluents} - changing
+        self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.grounded = self.imagined()
 

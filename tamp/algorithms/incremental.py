@@ -86,6 +86,10 @@ class Incremental(Run):
         except KeyboardInterrupt:
             return self.stopped(Outcome.INTERRUPTED)
 
+    def promise(self, name: str) -> Fact | None:
+        """As of every run; the values are those found."""
+        return next((fact for fact in self.found if name in fact[1:]), None) or super().promise(name)
+
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
         dry = 0
@@ -115,8 +119,9 @@ class Incremental(Run):
         static = [stream for stream in self.useful if not stream.is_fluent]
         fresh = False
         known = [*self.known, *self.found]
-        guesses = imagine(static, known, levels=1).makers.values()
-        for guess in dict.fromkeys(guesses):
+        for guess in imagine(static, known, levels=1).guesses:
+            if all(fact in self.found for fact in guess.certified):
+                continue
             shown = [fact for fact in self.known if fact[0] in guess.stream.declaration.fluents]
             instance = self.streams.instance(guess.stream.name, guess.inputs, frozenset(shown))
             for _ in range(1 if guess.stream.is_test else PER_LEVEL):

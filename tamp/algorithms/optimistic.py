@@ -61,7 +61,8 @@ class Optimism:
     """All guesses: which static facts could become true, and by which call.
 
     Attributes:
-        makers: Fact to the guess that certifies it.
+        makers: Fact to the guess that certifies it, the first one of several.
+        guesses: All of them.
         types: Placeholder to its types.
         assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
             one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
@@ -69,6 +70,7 @@ class Optimism:
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
+    guesses: list[Guess] = field(default_factory=list[Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
     complete: bool = True
@@ -166,6 +168,7 @@ def imagine(
         if call.outputs:
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
         made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
+        optimism.guesses.append(made)
         for fact in call.certified:
             if fact not in level_of:
                 optimism.makers[fact] = made

@@ -14,6 +14,7 @@ from tamp.algorithms.explanation import explain_attempts, explain_failures, expl
 from tamp.algorithms.imagination import Imagination
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
+from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import GroundAction, Outcome, Progress, Result, StreamTask
 from tamp.algorithms.standing import stands
@@ -106,10 +107,19 @@ class Run(Imagination):
             tuple((step.name, step.arguments, step.static, step.usages) for step in steps),
             end.static,
         )
-        if signature not in self.skeletons:
-            self.skeletons[signature] = build_skeleton(steps, end, self.optimism.maker, self.optimism.promise)
+        known = self.skeletons.get(signature)
+        if known is None or any((node.stream.name, node.guess[0]) in self.dead for node in known.nodes):
+            self.skeletons[signature] = build_skeleton(
+                steps, end, self.optimism.maker, self.promise, self.given
+            )
             self.effort.skeletons = len(self.skeletons)
         return self.skeletons[signature]
+
+    def promise(self, name: str) -> Fact | None:
+        """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""
+        if name.startswith(MARK):
+            return self.optimism.promise(name)
+        return next((fact for fact in self.real if name in fact[1:]), None)
 
     def bury(self, skeleton: Skeleton) -> bool:
         """Note the calls with real inputs that ended without any value; whether there were new ones."""

@@ -62,6 +62,8 @@ class Node:
         step: The first step that needs it.
         fluents: The facts that its function is shown, with what each is called symbolically.
         fact: The first symbolic fact that it certifies: what is blamed when it fails.
+        given: Facts that its function is shown as well, in every state.
+        needs: The calls that certify what it is called for: they come before it.
     """
 
     stream: BoundStream
@@ -71,6 +73,8 @@ class Node:
     step: int
     fact: Fact
     fluents: tuple[tuple[LiftedFact, Fact], ...] = ()
+    given: frozenset[Fact] = frozenset()
+    needs: list[Node] = field(default_factory=list["Node"])
 
 
 @dataclass(eq=False)
