@@ -124,8 +124,8 @@ class Adaptive(Run):
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
         budget = max(ROUND_BUDGET, NODE_BUDGET * len(skeleton.nodes)) * (1 + skeleton.rounds)
-        values = self.binder.bind(skeleton, tries, budget)
-        if values is not None and self.stands(skeleton, values):
+        values = self.bind(skeleton, tries, budget)
+        if values is not None:
             self.bound = skeleton, values
             return self.solved(skeleton, values)
         skeleton.rounds += 1

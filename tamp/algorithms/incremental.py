@@ -103,8 +103,8 @@ class Incremental(Run):
             skeleton = self.skeleton(found.plan)
             self.latest = skeleton
             before = self.binder.units
-            values = self.binder.bind(skeleton, TRIES, BUDGET)
-            if values is not None and self.stands(skeleton, values):
+            values = self.bind(skeleton, TRIES, BUDGET)
+            if values is not None:
                 return self.solved(skeleton, values)
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from functools import partial
 from typing import Any
 
@@ -17,7 +17,7 @@ from tamp.algorithms.missing import Missing
 from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import GroundAction, Outcome, Progress, Result, StreamTask
-from tamp.algorithms.standing import stands
+from tamp.algorithms.standing import Fault, Standing
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Streams
@@ -29,6 +29,8 @@ from tamp.search.forward import Result as Found
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
+
+REFUTED = "a plan was dropped that did not hold when it was replayed, a mistake of the planner's: please report it"
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
@@ -54,6 +56,7 @@ class Run(Imagination):
         self.progress = progress
         super().__init__(problem, pruned)
         self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
+        self.standing = Standing(problem.task, self.streams)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
@@ -158,11 +161,32 @@ class Run(Imagination):
         self.real.update(self.streams.wild)
         return len(self.real) > before
 
-    def stands(self, skeleton: Skeleton, values: dict[int, str]) -> bool:
-        """Whether the bound plan holds with what streams found besides; if not, what gave the values has failed."""
-        return not self.streams.wild or stands(
-            self.task, self.objects.types, skeleton, values, self.streams.wild, self.experience
-        )
+    def bind(
+        self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()
+    ) -> dict[int, str] | None:
+        """Values with which the plan holds when it is replayed, see `Binder.bind`.
+
+        If it does not hold with any, the skeleton forgets them, and what gave them is noted to have failed once more.
+        """
+        refused: list[Fault] = []
+
+        def holds(values: dict[int, str]) -> bool:
+            fault = self.standing.fault(skeleton, values)
+            if fault is not None:
+                refused.append(fault)
+            return fault is None
+
+        values = self.binder.bind(skeleton, tries, budget, fresh, holds=holds)
+        mistake = next((fault for fault in refused if not fault.expected), None)
+        if mistake is not None:
+            self.effort.refuted += 1
+            self.streams.warn(f"{REFUTED}: {mistake.reason}")
+        if values is None and refused:
+            skeleton.memory.clear()
+            for node in skeleton.nodes:
+                if node.outputs:
+                    self.experience.note(node.fact, "what was found besides forbids the plan")
+        return values
 
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""

@@ -64,6 +64,7 @@ class Effort:
         skeletons: Different action plans that were tried to be bound.
         draws: Stream calls.
         search_seconds: Wall-clock time in search and instantiation.
+        refuted: Bound plans that did not hold when they were replayed, though the planner thought so.
     """
 
     searches: int = 0
@@ -71,6 +72,7 @@ class Effort:
     skeletons: int = 0
     draws: int = 0
     search_seconds: float = 0.0
+    refuted: int = 0
 
 
 @dataclass(frozen=True)

@@ -151,6 +151,7 @@ class Streams:
         self.statistics = {name: StreamStatistics() for name in streams}
         self.warnings: list[str] = []
         self.wild: dict[Fact, None] = {}
+        self.certain: set[Fact] = set()
         self.memory: dict[str, Any] = {}
         self.running: Instance | None = None
         self.ahead = False
@@ -220,7 +221,13 @@ class Streams:
             return None
         statistics.successes += 1
         instance.results.append(names)
+        if not instance.stream.is_fluent:
+            self.certain.update(self.certified(instance, names))
         return names
+
+    def warn(self, message: str) -> None:
+        """Add to the warnings, unless it is there or there are many."""
+        _add_new(self.warnings, message)
 
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
         """The facts that a result makes true."""
