@@ -112,6 +112,7 @@ class Standing:
     ) -> str | None:
         used = {word for _, arguments in actions for word in arguments}
         used.update(word for fact in facts for word in fact[1:])
+        used.update(word for _, _, more in given.shown for fact in more for word in fact[1:])
         types = self._streams.objects.types
         objects = {word: types[word] for word in sorted(used) if word in types}
         return violation(self._task, actions, facts, objects, given.of if given.shown else None)
