@@ -26,6 +26,7 @@ from tamp.clock import Deadline
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
+from tamp.search.operators import Grounded
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
@@ -60,6 +61,7 @@ class Run(Imagination):
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
+        self.traced: dict[object, tuple[Grounded | None, object]] = {}
         self.latest: Skeleton | None = None
         self.prices: dict[Fact, float] = {}
 
@@ -105,18 +107,19 @@ class Run(Imagination):
 
     def skeleton(self, plan: Plan) -> Skeleton:
         """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
-        steps, end = to_steps(self.grounded, plan, self.prices)
-        signature = (
-            tuple((step.name, step.arguments, step.static, step.usages) for step in steps),
-            end.static,
-        )
-        known = self.skeletons.get(signature)
-        if known is None or any((node.stream.name, node.guess[0]) in self.dead for node in known.nodes):
-            self.skeletons[signature] = build_skeleton(
-                steps, end, self.optimism.maker, self.promise, self.given
-            )
-            self.effort.skeletons = len(self.skeletons)
-        return self.skeletons[signature]
+        operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
+        traced, key = self.traced.get(operators, (None, None))
+        known = self.skeletons.get(key) if traced is self.grounded else None
+        if known is None:
+            steps, trace = to_steps(self.grounded, plan, self.prices)
+            key = (tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static)
+            known = self.skeletons.get(key)
+            if known is None or any((node.stream.name, node.guess[0]) in self.dead for node in known.nodes):
+                maker, promise = self.optimism.maker, self.promise
+                known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given)
+                self.effort.skeletons = len(self.skeletons)
+            self.traced[operators] = (None if trace.open else self.grounded), key
+        return known
 
     def promise(self, name: str) -> Fact | None:
         """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""

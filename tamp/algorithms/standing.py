@@ -27,20 +27,27 @@ class Fault:
     expected: bool
 
 
+Shown = tuple[tuple[str, ...], frozenset[Fact]]
+"""The predicates of the facts that a stream is shown, and those of them that no action changes."""
+
+
 @dataclass
 class _Certified:
-    """What the calls of a skeleton gave: facts of every state, and those of the states that were shown."""
+    """What streams that look at the state gave: facts of those states that have what they were shown."""
 
-    facts: set[Fact] = field(default_factory=set[Fact])
-    shown: list[tuple[tuple[str, ...], frozenset[Fact], tuple[Fact, ...]]] = field(
-        default_factory=list[tuple[tuple[str, ...], frozenset[Fact], tuple[Fact, ...]]]
+    shown: dict[Shown, dict[frozenset[Fact], list[Fact]]] = field(
+        default_factory=dict[Shown, dict[frozenset[Fact], list[Fact]]]
     )
 
-    def of(self, state: set[Fact]) -> Iterable[Fact]:
+    def of(self, state: frozenset[Fact]) -> Iterable[Fact]:
         """Those that hold in a state because its facts were shown."""
-        for predicates, seen, facts in self.shown:
-            if seen == {fact for fact in state if fact[0] in predicates}:
-                yield from facts
+        for (predicates, given), made in self.shown.items():
+            yield from made.get(given.union(fact for fact in state if fact[0] in predicates), ())
+
+    @property
+    def of_states(self) -> set[Fact]:
+        """All those that hold in some states only."""
+        return {fact for made in self.shown.values() for facts in made.values() for fact in facts}
 
 
 class Standing:
@@ -66,15 +73,17 @@ class Standing:
         """
         given = _Certified()
         for node in skeleton.nodes:
+            if not node.stream.is_fluent:
+                continue
             reason = self._take(node, values, given)
             if reason is not None:
                 return Fault(reason, False)
-        real = {substitute(fact, values) for fact in skeleton.certified} - self._task.initial
-        of_states = {fact for _, _, facts in given.shown for fact in facts}
-        for fact in sorted(real - given.facts - of_states):
-            if fact not in self._streams.certain and fact not in self._streams.wild:
+        known = {substitute(fact, values) for fact in skeleton.certified} - given.of_states - self._task.initial
+        facts = known & self._streams.certain
+        for fact in sorted(known - facts):
+            if fact not in self._streams.wild:
                 return Fault(f"({' '.join(fact)}) was not certified", False)
-        facts = given.facts | (real - of_states)
+            facts.add(fact)
         actions = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
         reason = self._replayed(actions, facts, given)
         if reason is not None:
@@ -83,28 +92,23 @@ class Standing:
         if self._absent:  # what was found out about the plan's values, for this plan or another
             names = {*self._task.objects, *self._task.domain.constants}
             names.update(word for fact in facts for word in fact[1:])
-            known = (fact for fact in self._streams.certain if fact[0] in self._absent)
-            wild.update(fact for fact in known if names.issuperset(fact[1:]))
+            found = (fact for fact in self._streams.certain if fact[0] in self._absent)
+            wild.update(fact for fact in found if names.issuperset(fact[1:]))
         if wild - facts:
             reason = self._replayed(actions, facts | wild, given)
         return None if reason is None else Fault(reason, True)
 
     def _take(self, node: Node, values: Mapping[int, str], given: _Certified) -> str | None:
-        """Add what a call certified; what is wrong if it never gave these values."""
+        """Add what a call certified of a state; what is wrong if it never gave these values."""
         inputs = tuple(value_of(term, values) for term in node.inputs)
         outputs = tuple(values[variable] for variable in node.outputs)
         seen = node.given.union(substitute(fact, values) for fact, _ in node.fluents)
-        made = self._streams.instances(node.stream.name, inputs)
-        if node.stream.is_fluent:
-            made = [instance for instance in made if instance.fluents == seen]
-        gave = [instance for instance in made if outputs in instance.results]
+        called = self._streams.instances(node.stream.name, inputs)
+        gave = [instance for instance in called if instance.fluents == seen and outputs in instance.results]
         if not gave:
             return f"{node.stream.name}({', '.join(inputs)}) never gave ({', '.join(outputs)})"
-        facts = self._streams.certified(gave[0], outputs)
-        if node.stream.is_fluent:
-            given.shown.append((node.stream.declaration.fluents, seen, facts))
-        else:
-            given.facts.update(facts)
+        made = given.shown.setdefault((node.stream.declaration.fluents, node.given), {})
+        made.setdefault(seen, []).extend(self._streams.certified(gave[0], outputs))
         return None
 
     def _replayed(
@@ -112,7 +116,7 @@ class Standing:
     ) -> str | None:
         used = {word for _, arguments in actions for word in arguments}
         used.update(word for fact in facts for word in fact[1:])
-        used.update(word for _, _, more in given.shown for fact in more for word in fact[1:])
+        used.update(word for fact in given.of_states for word in fact[1:])
         types = self._streams.objects.types
         objects = {word: types[word] for word in sorted(used) if word in types}
         return violation(self._task, actions, facts, objects, given.of if given.shown else None)

@@ -10,7 +10,7 @@ from tamp.algorithms.statistics import Experience
 from tamp.pddl.structs import Fact
 from tamp.search.forward import Plan
 from tamp.search.operators import Grounded, Guard, Operator
-from tamp.search.trace import End, trace
+from tamp.search.trace import Trace, trace
 
 NOGOOD = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
@@ -39,8 +39,8 @@ def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
     return replace(operator, guards=(*operator.guards, *guards))
 
 
-def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tuple[tuple[Step, ...], End]:
-    """The plan's steps, and what the goal rests on in the end."""
+def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tuple[tuple[Step, ...], Trace]:
+    """The plan's steps, and the trace that they come from."""
     traced = trace(grounded, plan.operators, prices)
     steps: list[Step] = []
     for step in traced.steps:
@@ -65,4 +65,4 @@ def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tu
                 cost=operator.cost,
             )
         )
-    return tuple(steps), traced.end
+    return tuple(steps), traced

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from tamp.errors import InputError
 from tamp.pddl.structs import Fact
@@ -120,8 +121,16 @@ def derive(
     return why
 
 
-def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> tuple[frozenset[Fact], frozenset[Fact]]:
-    """What the derivations of the given facts rest on: static facts, and facts of the state (given ones included)."""
+class Support(NamedTuple):
+    """What derivations rest on: static facts, facts of the state, and the derived facts themselves."""
+
+    static: frozenset[Fact]
+    read: frozenset[Fact]
+    heads: frozenset[Fact]
+
+
+def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> Support:
+    """What the derivations of the given facts rest on; those that are not derived are facts of the state."""
     static: set[Fact] = set()
     read: set[Fact] = set()
     seen: set[Fact] = set()
@@ -135,4 +144,4 @@ def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> tuple[frozenset[F
             seen.add(fact)
             static |= axiom.static
             stack.extend(axiom.positive)
-    return frozenset(static), frozenset(read)
+    return Support(frozenset(static), frozenset(read), frozenset(seen))

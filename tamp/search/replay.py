@@ -18,7 +18,7 @@ def violation(
     actions: Sequence[tuple[str, tuple[str, ...]]],
     facts: Iterable[Fact] = (),
     objects: Mapping[str, tuple[str, ...]] | None = None,
-    shown: Callable[[set[Fact]], Iterable[Fact]] | None = None,
+    shown: Callable[[frozenset[Fact]], Iterable[Fact]] | None = None,
 ) -> str | None:
     """What is wrong with a plan; None where it leads from the initial state to the goal.
 
@@ -27,7 +27,7 @@ def violation(
         actions: Names and arguments.
         facts: What holds in every state besides the task's static facts: what streams certified.
         objects: Types of the objects besides the task's.
-        shown: What streams certified of a state only, given all its facts but the derived ones.
+        shown: What streams certified of a state only, given its fluent facts.
 
     Returns:
         A sentence that names the step, counted from 1.
@@ -38,7 +38,7 @@ def violation(
     changing = task.domain.fluent_predicates
     state = frozenset(fact for fact in static if fact[0] in changing)
     static.difference_update(state)
-    world = _World(task, there)
+    world = _World(task, there, static)
     for number, (name, arguments) in enumerate(actions):
         step = f"step {number + 1}, ({' '.join((name, *arguments))})"
         action = lifted.get(name)
@@ -47,25 +47,28 @@ def violation(
         for parameter, word in zip(action.parameters, arguments, strict=True):
             if not world.fits(word, parameter):
                 return f"{step}: '{word}' is no {' or '.join(parameter.types)}"
-        world.enter(_all(static | state, shown))
+        world.enter(state, shown(state) if shown else ())
         binding = {parameter.name: word for parameter, word in zip(action.parameters, arguments, strict=True)}
         failed = world.failing(action.precondition, binding)
         if failed is not None:
             return f"{step}: the precondition does not hold, {failed}"
         state = world.after(action, binding, state)
-    world.enter(_all(static | state, shown))
+    world.enter(state, shown(state) if shown else ())
     failed = world.failing(task.goal, {})
     return None if failed is None else f"the goal does not hold in the end, {failed}"
 
 
-def _all(facts: set[Fact], shown: Callable[[set[Fact]], Iterable[Fact]] | None) -> set[Fact]:
-    return facts if shown is None else facts.union(shown(facts))
+def _by_predicate(facts: Iterable[Fact]) -> dict[str, set[Fact]]:
+    rows: dict[str, set[Fact]] = defaultdict(set)
+    for fact in facts:
+        rows[fact[0]].add(fact)
+    return dict(rows)
 
 
 class _World:
     """What holds in one state after the other."""
 
-    def __init__(self, task: Task, objects: Mapping[str, tuple[str, ...]]) -> None:
+    def __init__(self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]) -> None:
         self._task, self._objects = task, objects
         self._rules: dict[str, list[Derived]] = defaultdict(list)
         for rule in task.domain.derived:
@@ -73,16 +76,17 @@ class _World:
         self._types = {"=", *task.domain.types.keys() - task.domain.predicates.keys()}
         self._kinds, self._recursive = _kinds(self._rules)
         self._of_types: dict[tuple[str, ...], dict[str, None]] = {}
-        self._rows: dict[str, set[Fact]] = {}
+        self._static = _by_predicate(static)
+        self._rows = dict(self._static)
+        self._plain: dict[int, tuple[Atom, ...]] = {}
         self._known: dict[Fact, bool] = {}
         self._asked: tuple[frozenset[str], dict[Fact, bool]] | None = None
 
-    def enter(self, facts: Iterable[Fact]) -> None:
-        """Go to a state."""
-        rows: dict[str, set[Fact]] = defaultdict(set)
-        for fact in facts:
-            rows[fact[0]].add(fact)
-        self._rows, self._known, self._asked = rows, {}, None
+    def enter(self, state: Iterable[Fact], shown: Iterable[Fact]) -> None:
+        """Go to a state: its fluent facts, and what was certified of it alone."""
+        self._rows, self._known, self._asked = dict(self._static), {}, None
+        for predicate, facts in _by_predicate((*state, *shown)).items():
+            self._rows[predicate] = facts | self._static.get(predicate, set())
 
     def fits(self, word: str, parameter: Parameter) -> bool:
         """Whether an object is there and of one of the parameter's types."""
@@ -115,23 +119,27 @@ class _World:
             case Or(parts):
                 return any(self.holds(part, binding) for part in parts)
             case Exists(parameters, body):
-                return any(self.holds(body, full) for full in self._bindings(parameters, _atoms(body), binding))
+                return any(self.holds(body, full) for full in self._bindings(parameters, self._where(body, True), binding))
             case Forall(parameters, body):
-                guards = _guards(body)
-                return all(self.holds(body, full) for full in self._bindings(parameters, guards, binding))
+                return all(
+                    self.holds(body, full)
+                    for full in self._bindings(parameters, self._where(body, False), binding)
+                )
+
+    def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
+        """The atoms that are facts of the state wherever the formula holds, or wherever it does not."""
+        known = self._plain.get(id(formula))
+        if known is None:
+            atoms = _atoms(formula) if sign else _guards(formula)
+            kept = (atom for atom in atoms if atom.predicate not in self._rules and atom.predicate not in self._types)
+            known = self._plain[id(formula)] = tuple(kept)
+        return known
 
     def _bindings(self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding) -> Iterator[Binding]:
         """Values for the parameters for which the atoms hold, as far as these are no derived ones."""
         names = {parameter.name: parameter for parameter in parameters}
         outer = {name: word for name, word in binding.items() if name not in names}
-        useful = [
-            atom
-            for atom in atoms
-            if atom.predicate not in self._rules
-            and atom.predicate not in self._types
-            and not names.keys().isdisjoint(atom.terms)
-        ]
-        yield from self._join(useful, names, outer)
+        yield from self._join([atom for atom in atoms if not names.keys().isdisjoint(atom.terms)], names, outer)
 
     def _join(self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding) -> Iterator[Binding]:
         if atoms:
@@ -221,7 +229,7 @@ class _World:
         deleted: set[Fact] = set()
         for effect in action.effects:
             changed = added if effect.adds else deleted
-            for full in self._bindings(effect.parameters, _atoms(effect.condition), binding):
+            for full in self._bindings(effect.parameters, self._where(effect.condition, True), binding):
                 if self.holds(effect.condition, full):
                     changed.add(_ground(effect.atom, full))
         return (state - deleted) | added

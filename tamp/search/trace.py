@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -22,6 +23,7 @@ class Step:
             facts in the derivations of its derived preconditions and of the conditional effects that take place.
         derived: Those of the static facts that derivations rest on.
         read: The fluent facts that its preconditions, the effects that take place, and the derivations rest on.
+        heads: The derived facts behind all that.
         added: What it makes true there.
         deleted: What of the state it makes false.
         guards: Those triggered there.
@@ -32,6 +34,7 @@ class Step:
     static: Facts
     derived: Facts = NONE
     read: Facts = NONE
+    heads: Facts = NONE
     added: Facts = NONE
     deleted: Facts = NONE
     guards: tuple[Guard, ...] = ()
@@ -49,10 +52,11 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """All steps and the end."""
+    """All steps and the end; whether something that they rest on could be derived in another way as well."""
 
     steps: tuple[Step, ...]
     end: End
+    open: bool = False
 
 
 def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None) -> Trace:
@@ -68,15 +72,20 @@ def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact
     """
     state = grounded.initial
     steps: list[Step] = []
+    ways = Counter(axiom.head for axiom in grounded.axioms)
+    several = frozenset(head for head, count in ways.items() if count > 1)
+    open_ = False
     for operator in operators:
         step, state = _applied(grounded, operator, state, price)
         steps.append(step)
+        open_ = open_ or not several.isdisjoint(step.heads)
     why = derive(grounded.axioms, state, price)
     holds = state | why.keys()
     if not grounded.goal.positive <= holds or not grounded.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
-    derived, read = supports(why, grounded.goal.positive)
-    return Trace(tuple(steps), End(state, grounded.goal.static | derived, derived, read))
+    goal = supports(why, grounded.goal.positive)
+    end = End(state, grounded.goal.static | goal.static, goal.static, goal.read)
+    return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
 def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
@@ -107,7 +116,7 @@ def _applied(
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
         raise ValueError(f"{operator} is not applicable")
-    derived, read = supports(why, operator.positive)
+    derived, read, heads = supports(why, operator.positive)
     static = set(operator.static)
     guards = triggered(operator, state)
     for guard in guards:
@@ -120,11 +129,11 @@ def _applied(
             added |= effect.added
             deleted |= effect.deleted
             static |= effect.static
-            more, seen = supports(why, effect.positive)
-            derived, read = derived | more, read | seen
+            more = supports(why, effect.positive)
+            derived, read, heads = derived | more.static, read | more.read, heads | more.heads
     after = (state - deleted) | added
     gone = state - after
-    return Step(operator, state, frozenset(static | derived), derived, read, added, gone, guards), after
+    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:
