@@ -24,6 +24,27 @@ def anything(task: Task) -> set[Types]:
     return found
 
 
+def distinguishes(task: Task) -> bool:
+    """Whether a condition wants two things to differ."""
+    domain = task.domain
+    conditions = [task.goal, *(rule.body for rule in domain.derived)]
+    conditions += [action.precondition for action in domain.actions]
+    conditions += [effect.condition for action in domain.actions for effect in action.effects]
+    return any(_differs(condition) for condition in conditions)
+
+
+def _differs(formula: Formula) -> bool:
+    match formula:
+        case Atom():
+            return False
+        case Not(body):
+            return (isinstance(body, Atom) and body.predicate == "=") or _differs(body)
+        case And(parts) | Or(parts):
+            return any(_differs(part) for part in parts)
+        case Exists(_, body) | Forall(_, body):
+            return _differs(body)
+
+
 def _unnamed(parameters: Iterable[Parameter], condition: Formula) -> Iterator[Types]:
     named = _named(condition, True)
     yield from (one.types for one in parameters if one.name not in named)

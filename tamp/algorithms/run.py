@@ -41,7 +41,12 @@ class Run(Imagination):
     """One run of planning: what it knows, and the steps that algorithms are made of.
 
     `pruned` leaves out the streams whose facts nothing asks for.
+
+    Attributes:
+        brief: Whether searches end without a plan where they have seen SEARCH_LIMIT states.
     """
+
+    brief = False
 
     def __init__(
         self,
@@ -84,7 +89,7 @@ class Run(Imagination):
         )  # fmt: skip
         self.effort.expanded += found.expanded
         if (
-            found.reason is Reason.LIMIT and below == math.inf
+            found.reason is Reason.LIMIT and below == math.inf and not self.brief
         ):  # with many prices many plans look alike: then any plan will do
             found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded

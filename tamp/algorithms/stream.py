@@ -182,9 +182,9 @@ class Streams:
         return [made for made in self._instances.values() if made.results or made.last is not None]
 
     def false_tests(self) -> list[Instance]:
-        """The tests that were called and do not hold."""
-        made = self._instances.values()
-        return [known for known in made if known.stream.is_test and known.exhausted and not known.results]
+        """The tests that were called and do not hold, in whatever state."""
+        made = (known for known in self._instances.values() if known.stream.is_test and not known.stream.is_fluent)
+        return [known for known in made if known.exhausted and not known.results]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
         """One more try: the names of the outputs (none for a test), or None, with the reason in `instance.last`."""

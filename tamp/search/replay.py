@@ -69,7 +69,7 @@ class _World:
     """What holds in one state after the other."""
 
     def __init__(self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]) -> None:
-        self._task, self._objects = task, objects
+        self._task, self._objects, self._kinds_there = task, objects, set(objects.values())
         self._rules: dict[str, list[Derived]] = defaultdict(list)
         for rule in task.domain.derived:
             self._rules[rule.head.predicate].append(rule)
@@ -95,8 +95,8 @@ class _World:
     def _fitting(self, types: tuple[str, ...]) -> dict[str, None]:
         found = self._of_types.get(types)
         if found is None:
-            fits = self._task.domain.fits
-            fitting = (name for name, own in self._objects.items() if fits(own, types))
+            fits = {own: self._task.domain.fits(own, types) for own in self._kinds_there}
+            fitting = (name for name, own in self._objects.items() if fits[own])
             found = self._of_types[types] = dict.fromkeys(fitting)
         return found
 
