@@ -23,15 +23,15 @@ from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Streams
 from tamp.algorithms.tally import Tally, tallies
 from tamp.clock import Deadline
+from tamp.pddl.structs import Fact
 from tamp.rejection import Rejection
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.forward import Result as Found
 from tamp.search.operators import Grounded
+from tamp.search.replay import REFUTED
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
-
-REFUTED = "a plan was dropped that did not hold when it was replayed, a mistake of the planner's: please report it"
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
@@ -169,9 +169,7 @@ class Run(Imagination):
         self.real.update(self.streams.wild)
         return len(self.real) > before
 
-    def bind(
-        self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()
-    ) -> dict[int, str] | None:
+    def bind(self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()) -> dict[int, str] | None:
         """Values with which the plan holds when it is replayed, see `Binder.bind`.
 
         If it does not hold with any, the skeleton forgets them, and what gave them is noted to have failed once more.

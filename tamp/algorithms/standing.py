@@ -111,9 +111,7 @@ class Standing:
         made.setdefault(seen, []).extend(self._streams.certified(gave[0], outputs))
         return None
 
-    def _replayed(
-        self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified
-    ) -> str | None:
+    def _replayed(self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified) -> str | None:
         used = {word for _, arguments in actions for word in arguments}
         used.update(word for fact in facts for word in fact[1:])
         used.update(word for fact in given.of_states for word in fact[1:])

@@ -81,9 +81,7 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     return found
 
 
-def derive(
-    axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None
-) -> dict[Fact, Axiom]:
+def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None) -> dict[Fact, Axiom]:
     """The derived facts of a state, each with the axiom that gave it; in the order of derivation.
 
     Args:

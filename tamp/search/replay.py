@@ -9,8 +9,12 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from tamp.pddl.structs import Action, And, Atom, Derived, Exists, Fact, Forall, Formula, Not, Or, Parameter, Task
+from tamp.search.recursion import strata_of
 
 Binding = Mapping[str, str]
+
+REFUTED = "a plan was dropped that did not hold when it was replayed, a mistake of the planner's: please report it"
+"""How the reason is told to people."""
 
 
 def violation(
@@ -74,7 +78,7 @@ class _World:
         for rule in task.domain.derived:
             self._rules[rule.head.predicate].append(rule)
         self._types = {"=", *task.domain.types.keys() - task.domain.predicates.keys()}
-        self._kinds, self._recursive = _kinds(self._rules)
+        self._kinds, self._recursive = strata_of(self._rules)
         self._of_types: dict[tuple[str, ...], dict[str, None]] = {}
         self._static = _by_predicate(static)
         self._rows = dict(self._static)
@@ -119,12 +123,12 @@ class _World:
             case Or(parts):
                 return any(self.holds(part, binding) for part in parts)
             case Exists(parameters, body):
-                return any(self.holds(body, full) for full in self._bindings(parameters, self._where(body, True), binding))
-            case Forall(parameters, body):
-                return all(
-                    self.holds(body, full)
-                    for full in self._bindings(parameters, self._where(body, False), binding)
+                return any(
+                    self.holds(body, full) for full in self._bindings(parameters, self._where(body, True), binding)
                 )
+            case Forall(parameters, body):
+                where = self._where(body, False)
+                return all(self.holds(body, full) for full in self._bindings(parameters, where, binding))
 
     def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
         """The atoms that are facts of the state wherever the formula holds, or wherever it does not."""
@@ -143,7 +147,9 @@ class _World:
 
     def _join(self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding) -> Iterator[Binding]:
         if atoms:
-            atom = min(atoms, key=lambda one: (sum(self._open(t, names, binding) for t in one.terms), len(self._of(one))))
+            atom = min(
+                atoms, key=lambda one: (sum(self._open(t, names, binding) for t in one.terms), len(self._of(one)))
+            )
             rest = [one for one in atoms if one is not atom]
             for fact in self._of(atom):
                 grown = self._matched(atom, fact, names, binding)
@@ -164,9 +170,7 @@ class _World:
     def _open(term: str, names: Mapping[str, Parameter], binding: Binding) -> bool:
         return term in names and term not in binding
 
-    def _matched(
-        self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding
-    ) -> Binding | None:
+    def _matched(self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding) -> Binding | None:
         grown = dict(binding)
         for term, word in zip(atom.terms, fact[1:], strict=True):
             if self._open(term, names, grown):
@@ -216,9 +220,7 @@ class _World:
                 binding.setdefault(term, word) == word if term.startswith("?") else term == word
                 for term, word in zip(rule.head.terms, fact[1:], strict=True)
             )
-            fits = same and all(
-                self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding
-            )
+            fits = same and all(self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding)
             if fits and self.holds(rule.body, binding):
                 return True
         return False
@@ -233,36 +235,6 @@ class _World:
                 if self.holds(effect.condition, full):
                     changed.add(_ground(effect.atom, full))
         return (state - deleted) | added
-
-
-def _kinds(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozenset[str]], set[str]]:
-    """For each derived predicate those that rest on it and it on them, itself included; and which rest on themselves."""
-    below = {name: {p for rule in those for p in _used(rule.body) if p in rules} for name, those in rules.items()}
-    reached: dict[str, set[str]] = {}
-    for name in below:
-        seen: set[str] = set()
-        stack = list(below[name])
-        while stack:
-            at = stack.pop()
-            if at not in seen:
-                seen.add(at)
-                stack.extend(below[at])
-        reached[name] = seen
-    kinds = {
-        name: frozenset((name, *(other for other in reached[name] if name in reached[other]))) for name in below
-    }
-    return kinds, {name for name in below if name in reached[name]}
-
-
-def _used(formula: Formula) -> Iterator[str]:
-    match formula:
-        case Atom(predicate):
-            yield predicate
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from _used(part)
-        case Not(body) | Exists(_, body) | Forall(_, body):
-            yield from _used(body)
 
 
 def _ground(atom: Atom, binding: Binding) -> Fact:

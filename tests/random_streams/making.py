@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from random import Random
-
+from tests.random_streams.conditions import DOWN, PURE, UP, Conditions, Scope
 from tests.random_streams.oracle import Overflow, World
-from tests.random_streams.problems import CONSTANTS, MADE, THINGS, Act, Atom, Effect, Formula, Params, Problem, Rule, Source
+from tests.random_streams.problems import (
+    MADE,
+    THINGS,
+    Act,
+    Atom,
+    Effect,
+    Formula,
+    Params,
+    Problem,
+    Rule,
+    Source,
+)
 
-Scope = dict[str, str]
 
-PURE, UP, DOWN = "pure", "up", "down"
-"""What a predicate is with more results: the same, more, less."""
-
-
-class Maker:
+class Maker(Conditions):
     """Makes one problem, part by part."""
-
-    def __init__(self, seed: int) -> None:
-        self.rng = rng = Random(seed)
-        self.problem = Problem(seed, rng.random() < 0.35)
-        self.kinds: dict[str, str] = {}
-        self.count = 0
-        self.words: Sequence[str] = CONSTANTS
 
     def make(self) -> Problem:
         """All parts."""
@@ -42,12 +39,10 @@ class Maker:
         for name, kinds in problem.predicates.items():
             if name in problem.fluents or name in ("st", "st2"):
                 rows = list(self._rows(kinds))
-                problem.init |= {(name, *row) for row in rows if rng.random() < (0.3 if name in problem.fluents else 0.5)}
+                problem.init |= {
+                    (name, *row) for row in rows if rng.random() < (0.3 if name in problem.fluents else 0.5)
+                }
         return problem
-
-    def declare(self, name: str, kinds: Sequence[str], kind: str) -> None:
-        self.problem.predicates[name] = tuple(kinds)
-        self.kinds[name] = kind
 
     def static(self) -> None:
         self.declare("st", ("thing",), PURE)
@@ -91,7 +86,14 @@ class Maker:
                 certified.append((name, *(name for name, _ in params)))
             prefix = "plan" if state else "sample" if outputs else "test"
             self.problem.sources.append(
-                Source(f"{prefix}-{number}", inputs, domain, outputs, tuple(dict.fromkeys(certified)), ("f0", "f1") if state else ())
+                Source(
+                    f"{prefix}-{number}",
+                    inputs,
+                    domain,
+                    outputs,
+                    tuple(dict.fromkeys(certified)),
+                    ("f0", "f1") if state else (),
+                )
             )
         for name in [name for name, at in level.items() if at]:
             if "pose0" in self.problem.objects and "pose" in self.problem.predicates[name] and rng.random() < 0.5:
@@ -102,7 +104,9 @@ class Maker:
         rng = self.rng
         for number in range(rng.randint(2, 4)):
             size = rng.choice((0, 1, 1, 2, 2))
-            self.declare(f"f{number}", [rng.choice((*THINGS, *MADE, "thing", "pose", "pose")) for _ in range(size)], PURE)
+            self.declare(
+                f"f{number}", [rng.choice((*THINGS, *MADE, "thing", "pose", "pose")) for _ in range(size)], PURE
+            )
             self.problem.fluents.append(f"f{number}")
 
     def rules(self, number: int) -> None:
@@ -119,8 +123,13 @@ class Maker:
             ]
             if kind == PURE:
                 anchors = [atom for atom in anchors if self.kinds[atom[0]] == PURE]
-                inner = {term: k for term, k in inner.items() if any(term in atom for atom in anchors) or (term, k) in params}
-            parts: list[Formula] = [*anchors, *(self.formula(dict(inner), 1, kind != DOWN, kind == PURE) for _ in range(rng.choice((0, 1, 1))))]
+                inner = {
+                    term: k for term, k in inner.items() if any(term in atom for atom in anchors) or (term, k) in params
+                }
+            parts: list[Formula] = [
+                *anchors,
+                *(self.formula(dict(inner), 1, kind != DOWN, kind == PURE) for _ in range(rng.choice((0, 1, 1)))),
+            ]
             rng.shuffle(parts)
             new = tuple(pair for pair in inner.items() if pair not in params)
             body: Formula = ("and", *parts)
@@ -128,11 +137,14 @@ class Maker:
         self.declare(name, kinds, kind)
         if len(kinds) > 0 and kind != DOWN and rng.random() < 0.3:
             inner = {"?h0": kinds[0]}
-            links = [p for p in self.generating(kind != DOWN) if self.problem.predicates[p] == (kinds[0], kinds[0]) and (kind == UP or self.kinds[p] == PURE)]
+            links = [
+                p
+                for p in self.generating(kind != DOWN)
+                if self.problem.predicates[p] == (kinds[0], kinds[0]) and (kind == UP or self.kinds[p] == PURE)
+            ]
             if links:
                 link = rng.choice(links)
-                terms = ["?h0" if i == 0 else "?k" for i in range(2)]
-                step = ("and", (link, *terms), (name, "?k", *(p for p, _ in params[1:])))
+                step = ("and", (link, "?h0", "?k"), (name, "?k", *(p for p, _ in params[1:])))
                 self.problem.rules.append(Rule(head, params, ("exists", (("?k", kinds[0]),), step)))
 
     def act(self, number: int) -> None:
@@ -172,88 +184,6 @@ class Maker:
             cost = ("price", rng.choice(values))
         self.problem.acts.append(Act(f"act{number}", tuple(scope.items()), ("and", *parts), tuple(effects), cost))
 
-    # Atoms and conditions.
-
-    def generating(self, up: bool, state: bool = False) -> list[str]:
-        """The predicates whose atoms say where variables come from."""
-        names = [name for name in self.problem.predicates if state or not name.startswith("w")]
-        return [name for name in names if self.kinds[name] == PURE or (up and self.kinds[name] == UP)]
-
-    def anchor(self, name: str, scope: Scope, same: float) -> Atom:
-        """An atom over variables of the scope and new ones, which are put into it."""
-        terms: list[str] = []
-        for kind in self.problem.predicates[name]:
-            known = [term for term, one in scope.items() if one == kind and term not in terms]
-            if known and self.rng.random() < same:
-                terms.append(self.rng.choice(known))
-            else:
-                self.count += 1
-                terms.append(f"?{kind[0]}{self.count}")
-                scope[terms[-1]] = kind
-        return (name, *terms)
-
-    def leaf(self, names: Sequence[str], scope: Scope) -> Atom | None:
-        """An atom over the scope's variables and the problem's objects."""
-        for name in self.rng.sample(names, len(names)):
-            terms: list[str] = []
-            for kind in self.problem.predicates[name]:
-                mine = [term for term, one in scope.items() if one == kind]
-                choices = [*mine, *mine, *(o for o in self.words if self.problem.objects[o] == kind)]
-                if not choices:
-                    break
-                terms.append(self.rng.choice(choices))
-            else:
-                return (name, *terms)
-        return None
-
-    def fluent(self, scope: Scope) -> Atom | None:
-        return self.leaf(self.problem.fluents, scope)
-
-    def mentioning(self, term: str, scope: Scope) -> Atom | None:
-        """A fluent atom with the variable in it: it holds of what was touched only."""
-        for _ in range(8):
-            atom = self.fluent(scope)
-            if atom is not None and term in atom:
-                return atom
-        return None
-
-    def formula(self, scope: Scope, depth: int, up: bool, pure: bool = False) -> Formula:
-        """A condition that more results help (`up`), or hinder."""
-        rng = self.rng
-        wanted = {PURE} if pure else {PURE, UP} if up else {PURE, DOWN}
-        kind = rng.choice(("leaf", "leaf", "and", "or", "not", "not", "exists", "forall", "=")) if depth else "leaf"
-        if kind in ("and", "or"):
-            return (kind, *(self.formula(scope, depth - 1, up, pure) for _ in range(2)))
-        if kind == "not":
-            return ("not", self.formula(scope, depth - 1, not up, pure))
-        if kind == "=":
-            pairs = [(x, y) for x in scope for y in scope if x < y and scope[x] == scope[y]]
-            if pairs:
-                same: Formula = ("=", *rng.choice(pairs))
-                return same if rng.random() < 0.3 else ("not", same)
-        if kind in ("exists", "forall"):
-            return self.quantified(kind, scope, depth, up, pure)
-        if not pure and rng.random() < 0.25:
-            other = self.leaf([name for name, one in self.kinds.items() if one in ({PURE, DOWN} if up else {PURE, UP})], scope)
-            if other is not None and not other[0].startswith("w"):
-                return ("not", other)
-        names = [name for name, one in self.kinds.items() if one in wanted and not name.startswith("w")]
-        return self.leaf(names, scope) or ("and",)
-
-    def quantified(self, kind: str, scope: Scope, depth: int, up: bool, pure: bool) -> Formula:
-        self.count += 1
-        name, what = f"?q{self.count}", self.rng.choice((*THINGS, *MADE))
-        inner = {**scope, name: what}
-        body = self.formula(inner, depth - 1, up, pure)
-        if what in THINGS:
-            return (kind, ((name, what),), body)
-        guard = self.mentioning(name, inner)
-        if guard is None:
-            return ("and",)
-        if kind == "exists":
-            return ("exists", ((name, what),), ("and", guard, body))
-        return ("forall", ((name, what),), ("imply", guard, body))
-
     def aim(self, any_goal: bool) -> bool:
         """Choose a goal that holds after some random actions; or one that may be out of reach. Whether there is one."""
         rng, problem = self.rng, self.problem
@@ -281,15 +211,7 @@ class Maker:
             problem.goal = ("and", *reached[: rng.choice((1, 1, 2, 3))])
             return True
         problem.goal = ("and", *new[:1])
-        return bool(new) and (any_goal or bool(taken) and rng.random() < 0.3)
-
-    def _rows(self, kinds: Sequence[str]) -> Iterator[tuple[str, ...]]:
-        if not kinds:
-            yield ()
-            return
-        for name in [o for o, kind in self.problem.objects.items() if kind == kinds[0]]:
-            for rest in self._rows(kinds[1:]):
-                yield (name, *rest)
+        return bool(new) and (any_goal or (bool(taken) and rng.random() < 0.3))
 
 
 ATTEMPTS = 30

@@ -157,7 +157,9 @@ class World:
 
     def _join(self, atoms: Sequence[Atom], kinds: Mapping[str, str], env: Env, model: Model) -> Iterator[Env]:
         if atoms:
-            atom = min(atoms, key=lambda one: (sum(t in kinds and t not in env for t in one[1:]), len(model.facts[one[0]])))
+            atom = min(
+                atoms, key=lambda one: (sum(t in kinds and t not in env for t in one[1:]), len(model.facts[one[0]]))
+            )
             rest = [one for one in atoms if one is not atom]
             for fact in sorted(model.facts[atom[0]]):
                 grown = dict(env)

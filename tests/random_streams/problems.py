@@ -15,7 +15,7 @@ from typing import Any
 Term = str
 Atom = tuple[str, ...]
 Formula = tuple[Any, ...]
-"""("pred", terms...), ("=", a, b), ("and", ...), ("or", ...), ("not", f), ("exists" or "forall", ((name, type),), f)."""
+"""("pred", term, ...), ("=", a, b), ("and" or "or", ...), ("not", f), ("exists" or "forall", ((name, type),), f)."""
 
 Params = tuple[tuple[str, str], ...]
 

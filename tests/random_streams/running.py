@@ -181,9 +181,7 @@ def _listed(formula: Formula) -> Any:
     return tuple(_listed(part) if isinstance(part, tuple) else part for part in formula)
 
 
-def compare(
-    problem: Problem, ways: dict[str, Callable[[Problem], tuple[Outcome, str | None]]]
-) -> Row:
+def compare(problem: Problem, ways: dict[str, Callable[[Problem], tuple[Outcome, str | None]]]) -> Row:
     """The brute force and the planner's ways: what they say, and in a word each what is wrong, if anything is."""
     solvable = World(problem).solvable(STATES)
     row: Row = {"seed": problem.seed, "solvable": solvable, "wrong": {}, "missed": {}}
