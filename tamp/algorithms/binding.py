@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
+from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.stream import Instance, Streams
@@ -208,6 +209,10 @@ class Binder:
                 return
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
+            words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
+            if not any(word.startswith(MARK) for word in words):
+                for fact in self._streams.certified(instance, node.guess[1]):
+                    self._experience.note_exact(fact, node.stream.declaration.fluents, present)
             if present:  # nobody says what of the state is to blame
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)

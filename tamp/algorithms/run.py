@@ -10,6 +10,7 @@ from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
 from tamp.algorithms.doubts import doubts
+from tamp.algorithms.elsewhere import elsewhere
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.imagination import Imagination
 from tamp.algorithms.lifting import build_skeleton
@@ -69,6 +70,7 @@ class Run(Imagination):
         self.traced: dict[object, tuple[Grounded | None, object]] = {}
         self.latest: Skeleton | None = None
         self.prices: dict[Fact, float] = {}
+        self.searched = self.grounded
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -79,6 +81,7 @@ class Run(Imagination):
         """
         started = time.perf_counter()
         grounded, prices = with_nogoods(self.grounded, self.experience)
+        self.searched = grounded = elsewhere(grounded, self.experience)
         prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
@@ -114,17 +117,22 @@ class Run(Imagination):
         """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
         operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
         traced, key = self.traced.get(operators, (None, None))
-        known = self.skeletons.get(key) if traced is self.grounded else None
+        known = self.skeletons.get(key) if traced is self.grounded and not self.experience.exact else None
         if known is None:
-            steps, trace = to_steps(self.grounded, plan, self.prices)
+            steps, trace = to_steps(self.searched, plan, self.prices)
             key = (tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static)
             known = self.skeletons.get(key)
-            if known is None or any((node.stream.name, node.guess[0]) in self.dead for node in known.nodes):
+            if known is None or not self.is_open(known):
                 maker, promise = self.optimism.maker, self.promise
                 known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given)
                 self.effort.skeletons = len(self.skeletons)
             self.traced[operators] = (None if trace.open else self.grounded), key
         return known
+
+    def is_open(self, skeleton: Skeleton) -> bool:
+        """Whether all calls of a skeleton may still give something that is not known: its plan may rest on others."""
+        calls = ((node.stream.name, node.guess[0]) for node in skeleton.nodes)
+        return not any(call in self.dead or call in self.settled for call in calls)
 
     def promise(self, name: str) -> Fact | None:
         """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""

@@ -118,9 +118,10 @@ class Maker(Conditions):
         head = (name, *(name for name, _ in params))
         for _ in range(rng.choice((1, 1, 2))):
             inner: Scope = dict(params)
-            anchors = [
-                self.anchor(one, inner, 0.7) for one in rng.choices(self.generating(kind != DOWN), k=rng.randint(1, 2))
-            ]
+            names = rng.choices(self.generating(kind != DOWN), k=rng.randint(1, 2))
+            if kind == UP and rng.random() < 0.6:
+                names = self.tied() or names
+            anchors = [self.anchor(one, inner, 0.85) for one in names]
             if kind == PURE:
                 anchors = [atom for atom in anchors if self.kinds[atom[0]] == PURE]
                 inner = {
@@ -147,11 +148,24 @@ class Maker(Conditions):
                 step = ("and", (link, "?h0", "?k"), (name, "?k", *(p for p, _ in params[1:])))
                 self.problem.rules.append(Rule(head, params, ("exists", (("?k", kinds[0]),), step)))
 
+    def tied(self) -> list[str]:
+        """A certified predicate and a fluent one about the same kind of value: "what is there was tested"."""
+        predicates = self.problem.predicates
+        pairs = [
+            [certified, fluent]
+            for certified in predicates
+            for fluent in self.problem.fluents
+            if certified[0] == "c" and set(predicates[certified]) & set(predicates[fluent]) & set(MADE)
+        ]
+        return self.rng.choice(pairs) if pairs else []
+
     def act(self, number: int) -> None:
         """An action with a precondition that says where its arguments come from."""
         rng = self.rng
         scope: Scope = {}
-        names = rng.choices(self.generating(True, state=True), k=rng.randint(1, 3))
+        known = self.generating(True, state=True)
+        known += 3 * [name for name in known if name[0] == "d"]
+        names = rng.choices(known, k=rng.randint(1, 3))
         parts: list[Formula] = [self.anchor(name, scope, 0.65) for name in names]
         if rng.random() < 0.15:
             scope[f"?e{number}"] = rng.choice(THINGS)
