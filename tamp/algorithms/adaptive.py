@@ -159,7 +159,7 @@ class Adaptive(Run):
             result = second.solve(LOOK)
         except OutOfTime:
             return None
-        self.given_up |= result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK
+        self.given_up = self.given_up or (result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK)
         return result if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED) else None
 
     def bystanders(self) -> frozenset[str]:

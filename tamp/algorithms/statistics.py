@@ -66,9 +66,7 @@ class Experience:
         """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
 
-    def note_exact(
-        self, fact: tuple[str, ...], predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
-    ) -> None:
+    def note_exact(self, fact: tuple[str, ...], predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
         """Note that a fact does not hold in the states that have just these facts of the predicates."""
         self.exact.setdefault((fact, predicates), {})[state] = None
 

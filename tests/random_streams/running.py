@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from tamp.algorithms.anytime import solve_anytime
 from tamp.algorithms.costs import BoundFunction
@@ -25,9 +25,18 @@ from tests.random_streams.problems import CONSTANTS, Atom, Formula, Problem, Sou
 STATES = 300
 """States that the brute force looks at; then it does not say that there is no plan."""
 
-ENDED = (Outcome.INFEASIBLE, Outcome.EXHAUSTED)
-
 Row = dict[str, Any]
+
+
+class Verdict(NamedTuple):
+    """How a run ended, what is wrong with its plan, and how many plans it dropped in the replay."""
+
+    outcome: Outcome
+    fault: str | None = None
+    refuted: int = 0
+
+
+Way = Callable[[Problem], Verdict]
 
 
 def stream_function(problem: Problem, source: Source) -> Callable[..., Any]:
@@ -97,22 +106,26 @@ def judged(problem: Problem, result: Result) -> str | None:
     return fault(problem, plan, certified)
 
 
-def run_algorithm(problem: Problem, name: str, seconds: float, seed: int = 0) -> tuple[Outcome, str | None]:
+def run_algorithm(problem: Problem, name: str, seconds: float, seed: int = 0) -> Verdict:
     """How an algorithm ends, and what is wrong with its plan."""
     result = ALGORITHMS[name](
         stream_task(problem), lambda key: random.Random(f"{seed} {key}"), Deadline(seconds), lambda effort: None
     )
-    return result.outcome, judged(problem, result) if result.outcome is Outcome.SOLVED else None
+    said = judged(problem, result) if result.outcome is Outcome.SOLVED else None
+    return Verdict(result.outcome, said, result.effort.refuted)
 
 
-def run_anytime(problem: Problem, seconds: float, rounds: int, seed: int = 0) -> tuple[Outcome, str | None]:
+def run_anytime(problem: Problem, seconds: float, rounds: int, seed: int = 0) -> Verdict:
     """The same of `--optimize`, all its plans judged; it is stopped after so many rounds."""
     faults: list[str | None] = []
+    refuted = 0
     costs: list[float] = []
     deadline = Deadline(seconds)
     left = rounds
 
     def better(result: Result) -> bool:
+        nonlocal refuted
+        refuted = result.effort.refuted
         faults.append(judged(problem, result))
         costs.append(sum(action.cost for action in result.actions))
         return len(costs) == 1 or costs[-1] <= min(costs)
@@ -135,10 +148,10 @@ def run_anytime(problem: Problem, seconds: float, rounds: int, seed: int = 0) ->
         ).outcome
     except OutOfTime:
         outcome = Outcome.SOLVED if costs else Outcome.TIMEOUT
-    return outcome, next((one for one in faults if one is not None), None)
+    return Verdict(outcome, next((one for one in faults if one is not None), None), refuted)
 
 
-def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int = 0) -> tuple[Outcome, str | None]:
+def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int = 0) -> Verdict:
     """The same by way of PDDLStream's problem tuple."""
 
     def adapted(source: Source) -> Any:
@@ -161,7 +174,7 @@ def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int =
         seed=seed,
     )
     if not solution.solved:
-        return solution.outcome, None
+        return Verdict(solution.outcome, None, solution.effort.refuted)
     acts = {act.name: act for act in problem.acts}
     plan: list[tuple[str, tuple[str, ...], float]] = []
     for action in solution.plan or ():
@@ -170,7 +183,8 @@ def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int =
         cost = act.cost
         due = problem.price(cost[0], action.args[names.index(cost[1])]) if isinstance(cost, tuple) else cost
         plan.append((action.name, action.args, due))
-    return solution.outcome, fault(problem, plan, [tuple(fact) for fact in solution.certificate])
+    said = fault(problem, plan, [tuple(fact) for fact in solution.certificate])
+    return Verdict(solution.outcome, said, solution.effort.refuted)
 
 
 def _listed(formula: Formula) -> Any:
@@ -181,18 +195,19 @@ def _listed(formula: Formula) -> Any:
     return tuple(_listed(part) if isinstance(part, tuple) else part for part in formula)
 
 
-def compare(problem: Problem, ways: dict[str, Callable[[Problem], tuple[Outcome, str | None]]]) -> Row:
-    """The brute force and the planner's ways: what they say, and in a word each what is wrong, if anything is."""
+def compare(problem: Problem, ways: dict[str, Way]) -> Row:
+    """The brute force and the planner's ways: what each says, which plans are wrong, missed, or dropped by itself."""
     solvable = World(problem).solvable(STATES)
-    row: Row = {"seed": problem.seed, "solvable": solvable, "wrong": {}, "missed": {}}
+    row: Row = {"seed": problem.seed, "solvable": solvable, "wrong": {}, "missed": {}, "refuted": {}}
     for name, way in ways.items():
-        outcome, said = way(problem)
+        outcome, said, refuted = way(problem)
         row[name] = outcome.name
+        if refuted:
+            row["refuted"][name] = refuted
         if said is not None:
             row["wrong"][name] = said
-        elif outcome is Outcome.SOLVED:
-            if solvable is False:
-                row["wrong"][name] = "the brute force finds no plan"
-        elif solvable:
+        elif outcome is Outcome.SOLVED and solvable is False:
+            row["wrong"][name] = "the brute force finds no plan"
+        elif outcome is not Outcome.SOLVED and solvable:
             row["missed"][name] = outcome.name
     return row
