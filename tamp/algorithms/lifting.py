@@ -116,6 +116,7 @@ class _Builder:
             for fact in sorted(usage.present):
                 self._adopt(fact, around)
             self._require(usage.fact, around, number)
+            self._certify((usage.fact,), around)
         for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
                 self._anything(argument, local, number)

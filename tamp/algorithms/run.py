@@ -131,8 +131,8 @@ class Run(Imagination):
 
     def is_open(self, skeleton: Skeleton) -> bool:
         """Whether all calls of a skeleton may still give something that is not known: its plan may rest on others."""
-        calls = ((node.stream.name, node.guess[0]) for node in skeleton.nodes)
-        return not any(call in self.dead or call in self.settled for call in calls)
+        calls = (((node.stream.name, node.guess[0]), bool(node.outputs)) for node in skeleton.nodes)
+        return not any(call in self.dead or (gives and call in self.settled) for call, gives in calls)
 
     def promise(self, name: str) -> Fact | None:
         """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""
