@@ -237,7 +237,8 @@ def type_facts(task: Task) -> list[Fact]:
 def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
     """The test streams whose facts are only asked for in order to lift a guard: under a negation in a derived rule.
 
-    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate.
+    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate. It
+    is asked of what streams give, or of types: where only given facts say what it may be asked of, they are looked up.
     """
     everything = list(streams)
     positive = {atom.predicate for atom, sign in _atoms(task) if sign}
@@ -254,6 +255,9 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
         and len(made[0][0].declaration.certified) == 1
         and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
         and predicate not in positive
+        and all(
+            atom.predicate in makers or atom.predicate in task.domain.types for atom in made[0][0].declaration.domain
+        )
     }
 
 
