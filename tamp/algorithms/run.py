@@ -223,7 +223,10 @@ class Run(Imagination):
         facts = {*self.known, *self.real, *self.optimism.makers, *self.grounded.reachable, *self.grounded.initial}
         types = {**self.objects.types, **self.optimism.types}
         missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
-        return self.result(outcome, explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline))
+        reasons = explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline)
+        if self.experience.exact:  # what failed in the states that plans lead through is the cause
+            reasons = (*explain_failures(self.problem, self.streams, self.tallies(), True), *reasons)
+        return self.result(outcome, reasons)
 
     def tallies(self) -> tuple[Tally, ...]:
         """What was tried, by action and stream."""
