@@ -177,6 +177,7 @@ def _statistics(solution: Solution) -> dict[str, Any]:
         "searches": effort.searches,
         "expanded": effort.expanded,
         "skeletons": effort.skeletons,
+        **({"refuted": effort.refuted} if effort.refuted else {}),
         "streams": {
             name: {
                 "calls": statistics.calls,

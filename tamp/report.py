@@ -170,6 +170,7 @@ def _effort(solution: Solution, loading: float) -> list[str]:
         _count(effort.skeletons, "skeleton"),
         _count(effort.searches, "search", "searches"),
         f"{_count(effort.expanded, 'state')} expanded",
+        *([f"{_count(effort.refuted, 'plan')} dropped in the replay"] if effort.refuted else ()),
     ]
     samples: list[str] = []
     for name, statistics in solution.statistics.items():

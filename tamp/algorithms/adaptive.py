@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from tamp.algorithms.anything import distinguishes
 from tamp.algorithms.bystanders import blamed, bystanders
 from tamp.algorithms.incremental import DRY, Incremental
 from tamp.algorithms.run import Run
@@ -37,6 +38,9 @@ SECOND_OPINION = 2
 TRAILS = 10
 """Rounds after which it is asked as well, doubled each time, where rounds draw little and operators are many: streams
 that give one value and end have each plan of a tree tried in turn, while calling all of them is cheap."""
+
+LOOK = 100
+"""Draws for a look at real values before a task counts as infeasible whose values may have to differ."""
 
 LITTLE = 20
 """Draws a round that are little; it gets ten times as many."""
@@ -131,13 +135,13 @@ class Adaptive(Run):
             if self.deadline.passed:
                 raise OutOfTime
             self.doubtful = True
-            return None if self.recall() or self.deepen() else self.hopeless()
+            return None if self.recall() or self.deepen() else (self._looked() or self.hopeless())
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
         budget = max(ROUND_BUDGET, NODE_BUDGET * len(skeleton.nodes)) * (1 + skeleton.rounds)
-        values = self.binder.bind(skeleton, tries, budget)
-        if values is not None and self.stands(skeleton, values):
+        values = self.bind(skeleton, tries, budget)
+        if values is not None:
             self.bound = skeleton, values
             return self.solved(skeleton, values)
         skeleton.rounds += 1
@@ -148,6 +152,27 @@ class Adaptive(Run):
         if learned and not recalled:
             self.optimism, self.grounded = self.imagined()
         return None
+
+    def _looked(self) -> Result | None:
+        """A plan that placeholders hide, since it needs two values of one call: placeholders are one value each.
+
+        Where the goal is out of reach even if nothing is ever undone, and no condition wants values to differ, there is
+        none. Else real values are looked at, a few; if these are all that there are, and plans with them fail in the
+        states that they lead through, nothing is proven.
+        """
+        goal = self.grounded.goal.positive
+        reached = goal <= self.grounded.reachable | self.grounded.initial
+        if self.problem.by_value or not self.problem.streams or not (reached or distinguishes(self.task)):
+            return None  # whoever has values equal that come from different calls looks more closely
+        second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
+        second.brief = True
+        second.streams.remember(self.streams)
+        try:
+            result = second.solve(LOOK)
+        except OutOfTime:
+            return None
+        self.given_up = self.given_up or (result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK)
+        return result if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED) else None
 
     def bystanders(self) -> frozenset[str]:
         """Nothing is imagined of what the goal does not name, until it stands in the way or nothing else will do."""

@@ -87,7 +87,7 @@ def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
     if plan is None:
         return None
     skeleton = run.skeleton(plan)
-    values = run.binder.bind(skeleton, FIRST_TRIES + skeleton.rounds, ROUND_BUDGET * (1 + skeleton.rounds))
+    values = run.bind(skeleton, FIRST_TRIES + skeleton.rounds, ROUND_BUDGET * (1 + skeleton.rounds))
     skeleton.rounds += 1
     return _found(run, skeleton, values)
 
@@ -100,10 +100,8 @@ def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None
         for number, node in enumerate(skeleton.nodes)
         if not node.stream.is_test and first <= node.step < first + WINDOW
     }
-    return _found(run, skeleton, run.binder.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None)
+    return _found(run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None)
 
 
 def _found(run: Adaptive, skeleton: Skeleton, values: dict[int, str] | None) -> _Found | None:
-    if values is None or not run.stands(skeleton, values):
-        return None
-    return run.solved(skeleton, values), (skeleton, values)
+    return None if values is None else (run.solved(skeleton, values), (skeleton, values))

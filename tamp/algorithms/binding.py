@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
+from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.stream import Instance, Streams
 from tamp.clock import Deadline, OutOfTime
 from tamp.pddl.structs import Fact
+
+REFUSALS = 20
+"""Complete sets of values that may turn out not to hold before a skeleton is left for this time."""
 
 RECENT = 3
 """How many of an instance's latest results are tried again before drawing new ones."""
@@ -38,7 +42,15 @@ class Binder:
         self.units = 0
         self._met: list[tuple[Node, Instance]] = []
 
-    def bind(self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()) -> dict[int, str] | None:
+    def bind(
+        self,
+        skeleton: Skeleton,
+        tries: int,
+        budget: int,
+        fresh: Set[int] = frozenset(),
+        *,
+        holds: Callable[[dict[int, str]], bool] | None = None,
+    ) -> dict[int, str] | None:
         """Values for all variables, or None when none were found within the budget.
 
         Args:
@@ -46,6 +58,7 @@ class Binder:
             tries: New draws a visit of a node.
             budget: Draws in all.
             fresh: The nodes that are to take new values before those that worked.
+            holds: Has the last word on values for all variables; what it refuses is not returned.
         """
         nodes = skeleton.nodes
         makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
@@ -53,9 +66,18 @@ class Binder:
         levels: list[_Level] = []
         spent_before = self.units
         self._met.clear()
-        while len(levels) < len(nodes):
+        refusals = 0
+        while True:
             index = len(levels)
-            levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
+            if index < len(nodes):
+                levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
+            elif holds is None or holds(values):
+                return values
+            else:
+                refusals += 1
+                if refusals > REFUSALS or not levels:
+                    return None
+                levels[-1].conflict.update(range(index - 1))  # any of them may be to blame
             while True:
                 level = levels[-1]
                 index = len(levels) - 1
@@ -83,7 +105,6 @@ class Binder:
                 levels[target].culprits |= conflict
                 if self._deadline.passed:
                     raise OutOfTime
-        return values
 
     def _settle(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: the next search learns from all.
@@ -115,9 +136,9 @@ class Binder:
         fresh: bool,
     ) -> _Level:
         node = skeleton.nodes[index]
-        inputs = tuple(_value(term, values) for term in node.inputs)
-        fluents = frozenset[Fact](
-            (fact[0], *(_value(term, values) for term in fact[1]))
+        inputs = tuple(value_of(term, values) for term in node.inputs)
+        fluents = node.given.union(
+            (fact[0], *(value_of(term, values) for term in fact[1]))
             for fact, _ in node.fluents
             if all(isinstance(term, str) or term in values for term in fact[1])
         )
@@ -188,6 +209,10 @@ class Binder:
                 return
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
+            words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
+            if not any(word.startswith(MARK) for word in words):
+                for fact in self._streams.certified(instance, node.guess[1]):
+                    self._experience.note_exact(fact, node.stream.declaration.fluents, present)
             if present:  # nobody says what of the state is to blame
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)
@@ -207,10 +232,11 @@ def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
     return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
 
 
-def _value(term: Term, values: dict[int, str]) -> str:
+def value_of(term: Term, values: Mapping[int, str]) -> str:
+    """A term's value."""
     return term if isinstance(term, str) else values[term]
 
 
-def substitute(fact: LiftedFact, values: dict[int, str]) -> Fact:
+def substitute(fact: LiftedFact, values: Mapping[int, str]) -> Fact:
     """A lifted fact with its variables' values."""
-    return (fact[0], *(_value(term, values) for term in fact[1]))
+    return (fact[0], *(value_of(term, values) for term in fact[1]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from tamp.algorithms.anything import anything
 from tamp.algorithms.costs import Costs
 from tamp.algorithms.optimistic import (
     ENOUGH,
@@ -52,7 +53,12 @@ class Imagination:
         self.depth = 1
         self.shallow: int | None = None
         self.aside = self.bystanders()
-        useful = relevant(problem.streams, used_predicates(task))
+        wanted = anything(task)
+        useful = relevant(
+            problem.streams,
+            used_predicates(task),
+            lambda types: any(task.domain.fits(types, want) for want in wanted),
+        )
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
         self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
@@ -61,6 +67,9 @@ class Imagination:
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
         self.real: dict[Fact, None] = {}
         self.known = [*sorted(task.initial), *type_facts(task)]
+        changing = task.domain.fluent_predicates
+        shown = {name for stream in problem.streams for name in stream.declaration.fluents} - changing
+        self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.grounded = self.imagined()
 

@@ -103,6 +103,10 @@ class Incremental(Run):
         self.optimism, self.grounded = optimism, grounded
         return True
 
+    def promise(self, name: str) -> Fact | None:
+        """As of every run; the values are those found."""
+        return next((fact for fact in self.found if name in fact[1:]), None) or super().promise(name)
+
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
         dry = 0
@@ -116,8 +120,8 @@ class Incremental(Run):
             skeleton = self.skeleton(found.plan)
             self.latest = skeleton
             before = self.binder.units
-            values = self.binder.bind(skeleton, TRIES, BUDGET)
-            if values is not None and self.stands(skeleton, values):
+            values = self.bind(skeleton, TRIES, BUDGET)
+            if values is not None:
                 return self.solved(skeleton, values)
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0
@@ -132,8 +136,9 @@ class Incremental(Run):
         static = [stream for stream in self.useful if not stream.is_fluent]
         fresh = False
         known = [*self.known, *self.found]
-        guesses = imagine(static, known, levels=1).makers.values()
-        for guess in dict.fromkeys(guesses):
+        for guess in imagine(static, known, levels=1).guesses:
+            if all(fact in self.found for fact in guess.certified):
+                continue
             shown = [fact for fact in self.known if fact[0] in guess.stream.declaration.fluents]
             instance = self.streams.instance(guess.stream.name, guess.inputs, frozenset(shown))
             for _ in range(1 if guess.stream.is_test else PER_LEVEL):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -61,7 +61,8 @@ class Optimism:
     """All guesses: which static facts could become true, and by which call.
 
     Attributes:
-        makers: Fact to the guess that certifies it.
+        makers: Fact to the guess that certifies it, the first one of several.
+        guesses: All of them.
         types: Placeholder to its types.
         assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
             one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
@@ -69,6 +70,7 @@ class Optimism:
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
+    guesses: list[Guess] = field(default_factory=list[Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
     complete: bool = True
@@ -166,6 +168,7 @@ def imagine(
         if call.outputs:
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
         made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
+        optimism.guesses.append(made)
         for fact in call.certified:
             if fact not in level_of:
                 optimism.makers[fact] = made
@@ -193,8 +196,16 @@ def imagine(
     return optimism
 
 
-def relevant(streams: Iterable[BoundStream], predicates: Iterable[str]) -> list[BoundStream]:
-    """The streams whose certified facts the given predicates, or other relevant streams, can use."""
+def relevant(
+    streams: Iterable[BoundStream], predicates: Iterable[str], asked: Callable[[tuple[str, ...]], bool] | None = None
+) -> list[BoundStream]:
+    """The streams whose certified facts the given predicates, or other relevant streams, can use.
+
+    Args:
+        streams: Those to choose from.
+        predicates: Those that conditions mention.
+        asked: Whether something of these types is asked for, whatever is certified of it (see `anything`).
+    """
     needed = set(predicates)
     remaining = list(streams)
     chosen: list[BoundStream] = []
@@ -202,7 +213,8 @@ def relevant(streams: Iterable[BoundStream], predicates: Iterable[str]) -> list[
     while progress:
         progress = False
         for stream in list(remaining):
-            if any(atom.predicate in needed for atom in stream.declaration.certified):
+            used = any(atom.predicate in needed for atom in stream.declaration.certified)
+            if used or (asked is not None and any(asked(types) for types in stream.output_types)):
                 remaining.remove(stream)
                 chosen.append(stream)
                 needed.update(atom.predicate for atom in stream.declaration.domain)
@@ -225,7 +237,8 @@ def type_facts(task: Task) -> list[Fact]:
 def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
     """The test streams whose facts are only asked for in order to lift a guard: under a negation in a derived rule.
 
-    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate.
+    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate. It
+    is asked of what streams give, or of types: where only given facts say what it may be asked of, they are looked up.
     """
     everything = list(streams)
     positive = {atom.predicate for atom, sign in _atoms(task) if sign}
@@ -242,6 +255,9 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
         and len(made[0][0].declaration.certified) == 1
         and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
         and predicate not in positive
+        and all(
+            atom.predicate in makers or atom.predicate in task.domain.types for atom in made[0][0].declaration.domain
+        )
     }
 
 

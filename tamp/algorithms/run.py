@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Set
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from tamp.algorithms.binding import Binder, substitute
 from tamp.algorithms.doubts import doubts
+from tamp.algorithms.elsewhere import elsewhere
 from tamp.algorithms.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.algorithms.imagination import Imagination
 from tamp.algorithms.lifting import build_skeleton
 from tamp.algorithms.missing import Missing
+from tamp.algorithms.optimistic import MARK
 from tamp.algorithms.skeleton import Skeleton
 from tamp.algorithms.solution import GroundAction, Outcome, Progress, Result, StreamTask
-from tamp.algorithms.standing import stands
+from tamp.algorithms.standing import Fault, Standing
 from tamp.algorithms.statistics import Experience
 from tamp.algorithms.steps import to_steps, with_nogoods
 from tamp.algorithms.stream import Streams
@@ -30,6 +32,7 @@ from tamp.search.forward import Result as Found
 from tamp.search.instantiate import Instantiator
 from tamp.search.mutex import excluded
 from tamp.search.operators import Grounded
+from tamp.search.replay import REFUTED
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
@@ -42,7 +45,12 @@ class Run(Imagination):
     """One run of planning: what it knows, and the steps that algorithms are made of.
 
     `pruned` leaves out the streams whose facts nothing asks for.
+
+    Attributes:
+        brief: Whether searches end without a plan where they have seen SEARCH_LIMIT states.
     """
+
+    brief = False
 
     def __init__(
         self,
@@ -58,12 +66,16 @@ class Run(Imagination):
         self.progress = progress
         super().__init__(problem, pruned)
         self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
+        self.standing = Standing(problem.task, self.streams)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
+        self.traced: dict[object, tuple[Grounded | None, object]] = {}
         self.latest: Skeleton | None = None
         self.doubtful = False
         self._audited: Grounded | None = None
+        self.prices: dict[Fact, float] = {}
+        self.searched = self.grounded
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -83,17 +95,19 @@ class Run(Imagination):
         if self.doubtful and self.excluded():
             return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
         grounded, prices = with_nogoods(self.grounded, self.experience)
+        self.searched = grounded = elsewhere(grounded, self.experience)
         prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
+        self.prices = prices
         found = search(
             grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below,
             audit=self.excluded,
         )  # fmt: skip
         self.effort.expanded += found.expanded
         if (
-            found.reason is Reason.LIMIT and below == math.inf
+            found.reason is Reason.LIMIT and below == math.inf and not self.brief
         ):  # with many prices many plans look alike: then any plan will do
             found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded
@@ -120,13 +134,31 @@ class Run(Imagination):
         return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
-        """The plan's skeleton; the same one when the plan was found before."""
-        signature = tuple((operator.name, operator.arguments) for operator in plan.operators)
-        if signature not in self.skeletons:
-            steps, goal = to_steps(self.grounded, plan)
-            self.skeletons[signature] = build_skeleton(steps, goal, self.optimism.maker, self.optimism.promise)
-            self.effort.skeletons = len(self.skeletons)
-        return self.skeletons[signature]
+        """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
+        operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
+        traced, key = self.traced.get(operators, (None, None))
+        known = self.skeletons.get(key) if traced is self.grounded and not self.experience.exact else None
+        if known is None:
+            steps, trace = to_steps(self.searched, plan, self.prices)
+            key = (tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static)
+            known = self.skeletons.get(key)
+            if known is None or not self.is_open(known):
+                maker, promise = self.optimism.maker, self.promise
+                known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given)
+                self.effort.skeletons = len(self.skeletons)
+            self.traced[operators] = (None if trace.open else self.grounded), key
+        return known
+
+    def is_open(self, skeleton: Skeleton) -> bool:
+        """Whether all calls of a skeleton may still give something that is not known: its plan may rest on others."""
+        calls = (((node.stream.name, node.guess[0]), bool(node.outputs)) for node in skeleton.nodes)
+        return not any(call in self.dead or (gives and call in self.settled) for call, gives in calls)
+
+    def promise(self, name: str) -> Fact | None:
+        """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""
+        if name.startswith(MARK):
+            return self.optimism.promise(name)
+        return next((fact for fact in self.real if name in fact[1:]), None)
 
     def bury(self, skeleton: Skeleton) -> bool:
         """Note the calls with real inputs that ended without any value; whether there were new ones."""
@@ -165,11 +197,30 @@ class Run(Imagination):
         self.real.update(self.streams.wild)
         return len(self.real) > before
 
-    def stands(self, skeleton: Skeleton, values: dict[int, str]) -> bool:
-        """Whether the bound plan holds with what streams found besides; if not, what gave the values has failed."""
-        return not self.streams.wild or stands(
-            self.task, self.objects.types, skeleton, values, self.streams.wild, self.experience
-        )
+    def bind(self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()) -> dict[int, str] | None:
+        """Values with which the plan holds when it is replayed, see `Binder.bind`.
+
+        If it does not hold with any, the skeleton forgets them, and what gave them is noted to have failed once more.
+        """
+        refused: list[Fault] = []
+
+        def holds(values: dict[int, str]) -> bool:
+            fault = self.standing.fault(skeleton, values)
+            if fault is not None:
+                refused.append(fault)
+            return fault is None
+
+        values = self.binder.bind(skeleton, tries, budget, fresh, holds=holds)
+        mistake = next((fault for fault in refused if not fault.expected), None)
+        if mistake is not None:
+            self.effort.refuted += 1
+            self.streams.warn(f"{REFUTED}: {mistake.reason}")
+        if values is None and refused:
+            skeleton.memory.clear()
+            for node in skeleton.nodes:
+                if node.outputs:
+                    self.experience.note(node.fact, "what was found besides forbids the plan")
+        return values
 
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
         """The bound plan."""
@@ -193,16 +244,16 @@ class Run(Imagination):
         types = {**self.objects.types, **self.optimism.types}
         missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
         started = time.perf_counter()
-        explained = explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline, self._towards)
+        reasons = explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline, self._towards)
+        if self.experience.exact:  # what failed in the states that plans lead through is the cause
+            reasons = (*explain_failures(self.problem, self.streams, self.tallies(), True), *reasons)
         self.effort.explaining_seconds += time.perf_counter() - started
-        return self.result(outcome, explained)
+        return self.result(outcome, reasons)
 
     def _towards(self, goal: Formula) -> Grounded:
         """The optimistic task with another goal."""
-        facts, types = (
-            [*self.real, *self.sampled(), *self.optimism.makers],
-            {**self.objects.types, **self.optimism.types},
-        )
+        facts = [*self.real, *self.sampled(), *self.optimism.makers]
+        types = {**self.objects.types, **self.optimism.types}
         instantiator = Instantiator(replace(self.task, goal=goal), frozenset(self.assumed))
         return instantiator.instantiate(facts, types, frozenset(self.refused))
 

@@ -29,10 +29,11 @@ class Step:
         name: The action's.
         arguments: Real objects or placeholders.
         state: The fluent facts before it.
-        positive: The fluent facts that it reads.
+        read: The fluent facts that it rests on, those behind derived ones and effects that take place among them.
         added: The facts that it makes true.
-        deleted: The facts that it makes false.
+        deleted: The facts of the state that it makes false.
         static: The static facts that it rests on.
+        derived: Those of them that derivations rest on.
         usages: The tests that the state asks for.
         cost: Its cost.
     """
@@ -40,10 +41,11 @@ class Step:
     name: str
     arguments: tuple[str, ...]
     state: frozenset[Fact]
-    positive: frozenset[Fact]
+    read: frozenset[Fact]
     added: frozenset[Fact]
     deleted: frozenset[Fact]
     static: frozenset[Fact]
+    derived: frozenset[Fact]
     usages: tuple[Usage, ...]
     cost: float = 1.0
 
@@ -60,6 +62,8 @@ class Node:
         step: The first step that needs it.
         fluents: The facts that its function is shown, with what each is called symbolically.
         fact: The first symbolic fact that it certifies: what is blamed when it fails.
+        given: Facts that its function is shown as well, in every state.
+        needs: The calls that certify what it is called for: they come before it.
     """
 
     stream: BoundStream
@@ -69,6 +73,8 @@ class Node:
     step: int
     fact: Fact
     fluents: tuple[tuple[LiftedFact, Fact], ...] = ()
+    given: frozenset[Fact] = frozenset()
+    needs: list[Node] = field(default_factory=list["Node"])
 
 
 @dataclass(eq=False)

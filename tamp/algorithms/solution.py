@@ -66,6 +66,7 @@ class Effort:
         search_seconds: Wall-clock time in search and instantiation.
         explaining_seconds: Wall-clock time in saying why there is no plan.
         apart_seconds: Wall-clock time of the run's other part: a second opinion, or what was tried before it.
+        refuted: Bound plans that did not hold when they were replayed, though the planner thought so.
     """
 
     searches: int = 0
@@ -75,6 +76,7 @@ class Effort:
     search_seconds: float = 0.0
     explaining_seconds: float = 0.0
     apart_seconds: float = 0.0
+    refuted: int = 0
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,7 @@ class Experience:
 
     def __init__(self) -> None:
         self.facts: dict[tuple[str, ...], Record] = {}
+        self.exact: dict[tuple[tuple[str, ...], tuple[str, ...]], dict[frozenset[tuple[str, ...]], None]] = {}
         self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], Record] = {}
 
     def note(self, fact: tuple[str, ...], reason: str | None) -> None:
@@ -64,6 +65,10 @@ class Experience:
     def note_nogood(self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str) -> None:
         """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
+
+    def note_exact(self, fact: tuple[str, ...], predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
+        """Note that a fact does not hold in the states that have just these facts of the predicates."""
+        self.exact.setdefault((fact, predicates), {})[state] = None
 
     def prices(self) -> dict[tuple[str, ...], float]:
         """The extra cost of an action that rests on a fact, for those that cost something."""

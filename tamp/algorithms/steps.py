@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from tamp.algorithms.skeleton import Step, Usage
@@ -9,7 +10,7 @@ from tamp.algorithms.statistics import Experience
 from tamp.pddl.structs import Fact
 from tamp.search.forward import Plan
 from tamp.search.operators import Grounded, Guard, Operator
-from tamp.search.trace import trace
+from tamp.search.trace import Trace, trace
 
 NOGOOD = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
@@ -38,10 +39,9 @@ def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
     return replace(operator, guards=(*operator.guards, *guards))
 
 
-def to_steps(grounded: Grounded, plan: Plan) -> tuple[tuple[Step, ...], tuple[frozenset[Fact], frozenset[Fact]]]:
-    """The plan's steps, and for the goal the final state and the static facts that support it."""
-    traced = trace(grounded, plan.operators)
-    derived = {axiom.head for axiom in grounded.axioms}
+def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tuple[tuple[Step, ...], Trace]:
+    """The plan's steps, and the trace that they come from."""
+    traced = trace(grounded, plan.operators, prices)
     steps: list[Step] = []
     for step in traced.steps:
         operator = step.operator
@@ -56,12 +56,13 @@ def to_steps(grounded: Grounded, plan: Plan) -> tuple[tuple[Step, ...], tuple[fr
                 name=operator.name,
                 arguments=operator.arguments,
                 state=step.state,
-                positive=operator.positive - derived,
-                added=operator.added,
-                deleted=operator.deleted,
+                read=step.read,
+                added=step.added,
+                deleted=step.deleted,
                 static=frozenset(fact for fact in step.static if fact[0] != NOGOOD and fact not in used),
+                derived=step.derived,
                 usages=tuple(sorted(usages, key=lambda usage: (usage.fact, sorted(usage.present)))),
                 cost=operator.cost,
             )
         )
-    return tuple(steps), (traced.final, traced.goal)
+    return tuple(steps), traced

@@ -151,6 +151,7 @@ class Streams:
         self.statistics = {name: StreamStatistics() for name in streams}
         self.warnings: list[str] = []
         self.wild: dict[Fact, None] = {}
+        self.certain: set[Fact] = set()
         self.memory: dict[str, Any] = {}
         self.running: Instance | None = None
         self.ahead = False
@@ -181,9 +182,9 @@ class Streams:
         return [made for made in self._instances.values() if made.results or made.last is not None]
 
     def false_tests(self) -> list[Instance]:
-        """The tests that were called and do not hold."""
-        made = self._instances.values()
-        return [known for known in made if known.stream.is_test and known.exhausted and not known.results]
+        """The tests that were called and do not hold, in whatever state."""
+        made = (known for known in self._instances.values() if known.stream.is_test and not known.stream.is_fluent)
+        return [known for known in made if known.exhausted and not known.results]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
         """One more try: the names of the outputs (none for a test), or None, with the reason in `instance.last`."""
@@ -220,7 +221,13 @@ class Streams:
             return None
         statistics.successes += 1
         instance.results.append(names)
+        if not instance.stream.is_fluent:
+            self.certain.update(self.certified(instance, names))
         return names
+
+    def warn(self, message: str) -> None:
+        """Add to the warnings, unless it is there or there are many."""
+        _add_new(self.warnings, message)
 
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
         """The facts that a result makes true."""

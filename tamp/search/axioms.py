@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from tamp.errors import InputError
 from tamp.pddl.structs import Fact
@@ -79,10 +81,17 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     return found
 
 
-def derive(axioms: Sequence[Axiom], state: Facts) -> dict[Fact, Axiom]:
-    """The derived facts of a state, each with the first axiom that gave it; in the order of derivation."""
+def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None) -> dict[Fact, Axiom]:
+    """The derived facts of a state, each with the axiom that gave it; in the order of derivation.
+
+    Args:
+        axioms: By stratum.
+        state: The fluent facts.
+        price: Of static facts: then each fact has an axiom of its cheapest derivation, else the first that gave it.
+    """
     holds = set(state)
     why: dict[Fact, Axiom] = {}
+    costs: dict[Fact, float] = {}
     start = 0
     while start < len(axioms):
         stop = start
@@ -92,23 +101,45 @@ def derive(axioms: Sequence[Axiom], state: Facts) -> dict[Fact, Axiom]:
         while changed:
             changed = False
             for axiom in axioms[start:stop]:
-                if axiom.head not in holds and axiom.positive <= holds and axiom.negative.isdisjoint(holds):
-                    holds.add(axiom.head)
-                    why[axiom.head] = axiom
-                    changed = True
+                head = axiom.head
+                if head in holds and (not price or head not in costs):
+                    continue
+                if not (axiom.positive <= holds and axiom.negative.isdisjoint(holds)):
+                    continue
+                if price:
+                    cost = sum(price.get(fact, 0.0) for fact in axiom.static)
+                    cost += sum(costs.get(fact, 0.0) for fact in axiom.positive)
+                    if cost >= costs.get(head, math.inf):
+                        continue
+                    costs[head] = cost
+                holds.add(head)
+                why[head] = axiom
+                changed = True
         start = stop
     return why
 
 
-def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> frozenset[Fact]:
-    """The static facts that the derivations of the given facts rest on."""
+class Support(NamedTuple):
+    """What derivations rest on: static facts, facts of the state, and the derived facts themselves."""
+
+    static: frozenset[Fact]
+    read: frozenset[Fact]
+    heads: frozenset[Fact]
+
+
+def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> Support:
+    """What the derivations of the given facts rest on; those that are not derived are facts of the state."""
     static: set[Fact] = set()
+    read: set[Fact] = set()
     seen: set[Fact] = set()
     stack = list(facts)
     while stack:
-        axiom = why.get(stack.pop())
-        if axiom is not None and axiom.head not in seen:
-            seen.add(axiom.head)
+        fact = stack.pop()
+        axiom = why.get(fact)
+        if axiom is None:
+            read.add(fact)
+        elif fact not in seen:
+            seen.add(fact)
             static |= axiom.static
             stack.extend(axiom.positive)
-    return frozenset(static)
+    return Support(frozenset(static), frozenset(read), frozenset(seen))

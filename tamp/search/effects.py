@@ -96,6 +96,8 @@ class Effects:
         )
         known = {name: i for i, name in enumerate(names)}
         kinds = self._vocabulary.sort(condition)
+        unnamed = [atom for atom in self._vocabulary.unnamed(condition) if atom.terms[0] in own]
+        unnamed = [] if not effect.adds else unnamed
         fact = filler((effect.atom.predicate, *effect.atom.terms), known)
         fills = {
             kind: [filler((atom.predicate, *atom.terms), known) for atom in atoms]
@@ -103,7 +105,7 @@ class Effects:
                 ("positive", (*kinds.positive, *kinds.derived)),
                 ("negative", kinds.negative),
                 ("refuted", kinds.refuted),
-                ("static", tuple(a for a in kinds.static if not a.predicate.startswith("type "))),
+                ("static", (*(a for a in kinds.static if not a.predicate.startswith("type ")), *unnamed)),
             )
         }
         instances: dict[Row, list[_Grounded]] = {}

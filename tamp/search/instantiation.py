@@ -121,7 +121,9 @@ class Instantiation:
         derived = fills(kinds.derived)
         negative = [(atom.predicate, fill) for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)]
         refuted = fills(kinds.refuted)
-        static = fills(atom for atom in kinds.static if not atom.predicate.startswith("type "))
+        named = {parameter.name for parameter in action.parameters}
+        unnamed = [atom for atom in self._vocabulary.unnamed(variant.literals) if atom.terms[0] not in named]
+        static = fills([*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed])
         arguments = filler([parameter.name for parameter in action.parameters], known)
         relations = self._vocabulary.relations
         effects = Effects(variant.effects, rule.variables, rows, self._vocabulary, self._negation, self._need)
@@ -246,6 +248,7 @@ class Instantiation:
                     heads.setdefault(head(row), []).append((i, row))
                 kinds = self._vocabulary.sort(definition.literals)
                 static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
+                static += self._vocabulary.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
                 bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
                 for atom in kinds.refuted:

@@ -11,6 +11,9 @@ from tamp.pddl.structs import Fact
 Facts = frozenset[Fact]
 NONE: Facts = frozenset()
 
+ANY = "(any)"
+"""The predicate of static facts that say that an object is there, of which no condition says anything else."""
+
 
 class Guard(NamedTuple):
     """Facts under which an operator costs more, or may not be applied.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from tamp.pddl.structs import Fact
 from tamp.search.axioms import derive, supports
 from tamp.search.blocking import LazyGuards
-from tamp.search.operators import Facts, Grounded, Guard, Operator
+from tamp.search.operators import NONE, Facts, Grounded, Guard, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,40 +21,71 @@ class Step:
         state: The fluent facts before it.
         static: What it rests on there: its static preconditions, the facts that lift its triggered guards, the static
             facts in the derivations of its derived preconditions and of the conditional effects that take place.
+        derived: Those of the static facts that derivations rest on.
+        read: The fluent facts that its preconditions, the effects that take place, and the derivations rest on.
+        heads: The derived facts behind all that.
+        added: What it makes true there.
+        deleted: What of the state it makes false.
         guards: Those triggered there.
     """
 
     operator: Operator
     state: Facts
     static: Facts
+    derived: Facts = NONE
+    read: Facts = NONE
+    heads: Facts = NONE
+    added: Facts = NONE
+    deleted: Facts = NONE
     guards: tuple[Guard, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
+class End:
+    """The state in the end, and what the goal rests on there: static facts, those of them in derivations, fluents."""
+
+    state: Facts
+    static: Facts
+    derived: Facts
+    read: Facts
+
+
+@dataclass(frozen=True, slots=True)
 class Trace:
-    """All steps, the state in the end, and the static facts that the goal rests on there."""
+    """All steps and the end; whether something that they rest on could be derived in another way as well."""
 
     steps: tuple[Step, ...]
-    final: Facts
-    goal: Facts
+    end: End
+    open: bool = False
 
 
-def trace(grounded: Grounded, operators: Iterable[Operator]) -> Trace:
+def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None) -> Trace:
     """Replay a plan's operators from the initial state.
+
+    Args:
+        grounded: The task.
+        operators: The plan.
+        price: Of static facts; what is derived rests on the cheapest ones.
 
     Raises:
         ValueError: An operator is not applicable, or the goal does not hold in the end.
     """
     state = grounded.initial
     steps: list[Step] = []
+    ways = Counter(axiom.head for axiom in grounded.axioms)
+    several = frozenset(head for head, count in ways.items() if count > 1)
+    open_ = False
     for operator in operators:
-        step, state = _applied(grounded, operator, state)
+        step, state = _applied(grounded, operator, state, price)
         steps.append(step)
-    why = derive(grounded.axioms, state)
+        open_ = open_ or not several.isdisjoint(step.heads)
+    why = derive(grounded.axioms, state, price)
     holds = state | why.keys()
     if not grounded.goal.positive <= holds or not grounded.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
-    return Trace(tuple(steps), state, grounded.goal.static | supports(why, grounded.goal.positive))
+    goal = supports(why, grounded.goal.positive)
+    end = End(state, grounded.goal.static | goal.static, goal.static, goal.read)
+    return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
 def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
@@ -75,13 +108,16 @@ def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]])
     return any(goal.positive <= holds and goal.negative.isdisjoint(holds) for holds in holding)
 
 
-def _applied(grounded: Grounded, operator: Operator, state: Facts) -> tuple[Step, Facts]:
+def _applied(
+    grounded: Grounded, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
+) -> tuple[Step, Facts]:
     """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
-    why = derive(grounded.axioms, state)
+    why = derive(grounded.axioms, state, price)
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
         raise ValueError(f"{operator} is not applicable")
-    static = set(operator.static | supports(why, operator.positive))
+    derived, read, heads = supports(why, operator.positive)
+    static = set(operator.static)
     guards = triggered(operator, state)
     for guard in guards:
         if guard.lifted_by is None:
@@ -92,8 +128,12 @@ def _applied(grounded: Grounded, operator: Operator, state: Facts) -> tuple[Step
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
             added |= effect.added
             deleted |= effect.deleted
-            static |= effect.static | supports(why, effect.positive)
-    return Step(operator, state, frozenset(static), guards), (state - deleted) | added
+            static |= effect.static
+            more = supports(why, effect.positive)
+            derived, read, heads = derived | more.static, read | more.read, heads | more.heads
+    after = (state - deleted) | added
+    gone = state - after
+    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:

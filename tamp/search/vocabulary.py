@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from tamp.pddl.structs import Atom, Fact, Task
 from tamp.search.datalog import Body, Relations, Row
 from tamp.search.normal import Definition, Literals, Normalizer, Types, type_relation
+from tamp.search.operators import ANY
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +142,11 @@ class Vocabulary:
             if atom.predicate.startswith("type "):
                 self.type_atom(atom.terms[0], tuple(atom.predicate.split(" ")[1:]))
         return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
+
+    def unnamed(self, literals: Literals) -> tuple[Atom, ...]:
+        """For each variable that no positive atom names: that there is the object that it stands for."""
+        covered = {term for atom in literals.positive for term in atom.terms}
+        return tuple(Atom(ANY, (name,)) for name, _ in literals.variables if name not in covered)
 
     def type_atom(self, variable: str, types: Types) -> Atom:
         """The atom that says that the variable has one of the types; its relation is made when first asked for."""

@@ -14,7 +14,7 @@ from tamp.clock import Deadline, OutOfTime
 from tamp.search.forward import Plan, Reason, search
 from tamp.search.instantiate import instantiate
 from tamp.symbolic.problem import SymbolicProblem
-from tamp.symbolic.solve import SymbolicSolution, solve_symbolic
+from tamp.symbolic.solve import SymbolicSolution, refutation, solve_symbolic
 
 LADDER = (
     ("wastar", "ff+landmarks", 5.0), ("wastar", "ff+landmarks", 2.0), ("wastar", "ff", 1.0), ("astar", "lmcut", 1.0),
@@ -59,6 +59,9 @@ def optimize_symbolic(
                     grounded, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
                 )  # fmt: skip
                 best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
+                if refutation(problem.task, found.plan) is not None:
+                    best = replace(best, refuted=best.refuted + 1)
+                    break
                 if last or found.reason is Reason.UNSOLVABLE:  # there is none: the bound is the cost
                     proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
                     bound = best.cost if found.plan is None and proven else found.bound

@@ -30,6 +30,7 @@ def summary(solution: SymbolicSolution) -> str:
     lines = [f"warning: {text}" for text in solution.problem.warnings]
     total = solution.seconds.get("total", 0.0)
     if solution.solved:
+        lines += [f"warning: {line}" for line in solution.explanation]
         optimal = " (optimal)" if solution.optimal else ""
         lines += [
             f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, cost {solution.cost:g}{optimal}", "",
@@ -74,6 +75,7 @@ def document(solution: SymbolicSolution) -> dict[str, Any]:
             "evaluated": solution.evaluated,
             "operators": solution.operators,
             "facts": solution.facts,
+            **({"refuted": solution.refuted} if solution.refuted else {}),
         },
         "warnings": list(solution.problem.warnings),
         "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},

@@ -12,15 +12,19 @@ from tamp.algorithms.optimistic import type_facts
 from tamp.algorithms.solution import Outcome, StreamTask
 from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
-from tamp.pddl.structs import Formula
-from tamp.search.forward import SEARCHES, Reason, search, split_heuristics
+from tamp.pddl.structs import Formula, Task
+from tamp.search.forward import SEARCHES, Plan, Reason, Result, search, split_heuristics
 from tamp.search.heuristics import ADMISSIBLE
 from tamp.search.instantiate import instantiate
 from tamp.search.operators import Grounded, Operator
+from tamp.search.replay import REFUTED, violation
 from tamp.symbolic.problem import SymbolicProblem
 
 SEARCH = "greedy"
 """The search when none is named."""
+
+OTHERS = (("eager", "ff"), ("wastar", "blind"))
+"""Searches and heuristics that go on where a plan does not hold when it is replayed."""
 
 OUTCOMES = {Reason.UNSOLVABLE: Outcome.INFEASIBLE, Reason.TIME: Outcome.TIMEOUT, Reason.LIMIT: Outcome.EXHAUSTED}
 
@@ -38,6 +42,7 @@ class SymbolicSolution:
         history: The plans on the way to this one and itself, where the first was not enough: seconds and cost.
         bound: What no plan costs less than, as far as a search with an admissible heuristic knows.
         seconds: Wall-clock time: "total", "instantiation", "search".
+        refuted: Plans that did not hold when they were replayed by the book: mistakes of the planner's, not returned.
     """
 
     problem: SymbolicProblem
@@ -54,6 +59,7 @@ class SymbolicSolution:
     history: tuple[tuple[float, float], ...] = ()
     bound: float = 0.0
     seconds: dict[str, float] = field(default_factory=dict[str, float])
+    refuted: int = 0
 
     @property
     def solved(self) -> bool:
@@ -113,7 +119,16 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
     task = problem.task
     grounded = instantiate(task)
     ready = time.perf_counter()
-    found = search(grounded, search=name, heuristic=heuristic, deadline=deadline)
+    refuted: list[str] = []
+    for way in ((name, heuristic), *OTHERS):
+        found = search(grounded, search=way[0], heuristic=way[1], deadline=deadline)
+        reason = refutation(task, found.plan)
+        if reason is None:
+            name, heuristic = way
+            break
+        refuted.append(reason)
+    else:
+        found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
     done = time.perf_counter()
     outcome = Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
     infeasible = outcome is Outcome.INFEASIBLE
@@ -124,13 +139,22 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
         optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=_why(problem, grounded, deadline) if infeasible else (),
+        explanation=tuple(dict.fromkeys(refuted)) + (_why(problem, grounded, deadline) if infeasible else ()),
         expanded=found.expanded,
         evaluated=found.evaluated,
         operators=len(grounded.operators),
         facts=len(grounded.reachable | grounded.initial),
         seconds={"total": done - started, "instantiation": ready - started, "search": done - ready},
+        refuted=len(refuted),
     )
+
+
+def refutation(task: Task, plan: Plan | None) -> str | None:
+    """What is wrong with a plan when it is replayed by the book, as a line for people; None where it holds."""
+    if plan is None:
+        return None
+    reason = violation(task, [(operator.name, operator.arguments) for operator in plan.operators])
+    return None if reason is None else f"{REFUTED}: {reason}"
 
 
 def _why(problem: SymbolicProblem, grounded: Grounded, deadline: Deadline) -> tuple[str, ...]:

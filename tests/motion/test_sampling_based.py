@@ -155,23 +155,23 @@ def test_no_yaw_makes_the_planner_wait(radius: float | None, yaw: float) -> None
         return all(float(np.linalg.norm(a[:2] + t * (b - a)[:2] - pillar)) > 0.5 for t in np.linspace(0.0, 1.0, 30))
 
     for start, goal in ((yaw, 1.0), (1.0, yaw), (yaw, yaw)):
-        began = time.monotonic()
+        began = unhindered()
         ends = np.array([-1.5, 0.0, start]), np.array([1.5, 0.1, goal])
         path, checks = connect(
             plane, ends[0], [ends[1]], edge_free, seed=1, checks=3000, deadline=Deadline(20), reach=1.0
         )  # fmt: skip
         assert path is not None and checks > 0
         assert np.all(path[:, 2] >= -math.pi) and np.all(path[:, 2] < math.pi)
-        assert time.monotonic() - began < 10
+        assert unhindered() - began < 10
 
 
 def test_ends_out_of_the_bounds_are_no_reason_to_wait() -> None:
     outside = np.array([3.5, *[0.0] * 6])
     nowhere = np.full(7, np.nan)
     for start, goals in ((outside, [GOAL]), (START, [outside]), (START, [nowhere]), (nowhere, [GOAL])):
-        began = time.monotonic()
+        began = unhindered()
         path, checks = connect(SPACE, start, goals, _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
         assert path is None and checks == 0
-        assert time.monotonic() - began < 5
+        assert unhindered() - began < 5
     path, _ = connect(SPACE, START, [outside, GOAL], _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
     assert path is not None and np.array_equal(path[-1], GOAL)

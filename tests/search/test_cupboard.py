@@ -39,7 +39,7 @@ def test_the_trace_names_every_static_fact_used(eight: Grounded) -> None:
     result = search(eight)
     assert result.plan is not None
     steps = trace(eight, result.plan.operators)
-    assert {fact[:2] for fact in steps.goal} == {("supported", f"o{i}") for i in range(8)}
+    assert {fact[:2] for fact in steps.end.static} == {("supported", f"o{i}") for i in range(8)}
     places = [step for step in steps.steps if step.operator.name == "place"]
     assert len(places) == 8
     for step in places:

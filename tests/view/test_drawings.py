@@ -34,7 +34,7 @@ def body_of(folder: Path, suffix: str, content: bytes) -> Body:
 def test_every_visual_element_is_drawn(tmp_path: Path, suffix: str) -> None:
     box = trimesh.creation.box((0.2, 0.3, 0.4))
     exported = box.export(file_type=suffix)
-    content = exported if isinstance(exported, bytes) else exported.encode()
+    content = exported.encode() if isinstance(exported, str) else bytes(exported)
     body = body_of(tmp_path, suffix, content)
     first, second = body_meshes(body)
     assert np.ptp(first.vertices, axis=0) == pytest.approx((0.2, 0.3, 0.4)) and first.colour == (1, 0, 0, 1)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from trimesh.exchange.stl import export_stl_ascii
 
 from tamp.errors import InputError
 from tamp.world.collada import read_collada
@@ -17,11 +18,17 @@ from tamp.world.meshes import find_mesh, load_mesh
 
 TETRAHEDRON = "v 0 0 0\nv 0.05 0 0\nv 0 0.06 0\nv 0 0 0.07\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 BOX = trimesh.creation.box((0.06, 0.08, 0.14))
-PLY = BOX.export(file_type="ply", encoding="ascii")
-BINARY_PLY = BOX.export(file_type="ply")
-STL = trimesh.exchange.stl.export_stl_ascii(BOX).encode()
-BINARY_STL = BOX.export(file_type="stl")
-GLB = BOX.export(file_type="glb")
+STL = export_stl_ascii(BOX).encode()
+
+
+def exported(kind: str, **options: str) -> bytes:
+    made = BOX.export(file_type=kind, **options)
+    assert isinstance(made, bytes)
+    return made
+
+
+PLY, BINARY_PLY = exported("ply", encoding="ascii"), exported("ply")
+BINARY_STL, GLB = exported("stl"), exported("glb")
 
 
 @pytest.fixture(autouse=True)
