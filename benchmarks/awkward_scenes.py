@@ -182,9 +182,9 @@ def scene(seed: int, folder: Path) -> tuple[str, str]:
 
 def main(options: Options) -> None:
     """Solve all, print the table, count wrong proofs."""
-    from tamp.api import solve
     from tamp.errors import InputError
-    from tamp.problem import load_problem
+    from tamp.planner.problem import load_problem
+    from tamp.planner.solve import solve
 
     outcomes: dict[str, Counter[str]] = defaultdict(Counter)
     wrong: list[str] = []

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import trimesh
 
-from tamp.data import shipped
+from tamp.system.files import shipped
 
 PROBLEM = """\
 # a scene

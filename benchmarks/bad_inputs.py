@@ -82,21 +82,21 @@ class Ended:
 def run_line(words: list[str]) -> int:
     """Run a command line in this process; its exit status."""
     import grounding.cli
-    import tamp.bench.cli
-    import tamp.cli
-    import tamp.execution.cli
-    import tamp.export.cli
-    import tamp.verification.cli
-    import tamp.view.cli
-    from tamp.terminal import spoken
+    import tamp.commands.bench
+    import tamp.commands.execute
+    import tamp.commands.export
+    import tamp.commands.solve
+    import tamp.commands.verify
+    import tamp.commands.view
+    from tamp.system.terminal import spoken
 
     commands: dict[str, Callable[[list[str]], int]] = {
-        "tamp-solve": spoken(tamp.cli.run),
-        "tamp-execute": spoken(lambda rest: tamp.execution.cli.main(rest, tamp.cli.registry)),
-        "tamp-verify": lambda rest: tamp.verification.cli.main(rest),
-        "tamp-export": lambda rest: tamp.export.cli.main(rest),
-        "tamp-view": lambda rest: tamp.view.cli.main(rest),
-        "tamp-bench": spoken(tamp.bench.cli.run),
+        "tamp-solve": spoken(tamp.commands.solve.run),
+        "tamp-execute": spoken(lambda rest: tamp.commands.execute.main(rest, tamp.commands.solve.registry)),
+        "tamp-verify": lambda rest: tamp.commands.verify.main(rest),
+        "tamp-export": lambda rest: tamp.commands.export.main(rest),
+        "tamp-view": lambda rest: tamp.commands.view.main(rest),
+        "tamp-bench": spoken(tamp.commands.bench.run),
         "tamp-learn": spoken(grounding.cli.run),
     }
     sys.argv = list(words)

@@ -1,4 +1,4 @@
-"""Write tamp/world/assets/<robot>_reachability.npz, the table that tamp.world.reachability draws base poses from.
+"""Write tamp/geometric/robot/assets/<robot>_reachability.npz: the table that base poses are drawn from.
 
     python benchmarks/build_reachability.py
 
@@ -15,12 +15,12 @@ import sys
 import numpy as np
 from scipy.ndimage import minimum_filter
 
-from tamp.world.inverse_kinematics import ArmIK
-from tamp.world.kinematics import Kinematics
-from tamp.world.pose import Array
-from tamp.world.reachability import asset
-from tamp.world.robot import ROBOTS, Robot
-from tamp.world.scene import Box
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.reachability import asset
+from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Box
 
 HEIGHTS = np.arange(0.0, 1.7, 0.07)
 DISTANCES = np.arange(0.075, 0.9, 0.05)

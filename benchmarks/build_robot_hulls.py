@@ -1,4 +1,4 @@
-"""Write tamp/world/assets/panda_mobile.npz: the convex hulls of the Panda's collision meshes, in their links' frames.
+"""Write tamp/geometric/robot/assets/panda_mobile.npz: the convex hulls of the Panda's links, in their frames.
 
     python benchmarks/build_robot_hulls.py
 
@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from tamp.world.pose import Array
-from tamp.world.robot import panda_urdf
-from tamp.world.urdf import read_collision_vertices
+from tamp.geometric.robot.robot import panda_urdf
+from tamp.geometric.robot.urdf import read_collision_vertices
+from tamp.geometric.scene.pose import Array
 
 ASSET = Path(__file__).parents[1] / "tamp" / "world" / "assets" / "panda_mobile.npz"
 

@@ -1,4 +1,4 @@
-"""Cover the robot's links by spheres; writes tamp/world/assets/<robot>_spheres.npz. Seconds a link.
+"""Cover the robot's links by spheres; writes tamp/geometric/robot/assets/<robot>_spheres.npz. Seconds a link.
 
     python -m benchmarks.build_robot_spheres
 
@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from tamp.world.pose import Array
-from tamp.world.robot import ROBOTS
-from tamp.world.scene import Hull
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Hull
 
 LEAVES = 20
 PITCH = 0.003
@@ -115,7 +115,7 @@ def main() -> None:
     parser.add_argument("--leaves", type=int, default=LEAVES)
     parser.add_argument("--out", type=Path, default=None)
     options = parser.parse_args()
-    import tamp.world.spheres
+    import tamp.geometric.robot.spheres
 
     for name, make in ROBOTS.items():
         arrays = {}
@@ -125,7 +125,7 @@ def main() -> None:
                     leaves, slack = cover(part.shape, options.leaves)
                     arrays[f"{link.name}/{k}"], arrays[f"{link.name}/{k}/slack"] = leaves, np.array(slack)
                     sys.stdout.write(f"{link.name}: {len(leaves)} spheres, slack {1000 * slack:.1f} mm\n")
-        target = options.out or Path(tamp.world.spheres.__file__).parent / "assets" / f"{name}_spheres.npz"
+        target = options.out or Path(tamp.geometric.robot.spheres.__file__).parent / "assets" / f"{name}_spheres.npz"
         np.savez_compressed(target, **arrays)
 
 

@@ -13,11 +13,11 @@ from random import Random
 
 from benchmarks import common
 from benchmarks.classical_domains import GENERATORS
-from tamp.clock import Deadline
-from tamp.pddl.parser import parse_domain, parse_task
-from tamp.search.forward import search
-from tamp.search.instantiate import instantiate
-from tamp.search.trace import trace
+from tamp.symbolic.pddl.parser import parse_domain, parse_task
+from tamp.symbolic.search.instantiation.instantiator import instantiate
+from tamp.symbolic.search.plan_trace import trace
+from tamp.symbolic.search.search import search
+from tamp.system.deadline import Deadline
 
 SIZES = {
     "blocks": (6, 12, 30), "logistics": (4, 8, 20), "gripper": (4, 8, 30), "rovers": (2, 4, 10),

@@ -20,7 +20,7 @@ import tyro
 
 from benchmarks.common import record, table, times
 
-COMMAND = ("-c", "from tamp.cli import main; main()")
+COMMAND = ("-c", "from tamp.commands.solve import main; main()")
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ import numpy as np
 
 from benchmarks.collision_reference import PlainFcl, random_confs, random_pose, random_scene
 from benchmarks.common import record, table
-from tamp.world.collision import PADDING, Arrangement, Attachment, Collisions
-from tamp.world.kinematics import Kinematics
-from tamp.world.pose import Array
-from tamp.world.robot import panda_mobile
+from tamp.geometric.collision.collisions import PADDING, Arrangement, Attachment, Collisions
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import panda_mobile
+from tamp.geometric.scene.pose import Array
 
 RESULTS = "collision.jsonl"
 TOLERANCE = 1e-6

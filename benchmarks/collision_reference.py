@@ -6,11 +6,11 @@ import fcl
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from tamp.world.collision import Attachment
-from tamp.world.kinematics import Kinematics
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import Robot
-from tamp.world.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Shape, Sphere
+from tamp.geometric.collision.collisions import Attachment
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Shape, Sphere
 
 
 def random_shape(rng: np.random.Generator, smallest: float = 0.03, largest: float = 0.3) -> Shape:

@@ -50,7 +50,7 @@ class Options:
 def run(name: str, seed: int, grasp: str, disturb: str | None, options: Options) -> dict[str, Any]:
     """Plan once and carry it out once. Times in seconds."""
     import tamp
-    from tamp.cli import registry
+    from tamp.commands.solve import registry
     from tamp.execution.command import Options as Chosen
     from tamp.execution.command import carry_out
 

@@ -16,13 +16,13 @@ from itertools import islice
 import numpy as np
 
 from benchmarks import common
-from tamp.problem import load_problem
+from tamp.geometric.context import Context
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.streams.grasps import sample_grasps
+from tamp.geometric.values import Grasp
+from tamp.planner.problem import load_problem
 from tamp.simulation.physics import World
-from tamp.streams.context import Context
-from tamp.streams.grasps import sample_grasps
-from tamp.streams.values import Grasp
-from tamp.world.bounds import bounds
-from tamp.world.pose import Array, Pose
 
 HEIGHT = 0.5
 """From where bodies are dropped, metres above the floor,"""

@@ -15,7 +15,7 @@ import tyro
 
 from benchmarks.common import record, table
 from tamp import load_problem, solve
-from tamp.world.arrangement import Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 
 REPEATS = 15
 """Each recorded check is timed so often; the fastest pass counts."""

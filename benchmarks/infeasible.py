@@ -48,8 +48,8 @@ def named(case: Case, explanation: tuple[str, ...]) -> bool:
 
 def main(options: Options) -> None:
     """Run all, print the table."""
-    from tamp.api import solve
-    from tamp.problem import load_problem
+    from tamp.planner.problem import load_problem
+    from tamp.planner.solve import solve
 
     rows: dict[str, list[dict[str, object]]] = defaultdict(list)
     for number, make in enumerate((*KINDS, *MORE)):

@@ -25,7 +25,7 @@ from pathlib import Path
 import tyro
 
 from benchmarks.common import record, table
-from tamp.data import shipped
+from tamp.system.files import shipped
 
 LATE = 1.0
 """Seconds after the signal."""

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.common import percentile, record, table
-from tamp.world.inverse_kinematics import ArmIK
-from tamp.world.kinematics import Kinematics, base_matrix
-from tamp.world.pose import Array, Pose
-from tamp.world.reachability import Reachability
-from tamp.world.robot import Robot, panda_mobile
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics, base_matrix
+from tamp.geometric.robot.reachability import Reachability
+from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.scene.pose import Array, Pose
 
 RESULTS = "inverse_kinematics.jsonl"
 SETTINGS: dict[str, int | None] = {"all solutions": None, "first solution": 1, "eight solutions": 8}

@@ -17,19 +17,19 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table, times
-from tamp.clock import Deadline
-from tamp.motion.arm import plan_arm
-from tamp.motion.base import plan_base
-from tamp.motion.path import length
-from tamp.motion.planned import Planned
-from tamp.motion.timing import Timed, prefetch, time_path
-from tamp.world.collision import Arrangement, Attachment, Collisions
-from tamp.world.inverse_kinematics import ArmIK
-from tamp.world.kinematics import Kinematics
-from tamp.world.load import load_scene
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import ROBOTS, Robot
-from tamp.world.scene import Cavity, Scene
+from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
+from tamp.geometric.loading.load import load_scene
+from tamp.geometric.motion.arm import plan_arm
+from tamp.geometric.motion.base import plan_base
+from tamp.geometric.motion.path import length
+from tamp.geometric.motion.result import Planned
+from tamp.geometric.motion.timing import Timed, prefetch, time_path
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Cavity, Scene
+from tamp.system.deadline import Deadline
 
 SHELF = """
 name: motion_benchmark

@@ -96,7 +96,7 @@ def _wide(line: str, rng: np.random.Generator) -> str:
 def run(path: Path, seed: int, options: Options) -> dict[str, Any]:
     """Plan once, carry it out once. Lengths in millimetres, times in seconds."""
     import tamp
-    from tamp.cli import registry
+    from tamp.commands.solve import registry
     from tamp.execution.command import Options as Chosen
     from tamp.execution.command import carry_out
 

@@ -194,8 +194,8 @@ def _random_urdf(rng: np.random.Generator) -> tuple[str, float, float, str]:
     """One of pybullet_data's thousand blobs, on its steadiest face: entry, radius, height, and how it is turned."""
     from scipy.spatial.transform import Rotation
 
-    from tamp.streams.resting import resting_of
-    from tamp.world.load import load_scene
+    from tamp.geometric.loading.load import load_scene
+    from tamp.geometric.stability.stable_poses import resting_of
 
     number = int(rng.integers(1000))
     scale = float(rng.uniform(0.5, 0.9))

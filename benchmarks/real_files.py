@@ -16,7 +16,7 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table
-from tamp.world.pose import Array, Pose
+from tamp.geometric.scene.pose import Array, Pose
 
 EXACT = 1e-4
 """Metres by which no side of a box may differ."""
@@ -146,8 +146,8 @@ def main(options: Options) -> None:
     import pybullet
 
     from tamp.errors import InputError
-    from tamp.world.bounds import bounds
-    from tamp.world.meshes import load_mesh
+    from tamp.geometric.loading.meshes import load_mesh
+    from tamp.geometric.scene.bounds import bounds
 
     pybullet.connect(pybullet.DIRECT)
     rows: list[dict[str, Any]] = []

@@ -21,12 +21,12 @@ import tyro
 
 from benchmarks.common import record, table
 from tamp import Solution, load_problem, solve
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Box, Scene
+from tamp.geometric.values import Grasp
+from tamp.planner.timed_trajectories import Segment
 from tamp.simulation.physics import World
-from tamp.streams.values import Grasp
-from tamp.trajectories import Segment
-from tamp.world.pose import Array
-from tamp.world.robot import Robot
-from tamp.world.scene import Box, Scene
 
 RATE = 240
 """Steps a second of the simulation."""

@@ -12,10 +12,10 @@ from functools import partial
 from random import Random
 
 from benchmarks import common
-from tamp.pddl.parser import parse_domain
-from tamp.pddl.structs import And, Atom, Fact, Task
-from tamp.search.forward import search
-from tamp.search.instantiate import instantiate
+from tamp.symbolic.pddl.parser import parse_domain
+from tamp.symbolic.pddl.structs import And, Atom, Fact, Task
+from tamp.symbolic.search.instantiation.instantiator import instantiate
+from tamp.symbolic.search.search import search
 
 DOMAIN = """
 (define (domain cupboard) ; the shipped one as it was when these figures were first measured

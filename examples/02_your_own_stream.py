@@ -7,7 +7,7 @@ none; the planner counts these words, and they are what you read when there is n
 from collections.abc import Iterator
 
 import tamp
-from tamp.streams.context import Context
+from tamp.geometric.context import Context
 
 
 def left_half(context: Context, body: str, surface: str, call: tamp.Call) -> Iterator[tamp.Pose | tamp.Rejection]:

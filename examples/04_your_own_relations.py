@@ -12,7 +12,7 @@ from grounding.collect import collect, read_demonstrations
 from grounding.registry import load_grounding
 from grounding.train import train
 from grounding.weights import write_weights
-from tamp.streams.python_file import python_grounding
+from tamp.geometric.samplers.python_file import python_grounding
 
 HERE = Path(__file__).parent / "kitchen"
 

@@ -12,7 +12,7 @@ from typing import Annotated
 import tyro
 
 from grounding.registry import RELATIONS
-from tamp.arguments import sentence, unread
+from tamp.commands.solve_options import sentence, unread
 from tamp.errors import InputError
 
 

@@ -17,10 +17,10 @@ from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
 from grounding.scenes import OTHERS, Made
 from grounding.supports import support_templates
-from tamp import guard
-from tamp.data import write_whole
 from tamp.errors import InputError
-from tamp.outputs import UNFINISHED
+from tamp.system import guard
+from tamp.system.files import write_whole
+from tamp.system.outputs import UNFINISHED
 
 CHUNK = 100
 """Scenes that one process makes before they are kept."""

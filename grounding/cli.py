@@ -19,9 +19,9 @@ from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
-from tamp.outputs import check_outputs, check_writable
-from tamp.progress import Progress
-from tamp.terminal import spoken
+from tamp.system.outputs import check_outputs, check_writable
+from tamp.system.progress import Progress
+from tamp.system.terminal import spoken
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 

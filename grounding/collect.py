@@ -17,12 +17,12 @@ from grounding.relational.measures import View
 from grounding.situation import Region, region_of
 from grounding.variety import contradictions
 from tamp.errors import InputError
-from tamp.pddl.nodes import Group, Node, Symbol, error
-from tamp.pddl.sexpr import read
-from tamp.streams.resting import SNAP_TILT
-from tamp.world.load import load_scene
-from tamp.world.pose import Array
-from tamp.world.scene import Part, Scene
+from tamp.geometric.loading.load import load_scene
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Part, Scene
+from tamp.geometric.stability.stable_poses import SNAP_TILT
+from tamp.symbolic.pddl.nodes import Group, Node, Symbol, error
+from tamp.symbolic.pddl.sexpr import read
 
 KINDS = ("holds", "does not hold")
 

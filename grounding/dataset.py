@@ -22,8 +22,8 @@ from grounding.npz import MOST_BYTES, read_npz
 from grounding.pair import read_pair, write_pair
 from grounding.situation import Placed, Region, Situation, near
 from tamp.errors import InputError
-from tamp.world.pose import Pose
-from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
 
 FORMAT = "tamp demonstrations 1"
 """What the card's `format` must say."""

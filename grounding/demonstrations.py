@@ -13,9 +13,9 @@ from grounding.oracles import Verdict, settled
 from grounding.random_poses import afloat, on_ground, random_rest, random_turn
 from grounding.scenes import Drawn, Made, Scenes, free, resting
 from grounding.separation import separations
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.stability.stable_poses import resting_pose
 from tamp.simulation.drop import Drops
-from tamp.streams.resting import resting_pose
-from tamp.world.pose import Array
 
 Kinds = Mapping[str, float]
 

@@ -30,9 +30,9 @@ from grounding.registry import load_model
 from grounding.scenes import Drawn, Made, Scenes, free
 from grounding.weights import read_weights
 from tamp.errors import InputError
+from tamp.geometric.samplers.placements import GROWTH
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.drop import Drops
-from tamp.streams.placements import GROWTH
-from tamp.world.pose import Array, Pose
 
 STAYED, RESTED = "stayed", "came to rest"
 """How a relation can come to hold: the body stayed where it was put, or it fell and lies where it holds too."""

@@ -7,12 +7,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from tamp.streams.hulls import body_hull, centre_of_mass
-from tamp.streams.resting import Face, stable_faces
-from tamp.world.bounds import bounds
-from tamp.world.pose import Array, Pose
-from tamp.world.scaling import scale_part
-from tamp.world.scene import Body, Part
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scaling import scale_part
+from tamp.geometric.scene.scene import Body, Part
+from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.stable_poses import Face, stable_faces
 
 DIRECTIONS = 128
 """Directions in which a hull's extreme vertices are kept; more vertices would change no decision."""

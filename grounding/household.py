@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.random import Generator as Random
 
-from tamp.world.pose import Pose
-from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
 
 WALL = 0.004
 """Thickness of mugs and bowls, metres."""

@@ -11,8 +11,8 @@ import numpy as np
 
 from grounding.form import Form
 from tamp.errors import InputError
-from tamp.world.meshes import load_mesh
-from tamp.world.scene import Part
+from tamp.geometric.loading.meshes import load_mesh
+from tamp.geometric.scene.scene import Part
 
 SMALLEST, LARGEST = 0.02, 0.28
 """Metres: what is smaller or larger is not moved by a hand."""

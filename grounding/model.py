@@ -7,7 +7,7 @@ from typing import Protocol
 from numpy.random import Generator as Random
 
 from grounding.situation import Situation
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 
 class Model(Protocol):

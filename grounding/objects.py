@@ -12,8 +12,8 @@ import numpy as np
 
 from grounding.household import SHAPES, YCB
 from grounding.mesh_folder import MeshFolder, read_folder, unusable
-from tamp.world.meshes import find_mesh, load_mesh
-from tamp.world.scene import Part
+from tamp.geometric.loading.meshes import find_mesh, load_mesh
+from tamp.geometric.scene.scene import Part
 
 SPLITS = ("train", "test")
 HOUSEHOLD = {"train": 7, "test": 3}

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from grounding.form import Form
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, Region, Situation, gap
+from tamp.geometric.scene.pose import Array
 from tamp.simulation.drop import Drops, Item
-from tamp.world.pose import Array
 
 NEAR = 0.03
 """`on`: the lowest point is this near to the surface (the paper's tolerance), metres."""

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.outputs import write_whole
-from tamp.reading import parse_json, read_bytes, read_text
+from tamp.system.outputs import write_whole
+from tamp.system.reading import parse_json, read_bytes, read_text
 
 MOST_CARD_BYTES = 4_000_000
 """The largest card that is read; one of the default data set has 4 kB."""

@@ -10,9 +10,9 @@ from numpy.random import Generator as Random
 
 from grounding.form import Form
 from grounding.situation import Placed
-from tamp.streams.resting import resting_pose
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import CONTACT_GAP
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import CONTACT_GAP
+from tamp.geometric.stability.stable_poses import resting_pose
 
 
 def random_rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random) -> Array | None:

@@ -11,9 +11,9 @@ from grounding.model import Model
 from grounding.runtime import Grounding, Proposer
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
-from tamp.streams.choice import ANY
-from tamp.streams.registry import SAMPLERS
-from tamp.streams.relations import Generator
+from tamp.geometric.samplers.choice import ANY
+from tamp.geometric.samplers.registry import SAMPLERS
+from tamp.geometric.samplers.sampler import Generator
 
 SHIPPED = Path(__file__).resolve().parent / "assets"
 """Where the shipped weights are."""

@@ -9,12 +9,12 @@ from numpy.random import Generator as Random
 
 from grounding.model import Model
 from grounding.situation import situation_of
-from tamp.world.pose import Pose
-from tamp.world.scene import Scene
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Scene
 
 
 class Grounding:
-    """A model behind the planner's Protocols of `tamp.streams.relations`.
+    """A model behind the planner's Protocols of `tamp.geometric.samplers.sampler`.
 
     Args:
         model: What was trained.

@@ -17,8 +17,8 @@ from grounding.random_poses import afloat, on_ground, pick, random_rest, random_
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, Situation, gap, near
 from grounding.supports import Support, scaled_region, support_templates
+from tamp.geometric.scene.pose import Array
 from tamp.simulation.drop import Item
-from tamp.world.pose import Array
 
 OTHERS = {"train": (5, 9), "test": (5, 15)}
 """Bodies in a scene beside the arguments and the other support."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from grounding.form import Form
 from grounding.situation import Placed
-from tamp.compilation import njit
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
+from tamp.system.compilation import njit
 
 FAR = 1.0
 """What is said where there is nothing around, metres."""

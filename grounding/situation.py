@@ -10,9 +10,9 @@ import numpy as np
 
 from grounding.form import Form, form_of
 from tamp.errors import InputError
-from tamp.world.bounds import bounds
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import Body, Cavity, Part, Scene, Surface
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body, Cavity, Part, Scene, Surface
 
 SURROUNDINGS = 1.0
 """Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section IV-B), metres."""

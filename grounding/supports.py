@@ -11,9 +11,9 @@ from numpy.random import Generator as Random
 
 from grounding.objects import SPLITS
 from grounding.situation import Region, region_of
-from tamp.world.furniture import FURNITURE, Options
-from tamp.world.pose import Pose
-from tamp.world.scene import Body, Box, Cylinder, Part, Surface
+from tamp.geometric.loading.furniture import FURNITURE, Options
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Surface
 
 PIECES = {"train": 8, "test": 3}
 """How many of each kind of furniture."""

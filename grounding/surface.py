@@ -9,17 +9,17 @@ from numpy.random import Generator as Random
 
 from grounding.separation import Obstacles, separations
 from grounding.situation import Situation
-from tamp.streams.placements import KEEP_FACE, position_inside
-from tamp.streams.resting import SLACK, SNAP_HEIGHT, SNAP_TILT, Face, resting_pose
-from tamp.world.pose import Array
-from tamp.world.scene import CONTACT_GAP
+from tamp.geometric.samplers.placements import KEEP_FACE, position_inside
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import CONTACT_GAP
+from tamp.geometric.stability.stable_poses import SLACK, SNAP_HEIGHT, SNAP_TILT, Face, resting_pose
 
 DEPTH = 0.001
 """Bodies may lie this deep in each other, metres."""
 
 
 class SurfaceModel:
-    """Draws as the planner's hand-made sampler does (`tamp.streams.placements`), and judges by geometry."""
+    """Draws as the planner's hand-made sampler does (`tamp.geometric.samplers.placements`), and judges by geometry."""
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """`count` poses, in no order: a stable face down, flush, whole inside the region where it fits; bodies around

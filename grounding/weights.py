@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from grounding.pair import read_pair, write_pair
 from tamp.errors import InputError
-from tamp.reading import parse_json
+from tamp.system.reading import parse_json
 
 FORMAT = "tamp grounding 1"
 """What the card's `format` must say; raised when old weights would be read wrongly."""

@@ -8,32 +8,32 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tamp.algorithms.solution import Outcome as Outcome
-    from tamp.api import solve as solve
-    from tamp.call import Call as Call
     from tamp.errors import InputError as InputError
-    from tamp.plan_file import write_plan as write_plan
-    from tamp.problem import Problem as Problem
-    from tamp.problem import load_problem as load_problem
-    from tamp.rejection import Rejection as Rejection
-    from tamp.solution import Action as Action
-    from tamp.solution import Solution as Solution
-    from tamp.world.pose import Pose as Pose
-    from tamp.world.scene import Scene as Scene
+    from tamp.geometric.scene.pose import Pose as Pose
+    from tamp.geometric.scene.scene import Scene as Scene
+    from tamp.plan.write import write_plan as write_plan
+    from tamp.planner.problem import Problem as Problem
+    from tamp.planner.problem import load_problem as load_problem
+    from tamp.planner.solution import Action as Action
+    from tamp.planner.solution import Solution as Solution
+    from tamp.planner.solve import solve as solve
+    from tamp.stream import Call as Call
+    from tamp.stream import Rejection as Rejection
+    from tamp.symbolic.algorithms.result import Outcome as Outcome
 
 _HOMES = {
-    "Action": "tamp.solution",
-    "Call": "tamp.call",
+    "Action": "tamp.planner.solution",
+    "Call": "tamp.stream",
     "InputError": "tamp.errors",
-    "Outcome": "tamp.algorithms.solution",
-    "Pose": "tamp.world.pose",
-    "Problem": "tamp.problem",
-    "Rejection": "tamp.rejection",
-    "Scene": "tamp.world.scene",
-    "Solution": "tamp.solution",
-    "load_problem": "tamp.problem",
-    "solve": "tamp.api",
-    "write_plan": "tamp.plan_file",
+    "Outcome": "tamp.symbolic.algorithms.result",
+    "Pose": "tamp.geometric.scene.pose",
+    "Problem": "tamp.planner.problem",
+    "Rejection": "tamp.stream",
+    "Scene": "tamp.geometric.scene.scene",
+    "Solution": "tamp.planner.solution",
+    "load_problem": "tamp.planner.problem",
+    "solve": "tamp.planner.solve",
+    "write_plan": "tamp.plan.write",
 }
 """Public names and the modules that they are imported from when first used: `import tamp` costs nothing."""
 

@@ -37,7 +37,7 @@ def rng() -> np.random.Generator:
 def stored_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A plan file of one_object with the record of what was tried; not to be written to."""
     from tamp import load_problem, solve
-    from tamp.plan_file import write_plan
+    from tamp.plan.write import write_plan
 
     solution = solve(load_problem("one_object"), max_time=60.0, seed=0, record=True)
     return write_plan(solution, tmp_path_factory.mktemp("stored") / "plan.json")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import tamp
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 PREDICATES = """
     (maybe-stood ?o - movable ?p - pose ?s - surface)

@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import pytest
 
-from tamp import alarm
-from tamp.alarm import Alarm
-from tamp.clock import STANDSTILL, Deadline, OutOfTime
+from tamp.system import interrupts as alarm
+from tamp.system.deadline import STANDSTILL, Deadline, OutOfTime
+from tamp.system.interrupts import Alarm
 
 
 def compute(seconds: float) -> None:

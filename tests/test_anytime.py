@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tamp.anytime import improves, optimize
-from tamp.cli import BAD_INPUT, SOLVED, run
-from tamp.parallel import solve_parallel
-from tamp.plan_file import plan_text
-from tamp.problem import load_problem
-from tamp.solution import Solution
+from tamp.commands.solve import BAD_INPUT, SOLVED, run
+from tamp.plan.write import plan_text
+from tamp.planner.optimize import improves, optimize
+from tamp.planner.parallel import solve_parallel
+from tamp.planner.problem import load_problem
+from tamp.planner.solution import Solution
 from tamp.verification.verify import verify
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-SYMBOLIC = ("tamp/pddl", "tamp/search", "tamp/algorithms")
+SYMBOLIC = ("tamp/symbolic/pddl", "tamp/symbolic/search", "tamp/symbolic/algorithms")
 LONGEST = 300
 HEAVY = {
     "torch",
@@ -30,7 +30,7 @@ HEAVY = {
     "matplotlib",
     "ray",
 }
-EXTRAS = {"matplotlib": {"tamp/bench/picture.py"}, "ray": {"tamp/bench/ray_crew.py"}}
+EXTRAS = {"matplotlib": {"tamp/benchmark/picture.py"}, "ray": {"tamp/benchmark/ray_pool.py"}}
 DISTRIBUTIONS = {
     "PIL": "pillow",
     "fcl": "python-fcl",
@@ -72,7 +72,7 @@ def test_the_symbolic_half_is_pure_standard_library_but_for_its_compiled_loops(f
         for name in imported(file)
         if name not in sys.stdlib_module_names
         and name != "tamp"
-        and not (file == ROOT / "tamp/search/loops/compiled.py" and name in {"numpy", "numba"})
+        and not (file == ROOT / "tamp/symbolic/search/heuristics/loops/compiled.py" and name in {"numpy", "numba"})
     }
     assert not foreign
 
@@ -139,7 +139,14 @@ def test_torch_stays_where_training_is() -> None:
 
 @pytest.mark.parametrize(
     "module",
-    ["tamp", "tamp.cli", "tamp.verification.cli", "tamp.export.cli", "tamp.view.cli", "tamp.bench.cli"],
+    [
+        "tamp",
+        "tamp.commands.solve",
+        "tamp.commands.verify",
+        "tamp.commands.export",
+        "tamp.commands.view",
+        "tamp.commands.bench",
+    ],
 )
 def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     code = f"import sys, json, {module}; print(json.dumps(sorted(sys.modules)))"

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tamp.cli import BAD_INPUT, run
-from tamp.data import find_domain
+from tamp.commands.solve import BAD_INPUT, run
+from tamp.system.files import find_domain
 
 PROBLEM = """\
 name: mine

@@ -14,13 +14,12 @@ import numpy as np
 import pytest
 
 from benchmarks.interrupts import members
-from tamp.algorithms.solution import Outcome
-from tamp.api import solve
-from tamp.call import Call
-from tamp.problem import Problem, load_problem
-from tamp.rejection import Rejection
-from tamp.solution import Solution
-from tamp.streams.context import Context
+from tamp.geometric.context import Context
+from tamp.planner.problem import Problem, load_problem
+from tamp.planner.solution import Solution
+from tamp.planner.solve import solve
+from tamp.stream import Call, Rejection
+from tamp.symbolic.algorithms.result import Outcome
 from tests.clock import unhindered, waited
 from tests.test_cli import ENCLOSED, SOLVE
 

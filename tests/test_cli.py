@@ -19,11 +19,12 @@ from typing import Any
 import jsonschema
 import pytest
 
-from tamp.cli import BAD_INPUT, INTERRUPTED, NO_PLAN, SOLVED, run
-from tamp.data import find_problem
-from tamp.streams.placements import SurfacePlacements
-from tamp.streams.registry import STREAMS
-from tamp.verification.report import Report, Violation
+from tamp.commands.solve import BAD_INPUT, INTERRUPTED, NO_PLAN, SOLVED, run
+from tamp.geometric.samplers.placements import SurfacePlacements
+from tamp.geometric.streams.registry import STREAMS
+from tamp.plan.violation import Violation
+from tamp.system.files import find_problem
+from tamp.verification.report import Report
 from tamp.verification.verify import verify
 
 SOLVE = str(Path(sys.executable).with_name("tamp-solve"))
@@ -84,7 +85,7 @@ def test_the_summary(solved: tuple[Path, subprocess.CompletedProcess[str]]) -> N
 def test_the_plan_file_conforms_to_its_schema(
     solved: tuple[Path, subprocess.CompletedProcess[str]], root: Path
 ) -> None:
-    schema = json.loads((root / "tamp/plan.schema.json").read_text())
+    schema = json.loads((root / "tamp/plan/plan.schema.json").read_text())
     document = json.loads(solved[0].read_text())
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.Draft202012Validator(schema).validate(document)
@@ -197,7 +198,7 @@ def test_an_interrupt_inside_a_stream(
 
 def test_an_interrupt_before_planning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tamp.problem.load_scene", lambda path: signal.raise_signal(signal.SIGINT))
+        patch.setattr("tamp.planner.problem.load_scene", lambda path: signal.raise_signal(signal.SIGINT))
         assert run(["one_object", "--out", str(tmp_path / "plan.json")]) == INTERRUPTED
     assert capsys.readouterr() == ("", "interrupted\n")
 

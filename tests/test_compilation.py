@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from tamp import compilation
-from tamp.clock import STANDSTILL, Deadline
+from tamp.system import compilation
+from tamp.system.deadline import STANDSTILL, Deadline
 
 ADDING = """
-from tamp.compilation import njit
+from tamp.system.compilation import njit
 @njit("int64(int64)", cache=True)
 def add(x): return x + 1
 assert add(1) == 2 and add.stats.cache_hits[add.signatures[0]] == HITS

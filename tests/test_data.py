@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tamp.data import cache_folder, find_domain, find_problem, shipped, write_whole
 from tamp.errors import InputError
+from tamp.system.files import cache_folder, find_domain, find_problem, shipped, write_whole
 
 
 def test_shipped_files_are_found_by_name_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,11 +7,11 @@ import re
 
 import pytest
 
-from tamp.algorithms.solution import Outcome
-from tamp.api import solve
-from tamp.data import shipped
-from tamp.plan_file import plan_text
-from tamp.problem import load_problem
+from tamp.plan.write import plan_text
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
+from tamp.symbolic.algorithms.result import Outcome
+from tamp.system.files import shipped
 from tamp.verification.verify import verify
 
 PROBLEMS = sorted(path.stem for path in shipped("problems").glob("*.yaml"))

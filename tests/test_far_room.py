@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tamp.api import solve
-from tamp.cli import run
-from tamp.plan_file import plan_document
-from tamp.problem import load_problem
+from tamp.commands.solve import run
+from tamp.geometric.loading.load import load_scene
+from tamp.plan.write import plan_document
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
 from tamp.simulation.physics import World
 from tamp.verification.verify import verify
-from tamp.world.load import load_scene
 
 FLAT = """\
 domain: cupboard

@@ -23,7 +23,7 @@ SLACK = 30.0
 def start(tmp_path: Path, code: str) -> subprocess.Popen[str]:
     """A guarded command whose module is `code`; it says "ready" when it can be asked."""
     (tmp_path / "stubborn.py").write_text(code)
-    words = [sys.executable, "-c", "from tamp.guard import guarded; guarded('stubborn')"]
+    words = [sys.executable, "-c", "from tamp.system.guard import guarded; guarded('stubborn')"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
     pipe = subprocess.PIPE
     return subprocess.Popen(words, stdout=pipe, stderr=pipe, text=True, env=environment, start_new_session=True)
@@ -157,7 +157,7 @@ COMMANDS = [
 @pytest.mark.parametrize("moment", [0.1, 0.7])
 def test_every_command_ends_early_on(command: str, words: str, moment: float, tmp_path: Path) -> None:
     """While it imports, where a KeyboardInterrupt is a traceback or is lost in somebody's `except`."""
-    code = f"import sys, tamp.commands; print('ready', flush=True); tamp.commands.{command}()"
+    code = f"import sys, tamp.commands.entry_points; print('ready', flush=True); tamp.commands.entry_points.{command}()"
     number = INT if moment < 0.5 else TERM
     pipe = subprocess.PIPE
     process = subprocess.Popen(
@@ -177,7 +177,8 @@ def test_every_command_ends_early_on(command: str, words: str, moment: float, tm
 def test_the_workers_of_generate_leave_with_their_leader(number: int, tmp_path: Path) -> None:
     words = ["generate", "on", "--count", "5000", "--workers", "2", "--out", str(tmp_path / "data.npz")]
     process = subprocess.Popen(
-        [sys.executable, "-c", "import tamp.commands; tamp.commands.learn()", *words], stderr=subprocess.DEVNULL
+        [sys.executable, "-c", "from tamp.commands.entry_points import learn; learn()", *words],
+        stderr=subprocess.DEVNULL,
     )
     workers: set[int] = set()
     end = time.monotonic() + 120.0

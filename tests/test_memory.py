@@ -5,8 +5,8 @@ from __future__ import annotations
 import gc
 
 import tamp
-from tamp.algorithms.binding import Binder
-from tamp.algorithms.stream import Streams
+from tamp.symbolic.algorithms.binding.binder import Binder
+from tamp.symbolic.algorithms.bound_stream import Streams
 
 
 def test_a_run_leaves_nothing_to_the_collector_of_cycles() -> None:

@@ -19,15 +19,15 @@ from pathlib import Path
 import pytest
 
 from grounding.cli import run as learn
-from tamp.bench.cli import run as bench
-from tamp.cli import BAD_INPUT, SOLVED, run
-from tamp.data import find_domain, find_problem
+from tamp.commands.bench import run as bench
+from tamp.commands.export import main as export
+from tamp.commands.solve import BAD_INPUT, SOLVED, run
+from tamp.commands.view import main as view
 from tamp.errors import InputError
-from tamp.export.cli import main as export
-from tamp.outputs import check_outputs, check_writable, locked_folder, write_whole
-from tamp.scratch import scratch_folder
-from tamp.terminal import spoken
-from tamp.view.cli import main as view
+from tamp.system.files import find_domain, find_problem
+from tamp.system.outputs import check_outputs, check_writable, locked_folder, write_whole
+from tamp.system.scratch import scratch_folder
+from tamp.system.terminal import spoken
 
 DOMAIN = "(define (domain d) (:predicates (p)) (:action a :parameters () :precondition () :effect (p)))"
 TASK = "(define (problem t) (:domain d) (:init) (:goal (p)))"
@@ -154,7 +154,7 @@ def test_a_full_disk_leaves_the_old_file_and_no_new_folder(tmp_path: Path, monke
 
     file = tmp_path / "plan.json"
     file.write_bytes(b"old")
-    monkeypatch.setattr("tamp.outputs.os.fdopen", full)
+    monkeypatch.setattr("tamp.system.outputs.os.fdopen", full)
     for path in (file, tmp_path / "new" / "deep" / "plan.json"):
         with pytest.raises(OSError, match="No space left"):
             write_whole(path, b"new")
@@ -168,7 +168,7 @@ def test_a_picture_that_fails_loses_no_plan(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("tamp.view.picture.write_whole", full)
-    monkeypatch.setattr("tamp.statistics_file.write_whole", full)
+    monkeypatch.setattr("tamp.planner.statistics_file.write_whole", full)
     plan = tmp_path / "plan.json"
     for option in ("--png", "--statistics"):
         plan.unlink(missing_ok=True)
@@ -180,7 +180,7 @@ def test_a_picture_that_fails_loses_no_plan(
 WRITER = """
 import os, sys, time
 from pathlib import Path
-import tamp.outputs as outputs
+import tamp.system.outputs as outputs
 true = os.fchmod
 def slow(*args):
     print("writing", flush=True)
@@ -208,7 +208,7 @@ def test_a_killed_run_leaves_the_old_file_and_the_next_one_tidies_up(tmp_path: P
 def test_a_protected_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "plan.json"
     file.write_bytes(b"old")
-    monkeypatch.setattr("tamp.outputs.os.access", lambda path, mode: False)  # root may write everywhere
+    monkeypatch.setattr("tamp.system.outputs.os.access", lambda path, mode: False)  # root may write everywhere
     with pytest.raises(InputError, match="Permission denied"):
         check_writable(file)
     with pytest.raises(OSError, match="Permission denied"):
@@ -237,7 +237,7 @@ def test_a_full_disk_is_one_error_in_every_command(
     def full(*args: object) -> int:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("tamp.outputs.os.fdopen", full)
+    monkeypatch.setattr("tamp.system.outputs.os.fdopen", full)
     before = contents(folder)
     for command, line in (
         (run, "p.yaml --out out.json"),

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import tamp
-from tamp import cli
-from tamp.pddl.parser import parse_domain, parse_streams
-from tamp.pddl.relations import relation_names, relation_of
-from tamp.streams.python_file import python_grounding
+from tamp.commands import solve as cli
+from tamp.geometric.samplers.python_file import python_grounding
+from tamp.symbolic.pddl.parser import parse_domain, parse_streams
+from tamp.symbolic.pddl.relations import relation_names, relation_of
 from tamp.verification.verify import verify
 from tests.own import PYTHON, SAMPLED, TESTED, Proposing, write_domain, write_problem
 

@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
-from tamp.api import solve
-from tamp.clock import Deadline
 from tamp.errors import InputError
-from tamp.parallel import solve_parallel
-from tamp.plan_file import plan_text
-from tamp.portfolio import STEP, First, Tell, member_seed, race
-from tamp.problem import load_problem
+from tamp.plan.write import plan_text
+from tamp.planner.parallel import solve_parallel
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
+from tamp.system.deadline import Deadline
+from tamp.system.race import STEP, First, Tell, member_seed, race
 
 Run = Callable[[Tell], Any]
 
@@ -108,8 +108,8 @@ def test_an_interruption_leaves_nobody_behind() -> None:
 
 KILLED = """
 import os, signal, sys, time
-from tamp.clock import Deadline
-from tamp.portfolio import race
+from tamp.system.deadline import Deadline
+from tamp.system.race import race
 
 def endless(tell):
     tell(os.getpid())

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tamp import load_problem, solve
-from tamp.streams.placements import SurfacePlacements
-from tamp.world.pose import Pose
+from tamp.geometric.samplers.placements import SurfacePlacements
+from tamp.geometric.scene.pose import Pose
 
 
 def test_the_last_object_fits_in_a_twentieth_of_the_packed_top(rng: np.random.Generator) -> None:

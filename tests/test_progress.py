@@ -9,10 +9,10 @@ import time
 
 import pytest
 
-from tamp.algorithms.solution import Effort, Outcome
-from tamp.cli import NO_PLAN, run
-from tamp.progress import SILENCE, Progress
-from tamp.report import time_shares
+from tamp.commands.solve import NO_PLAN, run
+from tamp.planner.report import time_shares
+from tamp.symbolic.algorithms.result import Effort, Outcome
+from tamp.system.progress import SILENCE, Progress
 
 
 class Terminal(io.StringIO):
@@ -29,7 +29,7 @@ def numbers(text: str) -> list[tuple[int, int, float]]:
 def test_counters_never_shrink_whoever_reports(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr("tamp.progress.OFTEN", 0.0)
+    monkeypatch.setattr("tamp.system.progress.OFTEN", 0.0)
     progress = Progress(quiet=False)
     for skeletons, draws in ((1, 10), (3, 500), (0, 7), (2, 90)):  # the third has counters of its own
         progress.update(Effort(skeletons=skeletons, draws=draws))

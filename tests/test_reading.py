@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 
-from tamp.cli import BAD_INPUT, SOLVED, run
+from tamp.commands.solve import BAD_INPUT, SOLVED, run
+from tamp.commands.verify import main as verify
 from tamp.errors import InputError
-from tamp.reading import MOST_BYTES, read_bytes, read_json
-from tamp.statistics_file import read_statistics
-from tamp.verification.cli import main as verify
+from tamp.planner.statistics_file import read_statistics
+from tamp.system.reading import MOST_BYTES, read_bytes, read_json
 
 
 @pytest.mark.parametrize(
@@ -88,8 +88,8 @@ def test_broken_statistics(streams: str, tmp_path: Path) -> None:
 
 
 def test_statistics_of_runs_that_end_together_add_up(tmp_path: Path) -> None:
-    from tamp.algorithms.statistics import StreamStatistics
-    from tamp.statistics_file import add_statistics
+    from tamp.planner.statistics_file import add_statistics
+    from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 
     file, children = tmp_path / "s.json", []
     for _ in range(8):
@@ -125,8 +125,8 @@ def secret(plan: dict[str, Any], role: str, file: Path) -> dict[str, Any]:
 def test_what_a_named_file_says_is_not_repeated(
     role: str, plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tamp.execution.cli import main as execute
-    from tamp.view.cli import main as view
+    from tamp.commands.execute import main as execute
+    from tamp.commands.view import main as view
 
     file, hidden = tmp_path / "plan.json", tmp_path / "shadow"
     for content in (SECRET, f"({SECRET}", f"{SECRET}: [", f"name: x\n{SECRET}"):
@@ -149,7 +149,7 @@ def test_what_a_named_file_says_is_not_repeated(
 def test_options_that_are_none(
     options: object, plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tamp.execution.cli import main as execute
+    from tamp.commands.execute import main as execute
 
     file = tmp_path / "plan.json"
     file.write_text(json.dumps({**plan, "options": options}), encoding="utf-8")

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from tamp.api import solve
-from tamp.data import find_problem
-from tamp.plan_file import plan_text
-from tamp.problem import load_problem
+from tamp.plan.write import plan_text
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
+from tamp.system.files import find_problem
 
 SOLVE = str(Path(sys.executable).with_name("tamp-solve"))
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tamp.algorithms.posterior import Posterior
-from tamp.cli import BAD_INPUT, SOLVED, run
-from tamp.statistics_file import read_statistics
+from tamp.commands.solve import BAD_INPUT, SOLVED, run
+from tamp.planner.statistics_file import read_statistics
+from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 
 
 def plan(folder: Path, name: str = "one_object", *more: str) -> int:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError, one_line, printable
-from tamp.terminal import Shown, spoken
+from tamp.system.terminal import Shown, spoken
 
 COMMANDS = (
     "tamp-solve one_object --out p.json",

@@ -10,7 +10,7 @@ from benchmarks.groundings.case import GENERATORS
 from benchmarks.groundings.measure import BATCHES
 from benchmarks.groundings.summary import JUDGES, Share, failures, feasible, grouped, share
 from grounding.registry import VARIANTS
-from tamp.bench.picture import COLOURS, STYLES
+from tamp.benchmark.picture import COLOURS, STYLES
 from tamp.errors import InputError
 
 Line = Mapping[str, Any]

@@ -7,9 +7,9 @@ from functools import lru_cache
 import numpy as np
 
 from grounding.form import Form
-from tamp.streams.hulls import body_hull
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import Body
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body
+from tamp.geometric.stability.hulls import body_hull
 
 POINTS = 2048
 """Points of a cloud (paper, section III-B)."""

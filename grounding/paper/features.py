@@ -18,7 +18,7 @@ from grounding.paper.clouds import cloud
 from grounding.paper.kernels import describe_boxes, move
 from grounding.paper.turns import quaternions, rotations
 from grounding.situation import Placed, Situation
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 BB = 19
 """Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own box's corners 6."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tamp.compilation import njit
+from tamp.system.compilation import njit
 
 
 @njit(cache=True)

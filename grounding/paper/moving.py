@@ -11,8 +11,8 @@ from grounding.form import Form
 from grounding.random_poses import afloat
 from grounding.runtime import Grounding
 from grounding.situation import situation_of
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import Scene
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Scene
 
 TOGETHER = 4
 """Proposals from one start: a network takes as long for these as for one."""

@@ -14,7 +14,7 @@ from grounding.paper.kernels import normalize
 from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.errors import InputError
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 Floats = NDArray[np.float32]
 Arrays = Mapping[str, NDArray[Any]]

@@ -24,8 +24,8 @@ from grounding.paper import networks
 from grounding.paper.critic import critic_gradient
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
 from grounding.paper.table import Table
-from tamp.data import write_whole
 from tamp.errors import InputError
+from tamp.system.files import write_whole
 
 SCHEMES = ("discriminator", "classifier", "both")
 """What teaches the generator: equation 3, equation 4, or both."""

@@ -14,7 +14,7 @@ from grounding.paper.turns import rotations
 from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.errors import InputError
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 LEAF = -1
 """The feature that a leaf differentiates upon."""

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.compilation import njit
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
+from tamp.system.compilation import njit
 
 QUADRATIC: NDArray[np.float64] = np.zeros((16, 9))
 """R = 1 + (q q^T) QUADRATIC for a unit quaternion xyzw: entries of q q^T row by row to entries of R row by row."""

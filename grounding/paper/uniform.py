@@ -10,8 +10,8 @@ from grounding.paper.runtime import Network, classified, features_in, judged, un
 from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.errors import InputError
-from tamp.streams.placements import GROWTH
-from tamp.world.pose import Array
+from tamp.geometric.samplers.placements import GROWTH
+from tamp.geometric.scene.pose import Array
 
 TRIES = (20, 60, 120, 300)
 """How many poses are drawn and judged at once, in turn: 500 at most, the paper's budget."""

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from grounding.relational.kernels import fall_short
 from grounding.relational.measures import Measures, View, turns, upright
-from tamp.world.pose import Array
-from tamp.world.scene import CONTACT_GAP
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import CONTACT_GAP
 
 CONTAINED = 0.95
 """The share of demonstrations within the rectangle from which on all are thought to be."""

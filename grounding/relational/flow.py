@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from grounding.layers import dense, layers_of
 from grounding.relational.chart import FLAT, LEVEL, Chart
 from grounding.relational.measures import Measures, View
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 STEPS = 4
 """Of Euler's method from noise to coordinates."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from tamp.compilation import njit
+from tamp.system.compilation import njit
 
 _ROWS, _COLUMN = "float64[:,::1]", "float64[::1]"
 

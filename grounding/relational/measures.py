@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from grounding.form import Form
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, Region, Situation
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 REACH = 0.4
 """Surroundings farther from the region than this are left out, metres."""

@@ -17,7 +17,7 @@ from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
 from grounding.situation import Situation
 from grounding.weights import Weights
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 BEST_OF = 16
 """Candidates of which the best is returned."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from grounding.relational.chart import Chart, Demonstration
 from grounding.relational.measures import Measures, View
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
 
 JITTER = 0.35
 """How far the horizontal share is moved, of 1."""

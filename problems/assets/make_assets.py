@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from tamp.data import write_whole
-from tamp.world.mesh_pieces import compute_pieces, packed, pieces_name
-from tamp.world.meshes import find_mesh
+from tamp.geometric.loading.mesh_pieces import compute_pieces, packed, pieces_name
+from tamp.geometric.loading.meshes import find_mesh
+from tamp.system.files import write_whole
 
 OBJECTS = Path(__file__).resolve().parent / "objects"
 SHIPPED = [

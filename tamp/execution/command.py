@@ -6,20 +6,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tamp.api import ALGORITHMS
-from tamp.arguments import sampler_choices
 from tamp.errors import InputError
 from tamp.execution.disturbance import DISTURBANCES
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.goal import classifiers_of
-from tamp.execution.grasps import GRASPS
+from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.relations import named_classifiers
 from tamp.execution.replan import Replanner, is_given
 from tamp.execution.report import Execution
-from tamp.stored import Stored, open_plan
-from tamp.streams.choice import Registry
-from tamp.streams.python_file import given_by_files
-from tamp.streams.registry import SAMPLERS
+from tamp.geometric.samplers.choice import Registry, sampler_choices
+from tamp.geometric.samplers.python_file import given_by_files
+from tamp.geometric.samplers.registry import SAMPLERS
+from tamp.plan.open import Stored, open_plan
+from tamp.planner.solve import ALGORITHMS
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.pddl.structs import Fact
-from tamp.verification.start import apart
-from tamp.world.pose import Array
+from tamp.geometric.scene.pose import Array
+from tamp.symbolic.pddl.structs import Fact
+from tamp.verification.initial_state import apart
 
 FAR = 0.01
 """Metres by which a body may stand elsewhere than expected, or be elsewhere in the hand."""

@@ -12,12 +12,12 @@ from numpy.random import Generator
 
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
-from tamp.execution.playing import Player
-from tamp.execution.room import Room
+from tamp.execution.free_space import Room
+from tamp.execution.motor_commands import Player
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Box, Part
+from tamp.plan.read import PlanFile, Segment
 from tamp.simulation.actuated import Actuated
-from tamp.verification.plan_file import PlanFile, Segment
-from tamp.world.pose import Pose
-from tamp.world.scene import Body, Box, Part
 
 OBSTACLE = "obstacle"
 """What a blocking body is called."""

@@ -13,23 +13,23 @@ from tamp.execution.deviation import Deviation, Seen, deviations
 from tamp.execution.disturbance import Happening, Scheduled, schedule
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
+from tamp.execution.monitoring import Watch
+from tamp.execution.motor_commands import CLOSING, Player
+from tamp.execution.observation import Observer, Truth
 from tamp.execution.pauses import without_pauses
-from tamp.execution.playing import CLOSING, Player
 from tamp.execution.relations import Named, own_relations
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
-from tamp.execution.truth import Observer, Truth
-from tamp.execution.watching import Watch
-from tamp.pddl.files import read_pddl
-from tamp.pddl.parser import parse_domain, parse_goal
+from tamp.geometric.samplers.sampler import Classifier
+from tamp.geometric.scene.pose import Array
+from tamp.plan.open import Stored
+from tamp.plan.read import PlanFile, TimedAction
+from tamp.plan.sources import plan_hashes, source_file, unquoted
 from tamp.simulation.actuated import Actuated
-from tamp.stored import Stored
-from tamp.streams.relations import Classifier
-from tamp.verification.files import plan_hashes, source_file, unquoted
+from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.parser import parse_domain, parse_goal
+from tamp.verification.initial_state import apart
 from tamp.verification.limits import check_ranges
-from tamp.verification.plan_file import PlanFile, TimedAction
-from tamp.verification.start import apart
-from tamp.world.pose import Array
 
 SETTLE = 0.5
 """Seconds after an action, before it is looked at what came of it."""
@@ -72,7 +72,7 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
     """Carry out a plan.
 
     Args:
-        stored: From `tamp.stored.open_plan`.
+        stored: From `tamp.plan.open.open_plan`.
         circumstances: How; with friction and without replanning when not given.
 
     Raises:

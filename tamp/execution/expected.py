@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tamp.pddl.structs import Atom, Domain, Fact
-from tamp.verification.plan_file import Hold, PlanFile, TimedAction
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Scene
+from tamp.plan.read import Hold, PlanFile, TimedAction
+from tamp.symbolic.pddl.structs import Atom, Domain, Fact
 from tamp.verification.semantics import Semantics, State
-from tamp.world.pose import Array
-from tamp.world.scene import Scene
 
 RELATIONS = ("on", "inside")
 """Predicates that are compared with the geometry."""

@@ -8,17 +8,17 @@ from collections.abc import Callable, Iterator, Mapping
 from tamp.errors import InputError
 from tamp.execution.deviation import FAR, TURNED
 from tamp.execution.expected import RELATIONS, Expected
+from tamp.execution.observation import Truth
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
-from tamp.execution.truth import Truth
-from tamp.observed import Unanswered, probability
-from tamp.pddl.relations import POSE
-from tamp.pddl.structs import Atom, Formula, Not
-from tamp.streams.choice import ANY, Registry
-from tamp.streams.relations import Classifier
+from tamp.geometric.samplers.choice import ANY, Registry
+from tamp.geometric.samplers.sampler import Classifier
+from tamp.geometric.scene.classifier import Unanswered, probability
+from tamp.symbolic.pddl.relations import POSE
+from tamp.symbolic.pddl.structs import Atom, Formula, Not
 from tamp.verification.formulas import flat, show
+from tamp.verification.initial_state import apart
 from tamp.verification.semantics import Semantics, State
-from tamp.verification.start import apart
 
 NONE = Own({})
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tamp.errors import InputError
-from tamp.verification.plan_file import PlanFile, Segment
+from tamp.plan.read import PlanFile, Segment
 
 PAUSE = 10.0
 """Seconds that nothing moves in a segment; what is longer is cut."""

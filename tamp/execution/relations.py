@@ -9,15 +9,16 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
-from tamp.execution.truth import Truth
-from tamp.observed import LIKELY, Classifier, Observation, moved, observe
-from tamp.pddl.complement import atoms_of_conditions
-from tamp.pddl.relations import Relation, needed_false, relation_names, relation_of
-from tamp.pddl.structs import Domain, Fact, Formula, StreamFile
-from tamp.stored import Stored
-from tamp.streams.choice import GIVEN, Grounding, Registry, maker, parse_choice
-from tamp.streams.registry import SAMPLERS
-from tamp.verification.files import source_file
+from tamp.execution.observation import Truth
+from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry, maker, parse_choice
+from tamp.geometric.samplers.registry import SAMPLERS
+from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.plan.open import Stored
+from tamp.plan.sources import source_file
+from tamp.relations.observed import Observation, moved, observe
+from tamp.symbolic.pddl.complement import atoms_of_conditions
+from tamp.symbolic.pddl.relations import Relation, needed_false, relation_names, relation_of
+from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.verification.trust import read_streams, streams_file
 
 Named = Mapping[str, tuple[str, Classifier]]

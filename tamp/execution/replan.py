@@ -10,22 +10,22 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tamp.api import solve
 from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import RELATIONS, Expected
-from tamp.execution.truth import Truth
-from tamp.pddl.complement import signed_atoms
-from tamp.pddl.structs import Formula
-from tamp.plan_file import plan_text
-from tamp.problem import Problem, load_problem
-from tamp.stored import Stored
-from tamp.streams.choice import GIVEN, Grounding, Registry
-from tamp.streams.values import Grasp
-from tamp.verification.files import source_file
-from tamp.verification.plan_file import PlanFile, TimedAction, read_plan
-from tamp.verification.start import apart
-from tamp.world.pose import Array, Pose
+from tamp.execution.observation import Truth
+from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.values import Grasp
+from tamp.plan.open import Stored
+from tamp.plan.read import PlanFile, TimedAction, read_plan
+from tamp.plan.sources import source_file
+from tamp.plan.write import plan_text
+from tamp.planner.problem import Problem, load_problem
+from tamp.planner.solve import solve
+from tamp.symbolic.pddl.complement import signed_atoms
+from tamp.symbolic.pddl.structs import Formula
+from tamp.verification.initial_state import apart
 
 SAME = (0.003, 0.04)
 """Metres and radians by which a body that is still to be grasped may stand elsewhere for the old grasp to serve."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from tamp.errors import printable
 from tamp.execution.deviation import Deviation
-from tamp.execution.watching import Touch
+from tamp.execution.monitoring import Touch
 
 
 @dataclass(frozen=True)

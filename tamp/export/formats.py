@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from tamp.export.trajectory import BASE_JOINTS, Stretch, TimedAction
-from tamp.verification.plan_file import PlanFile
-from tamp.world.pose import Array
-from tamp.world.robot import Robot
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.plan.read import PlanFile
 
 DIGITS = 9
 """Decimals of the numbers: those of the plan file."""

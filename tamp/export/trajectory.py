@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.verification.plan_file import PlanFile
-from tamp.verification.plan_file import Segment as StoredSegment
-from tamp.world.pose import Array
-from tamp.world.robot import Robot
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.plan.read import PlanFile
+from tamp.plan.read import Segment as StoredSegment
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 """What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the yaw are kept."""

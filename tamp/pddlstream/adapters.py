@@ -6,10 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tamp.call import Call
-from tamp.pddl.structs import Stream
-from tamp.rejection import Rejection
-from tamp.wild import Wild
+from tamp.stream import Call, Rejection, Wild
+from tamp.symbolic.pddl.structs import Stream
 
 NOTHING = Rejection("gave nothing")
 

@@ -6,9 +6,9 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tamp.algorithms.stream import value_key
 from tamp.errors import InputError, closest
-from tamp.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter, Predicate
+from tamp.symbolic.algorithms.bound_stream import value_key
+from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter, Predicate
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")

@@ -8,25 +8,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tamp.algorithms.costs import BoundFunction
-from tamp.algorithms.solution import StreamTask
-from tamp.algorithms.stream import BoundStream
 from tamp.errors import InputError, closest
-from tamp.pddl.complement import complement_name, negated_tests, with_complements
-from tamp.pddl.exogenous import without_waiting
-from tamp.pddl.files import read_pddl
-from tamp.pddl.formulas import RESERVED
-from tamp.pddl.lint import lint
-from tamp.pddl.nodes import Group, Node, Symbol, warning
-from tamp.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
-from tamp.pddl.sexpr import read
-from tamp.pddl.started import without_started
-from tamp.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
 from tamp.pddlstream.adapters import stream_function
 from tamp.pddlstream.checks import check_parts
 from tamp.pddlstream.facts import Names, goal_formula, initial_facts, initial_functions
-from tamp.rejection import Rejection
-from tamp.wild import Wild
+from tamp.stream import Rejection, Wild
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.algorithms.costs import BoundFunction
+from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.complement import complement_name, negated_tests, with_complements
+from tamp.symbolic.pddl.exogenous import without_waiting
+from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.formulas import RESERVED
+from tamp.symbolic.pddl.lint import lint
+from tamp.symbolic.pddl.nodes import Group, Node, Symbol, warning
+from tamp.symbolic.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
+from tamp.symbolic.pddl.sexpr import read
+from tamp.symbolic.pddl.started import without_started
+from tamp.symbolic.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
 
 
 class PDDLProblem(NamedTuple):

@@ -8,17 +8,17 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any, NamedTuple, cast
 
-from tamp.alarm import Alarm
-from tamp.algorithms.incremental import Incremental
-from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Effort, Outcome, Result, StreamTask
-from tamp.algorithms.statistics import StreamStatistics
-from tamp.algorithms.stream import STRANGERS
-from tamp.clock import Deadline, OutOfTime
 from tamp.errors import InputError
-from tamp.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
 from tamp.pddlstream.problem import PDDLProblem, bind
-from tamp.search.loops.tiers import load_kept as load_compiled_loops
+from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
+from tamp.symbolic.algorithms.incremental import Incremental
+from tamp.symbolic.algorithms.registry import ALGORITHMS
+from tamp.symbolic.algorithms.result import Effort, Outcome, Result, StreamTask
+from tamp.symbolic.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
+from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
+from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.interrupts import Alarm
 
 load_compiled_loops()
 

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from tamp.scratch import scratch_folder
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Scene
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import World
 from tamp.simulation.shapes import link_frame
 from tamp.simulation.silence import silence
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import Robot
-from tamp.world.scene import Scene
+from tamp.system.scratch import scratch_folder
 
 RATE = 240
 """Steps a second."""

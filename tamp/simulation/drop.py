@@ -13,12 +13,12 @@ from typing import Any, Self
 
 import numpy as np
 
-from tamp.scratch import scratch_folder
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
 from tamp.simulation.physics import HULL_PAD, load_bullet
 from tamp.simulation.shapes import centre_of_mass, obj
-from tamp.world.bounds import bounds
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.system.scratch import scratch_folder
 
 STEP = 1 / 240
 """Seconds of one step of the engine."""

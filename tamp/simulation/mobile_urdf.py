@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from tamp.errors import InputError
-from tamp.world.robot import Robot
-from tamp.world.scene import Box
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.scene import Box
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 """Their names: along x and y of the world, then about z."""

@@ -18,12 +18,12 @@ from typing import Any, Self
 import numpy as np
 
 from tamp.errors import InputError
-from tamp.scratch import scratch_folder
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Sphere
 from tamp.simulation.shapes import centre_of_mass, floor_under, half_extents, link_frame, obj
 from tamp.simulation.silence import silence
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import Robot
-from tamp.world.scene import Body, Box, Cylinder, Hull, Part, Scene, Sphere
+from tamp.system.scratch import scratch_folder
 
 HULL_PAD = 0.001
 """Metres by which Bullet pads a convex hull."""

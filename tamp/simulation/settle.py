@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Scene
 from tamp.simulation.physics import World
-from tamp.world.pose import Pose
-from tamp.world.scene import Scene
 
 
 @dataclass(frozen=True)

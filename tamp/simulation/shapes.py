@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tamp.world.pose import Array, Pose
-from tamp.world.scene import Box, Cylinder, Hull, Part, Scene, Shape, Sphere
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Scene, Shape, Sphere
 
 _SINGLE = 100.0
 ROUND = 48

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tamp.errors import InputError
-from tamp.observed import Classifier, Undecided
-from tamp.python_object import python_object
+from tamp.geometric.scene.classifier import Classifier, Undecided
+from tamp.system.python_object import python_object
 
 MODES = (":mixed", ":alone")
 """What tamp-solve reads after a sampler's name, and the judge may read as well: it says nothing of the classifier."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from tamp.pddl.structs import And, Atom, Fact, Formula, Not, Or
+from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not, Or
 
 Binding = dict[str, str]
 """What variables stand for."""

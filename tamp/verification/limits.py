@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from tamp.errors import InputError
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Room
+from tamp.plan.read import PlanFile, Segment
 from tamp.verification.makers_limits import limits_of
-from tamp.verification.plan_file import PlanFile, Segment
-from tamp.world.pose import Array
-from tamp.world.robot import Robot
-from tamp.world.scene import Room
 
 SLACK = 1e-4
 """Radians or metres by which a position may exceed its range."""

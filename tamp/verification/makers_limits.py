@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tamp.world.robot import Robot
+from tamp.geometric.robot.robot import Robot
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,17 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from tamp.observed import LIKELY, Classifier, Unanswered, moved, probability, scene_names
-from tamp.pddl.relations import Relation, instances
-from tamp.pddl.structs import Domain, Fact
+from tamp.geometric.scene.classifier import LIKELY, Classifier, Unanswered, probability
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Scene
+from tamp.plan.read import PlanFile
+from tamp.relations.observed import moved, scene_names
 from tamp.simulation.physics import World
-from tamp.verification.log import Log
-from tamp.verification.plan_file import PlanFile
+from tamp.symbolic.pddl.relations import Relation, instances
+from tamp.symbolic.pddl.structs import Domain, Fact
+from tamp.verification.initial_state import meant
 from tamp.verification.semantics import State
-from tamp.verification.start import meant
-from tamp.world.pose import Pose
-from tamp.world.scene import Scene
+from tamp.verification.violation_log import Log
 
 
 class Relations:

@@ -8,22 +8,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tamp.pddl.structs import Formula
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.physics import World
-from tamp.verification.agreement import Agreement
-from tamp.verification.certified import ALIKE, CLOSE, Certified
-from tamp.verification.course import Course, Held
+from tamp.symbolic.pddl.structs import Formula
+from tamp.verification.certified_facts import ALIKE, CLOSE, Certified
+from tamp.verification.collision_sweep import TOLERANCE, Findings, Natural, Sweeper
+from tamp.verification.execution_state import Course, Held
 from tamp.verification.formulas import show
+from tamp.verification.initial_state import apart, base_apart
 from tamp.verification.limits import excesses
-from tamp.verification.log import Log
-from tamp.verification.plan_file import Hold, PlanFile, Segment, TimedAction
 from tamp.verification.relations import Relations
 from tamp.verification.semantics import Semantics, State
-from tamp.verification.standing import Standing
-from tamp.verification.start import apart, base_apart
-from tamp.verification.sweep import TOLERANCE, Findings, Natural, Sweeper
-from tamp.world.pose import Array
-from tamp.world.robot import Robot
+from tamp.verification.state_agreement import Agreement
+from tamp.verification.support_relations import Standing
+from tamp.verification.violation_log import Log
 
 JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""

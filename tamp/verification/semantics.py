@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from tamp.pddl.structs import Action, And, Atom, Derived, Domain, Exists, Fact, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import Action, And, Atom, Derived, Domain, Exists, Fact, Formula, Not, Or, Parameter
 from tamp.verification.formulas import Binding, flat, free, ground, predicates, substitute, unify
 
 Types = Mapping[str, tuple[str, ...]]

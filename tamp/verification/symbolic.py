@@ -8,25 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.pddl.files import read_pddl
-from tamp.pddl.parser import parse_domain, parse_task
-from tamp.pddl.structs import Action, Atom, Fact, Task
-from tamp.reading import is_file, read_json
-from tamp.verification.fields import Field, clipped
-from tamp.verification.files import sha256, unquoted
+from tamp.plan.sources import sha256, unquoted
+from tamp.plan.symbolic import VERSION
+from tamp.plan.violation import Violation
+from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.parser import parse_domain, parse_task
+from tamp.symbolic.pddl.structs import Action, Atom, Fact, Task
+from tamp.system.json_fields import Field, clipped
+from tamp.system.reading import is_file, read_json
 from tamp.verification.formulas import flat, ground, show
-from tamp.verification.report import Report, Violation
+from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics, State
 
-FORMAT, VERSION = "tamp-symbolic-plan", 1
 TOLERANCE = 1e-6
 """By which a stated cost may differ from the domain's."""
-
-
-def is_symbolic(plan: dict[str, Any] | Path) -> bool:
-    """Whether a plan file, or its content, is one without scene and robot."""
-    content = plan if isinstance(plan, dict) else read_json(plan)
-    return isinstance(content, dict) and content.get("format") == FORMAT
 
 
 def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, domain: Path | None = None) -> Report:

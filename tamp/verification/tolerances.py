@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 
-from tamp.verification import certified, limits, replay, sampling, supports, sweep
+from tamp.verification import certified_facts as certified
+from tamp.verification import collision_sweep as sweep
+from tamp.verification import limits, replay
+from tamp.verification import support_geometry as supports
+from tamp.verification import trajectory_sampling as sampling
 
 
 def tolerances() -> tuple[tuple[str, str], ...]:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from tamp.data import find_domain, shipped
 from tamp.errors import InputError
-from tamp.pddl.complement import signed_atoms
-from tamp.pddl.parser import parse_streams
-from tamp.pddl.relations import relation_names, relation_of
-from tamp.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
-from tamp.verification.files import sha256
-from tamp.verification.plan_file import PlanFile
-from tamp.verification.start import KINDS_OF_OBJECTS
-from tamp.world.load import LoadedProblem
+from tamp.geometric.loading.load import LoadedProblem
+from tamp.plan.read import PlanFile
+from tamp.plan.sources import sha256
+from tamp.symbolic.pddl.complement import signed_atoms
+from tamp.symbolic.pddl.parser import parse_streams
+from tamp.symbolic.pddl.relations import relation_names, relation_of
+from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
+from tamp.system.files import find_domain, shipped
+from tamp.verification.initial_state import KINDS_OF_OBJECTS
 
 STREAMS = ".streams.pddl"
 """What a domain's streams file ends with, beside the domain."""

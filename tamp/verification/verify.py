@@ -10,28 +10,30 @@ from types import MappingProxyType
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.observed import Classifier
-from tamp.pddl.files import read_pddl
-from tamp.pddl.parser import parse_domain, parse_facts, parse_goal
-from tamp.pddl.relations import Relation, relation_names, relation_of
-from tamp.pddl.structs import Domain, Fact, StreamFile
+from tamp.geometric.loading.load import LoadedProblem, load_scene
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.classifier import Classifier
+from tamp.plan.read import PlanFile, read_plan
+from tamp.plan.sources import check_files, plan_hashes, source_file, unquoted
+from tamp.plan.symbolic import is_symbolic
+from tamp.plan.violation import Violation
 from tamp.simulation.physics import World
-from tamp.verification.certified import Certified
-from tamp.verification.files import plan_hashes, source_file, unquoted
+from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal
+from tamp.symbolic.pddl.relations import Relation, relation_names, relation_of
+from tamp.symbolic.pddl.structs import Domain, Fact, StreamFile
+from tamp.verification.certified_facts import Certified
+from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.formulas import substitute
-from tamp.verification.log import Log
-from tamp.verification.plan_file import PlanFile, read_plan
+from tamp.verification.initial_state import check_initial, check_objects
 from tamp.verification.relations import Relations
 from tamp.verification.replay import Replay
-from tamp.verification.report import Report, Violation
+from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics
-from tamp.verification.standing import RELATIONS
-from tamp.verification.start import check_files, check_initial, check_objects
-from tamp.verification.sweep import Sweeper
-from tamp.verification.symbolic import is_symbolic, verify_symbolic
+from tamp.verification.support_relations import RELATIONS
+from tamp.verification.symbolic import verify_symbolic
 from tamp.verification.trust import certifiable, domain_note, other_files, read_streams, streams_file, trusted_relations
-from tamp.world.load import LoadedProblem, load_scene
-from tamp.world.robot import ROBOTS
+from tamp.verification.violation_log import Log
 
 NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
 

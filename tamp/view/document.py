@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from tamp.view.film import Film
-from tamp.view.looks import body_meshes, robot_meshes
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.view.appearance import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh
 from tamp.view.picture import framing
 from tamp.view.samples import Shot
 from tamp.view.story import Story
-from tamp.world.bounds import bounds
-from tamp.world.pose import Array, Pose
+from tamp.view.timeline import Film
 
 GRID = 65_535
 """Steps on each side of a mesh in which its vertices are told."""

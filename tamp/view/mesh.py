@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.errors import InputError
-from tamp.world.mesh_file import MOST_BYTES, Beside, ascii_text, quiet, read_triangles
-from tamp.world.pose import Array
-from tamp.world.raw_file import read_raw
-from tamp.world.scene import Box, Cylinder, Shape, Sphere
+from tamp.geometric.loading.mesh_file import MOST_BYTES, Beside, ascii_text, quiet, read_triangles
+from tamp.geometric.loading.raw_file import read_raw
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Box, Cylinder, Shape, Sphere
 
 Colour = tuple[float, float, float, float]
 _GREY = (0.8, 0.8, 0.8, 1.0)

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.plan_file import plan_document, record_document, summary_document
-from tamp.solution import Solution
-from tamp.stored import open_plan
-from tamp.verification.plan_file import read_plan
-from tamp.view.film import Film, film_of
+from tamp.geometric.loading.load import load_scene
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.plan.open import open_plan
+from tamp.plan.read import read_plan
+from tamp.plan.write import plan_document, record_document, summary_document
+from tamp.planner.solution import Solution
 from tamp.view.story import Story, story_of
-from tamp.world.load import load_scene
-from tamp.world.robot import ROBOTS
+from tamp.view.timeline import Film, film_of
 
 Opened = tuple[Film, Story, dict[str, Any]]
 """A film, its story, and the plan file's content (empty without a plan)."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError, printable
-from tamp.outputs import write_whole
+from tamp.system.outputs import write_whole
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 

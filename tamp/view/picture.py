@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.errors import InputError
-from tamp.outputs import write_whole
-from tamp.view.film import Film, holding, tool_path
-from tamp.view.looks import body_meshes, robot_meshes
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array
+from tamp.system.outputs import write_whole
+from tamp.view.appearance import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh, simplified, unit
-from tamp.view.moving import MOVING, check_suffix
-from tamp.view.raster import Camera, Triangles, render, triangles
-from tamp.world.bounds import bounds
-from tamp.world.kinematics import Kinematics
-from tamp.world.pose import Array
+from tamp.view.rasterizer import Camera, Triangles, render, triangles
+from tamp.view.timeline import Film, holding, tool_path
+from tamp.view.video_formats import MOVING, check_suffix
 
 if TYPE_CHECKING:
     from PIL import Image

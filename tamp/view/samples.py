@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tamp.verification.fields import Field
-from tamp.world.pose import Array
-from tamp.world.scene import Scene
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Scene
+from tamp.plan.read import read_pose
+from tamp.system.json_fields import Field
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,7 @@ def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -
     for field in grasps:
         body = names.get(field["body"].text(), "")
         if body in scene.bodies:
-            T = field["T_tool_body"].pose()
+            T = read_pose(field["T_tool_body"])
             made.append(Shot("grasp", body, T, True, None, "", (), f"grasp of {body}: in the plan"))
     return tuple(made)
 
@@ -69,7 +70,7 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
     if not arguments or arguments[0] not in scene.bodies:
         return None
     grasp = _is_grasp(field)
-    T = field["T_tool_body"].pose() if grasp else field.pose()
+    T = read_pose(field["T_tool_body"]) if grasp else read_pose(field)
     used, stream = field["used"].value is True, field["stream"].text()
     refusals = [
         (item["stream"].text(), item["reason"].text(), int(item["count"].number(1.0)))

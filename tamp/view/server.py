@@ -8,7 +8,7 @@ from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 from tamp.errors import InputError
-from tamp.terminal import unheard
+from tamp.system.terminal import unheard
 
 HOST = "127.0.0.1"
 """Nobody else on the network is served."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tamp.verification.fields import Field
+from tamp.system.json_fields import Field
 
 MOST = 40
 """Skeletons that are told of."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tamp.api import solve
-from tamp.plan_file import write_plan
-from tamp.problem import load_problem
-from tamp.stored import Stored, open_plan
+from tamp.plan.open import Stored, open_plan
+from tamp.plan.write import write_plan
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
 
 PROBLEM = """\
 name: short_way

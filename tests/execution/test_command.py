@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tamp.cli import execute, run
+from tamp.commands.solve import execute, run
 
 
 def exit_of(*words: str) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tamp.execution.deviation import KINDS, Seen, deviations
-from tamp.world.pose import Array, Pose
+from tamp.geometric.scene.pose import Array, Pose
 
 HERE = Pose((1.0, 0.0, 0.5)).matrix
 TOOL = Pose((0.0, 0.0, 1.0)).matrix

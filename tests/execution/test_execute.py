@@ -13,7 +13,7 @@ from tamp.execution.disturbance import DISTURBANCES, schedule
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Execution
-from tamp.stored import Stored
+from tamp.plan.open import Stored
 
 
 class Sceptic:

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 import tamp
-from tamp import cli
+from tamp.commands import solve as cli
 from tamp.execution.execute import Circumstances, execute
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
+from tamp.execution.observation import Observer, Truth
 from tamp.execution.relations import own_relations
-from tamp.execution.truth import Observer, Truth
-from tamp.pddl.parser import parse_domain, parse_goal
-from tamp.stored import Stored, open_plan
-from tamp.streams.python_file import python_grounding
+from tamp.geometric.samplers.python_file import python_grounding
+from tamp.plan.open import Stored, open_plan
+from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tests.own import PYTHON, SAMPLED, write_domain, write_problem
 
 

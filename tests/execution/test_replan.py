@@ -7,19 +7,19 @@ from types import MappingProxyType
 
 import pytest
 
-from tamp.api import solve
-from tamp.data import find_domain
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import Expected
+from tamp.execution.observation import Truth
 from tamp.execution.replan import Replanner
-from tamp.execution.truth import Truth
-from tamp.pddl.parser import parse_domain
-from tamp.problem import load_problem
-from tamp.stored import Stored
-from tamp.streams.values import Grasp
-from tamp.verification.plan_file import Hold
-from tamp.world.pose import Pose
-from tamp.world.scene import Scene
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Scene
+from tamp.geometric.values import Grasp
+from tamp.plan.open import Stored
+from tamp.plan.read import Hold
+from tamp.planner.problem import load_problem
+from tamp.planner.solve import solve
+from tamp.symbolic.pddl.parser import parse_domain
+from tamp.system.files import find_domain
 
 
 def expectation(stored: Stored) -> Expected:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tamp.execution.truth import Observer
-from tamp.stored import Stored
-from tamp.world.pose import Array
-from tamp.world.scene import CONTACT_GAP
+from tamp.execution.observation import Observer
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import CONTACT_GAP
+from tamp.plan.open import Stored
 
 
 def raised(T: Array, x: float = 0.0, z: float = 0.0) -> Array:

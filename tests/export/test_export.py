@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tamp.export.cli import main
+from tamp.commands.export import main
 from tamp.export.trajectory import rates
-from tamp.stored import open_plan, read_motions, robot_of
-from tamp.world.robot import panda_mobile
+from tamp.geometric.robot.robot import panda_mobile
+from tamp.plan.open import open_plan, read_motions, robot_of
 
 PANDA = panda_mobile()
 ARM = [joint.name for joint in PANDA.joints]

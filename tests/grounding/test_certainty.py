@@ -18,8 +18,8 @@ from grounding.registry import file_grounding
 from grounding.runtime import Grounding, Proposer
 from grounding.train import TrainArgs, train
 from grounding.weights import write_weights
-from tamp import cli
-from tamp.verification.cli import main as judge
+from tamp.commands import solve as cli
+from tamp.commands.verify import main as judge
 from tamp.verification.verify import verify
 from tests.own import SAMPLED, TESTED, write_domain, write_problem
 

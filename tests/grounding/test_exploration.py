@@ -20,8 +20,8 @@ from grounding.situation import Situation
 from grounding.train import train
 from grounding.weights import write_weights
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Array
 from tamp.simulation.drop import Drops
-from tamp.world.pose import Array
 
 
 @pytest.fixture(scope="module", params=["on", "inside"])

@@ -10,9 +10,9 @@ import pytest
 import tamp
 from grounding.registry import GROUNDINGS, load_grounding, shipped_weights
 from grounding.weights import Weights, read_weights, write_weights
-from tamp import cli
-from tamp.bench.case import relations
-from tamp.streams.choice import parse_choice
+from tamp.benchmark.case import relations
+from tamp.commands import solve as cli
+from tamp.geometric.samplers.choice import parse_choice
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from grounding.cli import BAD_INPUT, DONE, run
 from grounding.generate import Job, generate
 from grounding.mesh_folder import MeshFolder, read_folder
 from tamp.errors import InputError
-from tamp.world.bounds import bounds
-from tamp.world.pose import Pose
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Pose
 
 
 def box(size: tuple[float, float, float] = (0.06, 0.08, 0.1)) -> trimesh.Trimesh:

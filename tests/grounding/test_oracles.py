@@ -10,9 +10,9 @@ import pytest
 from grounding.form import Form
 from grounding.oracles import ItemOf, Verdict, paper_oracle, paper_verdicts, settled
 from grounding.situation import Placed, Region, Situation
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Part
 from tamp.simulation.drop import Drops
-from tamp.world.pose import Pose
-from tamp.world.scene import Box, Part
 
 TABLE = Form((Part(Box((0.8, 0.6, 0.4))),))
 BRICK = Form((Part(Box((0.1, 0.06, 0.04))),))

@@ -17,8 +17,8 @@ from grounding.dataset import read_dataset, write_dataset
 from grounding.registry import load_grounding
 from grounding.train import train
 from grounding.weights import write_weights
-from tamp import cli
-from tamp.streams.python_file import python_grounding
+from tamp.commands import solve as cli
+from tamp.geometric.samplers.python_file import python_grounding
 from tamp.verification.verify import verify
 
 SCENE = """robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}

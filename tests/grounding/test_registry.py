@@ -22,8 +22,8 @@ from grounding.registry import (
 from grounding.train import OPTIONS, TRAINERS, TrainArgs, check
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
-from tamp.streams.placements import SurfacePlacements
-from tamp.streams.relations import Generator
+from tamp.geometric.samplers.placements import SurfacePlacements
+from tamp.geometric.samplers.sampler import Generator
 
 
 def test_every_name_is_a_grounding_and_every_trained_one_has_a_trainer() -> None:

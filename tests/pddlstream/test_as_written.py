@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from tamp.algorithms.registry import ALGORITHMS
 from tamp.errors import InputError
 from tamp.pddlstream import PDDLProblem, WildOutput, from_fn, from_gen_fn, from_test, solve
+from tamp.symbolic.algorithms.registry import ALGORITHMS
 
 SHELF = """
 (define (domain shelf)

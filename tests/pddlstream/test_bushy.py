@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tamp.algorithms.registry import ALGORITHMS
 from tamp.pddlstream import PDDLProblem, from_fn, from_test, solve
+from tamp.symbolic.algorithms.registry import ALGORITHMS
 
 PLACES = range(5)
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Outcome
 from tamp.pddlstream import Action, PDDLProblem, from_test, solve
+from tamp.symbolic.algorithms.registry import ALGORITHMS
+from tamp.symbolic.algorithms.result import Outcome
 
 PEGS = ("a", "b", "c")
 

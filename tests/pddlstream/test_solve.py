@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from tamp.algorithms.solution import Outcome
 from tamp.errors import InputError
 from tamp.pddlstream import (
     Action,
@@ -26,6 +25,7 @@ from tamp.pddlstream import (
     from_test,
     solve,
 )
+from tamp.symbolic.algorithms.result import Outcome
 
 ALGORITHMS = ("adaptive", "incremental")
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Outcome
 from tamp.errors import InputError
 from tamp.pddlstream import PDDLProblem, Solution, from_fn, solve
+from tamp.symbolic.algorithms.registry import ALGORITHMS
+from tamp.symbolic.algorithms.result import Outcome
 
 DOMAIN = """
 (define (domain safes)

@@ -7,18 +7,17 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
-from tamp.algorithms.anytime import solve_anytime
-from tamp.algorithms.costs import BoundFunction
-from tamp.algorithms.registry import ALGORITHMS
-from tamp.algorithms.solution import Effort, Outcome, Result, StreamTask
-from tamp.algorithms.stream import BoundStream
-from tamp.call import Call
-from tamp.clock import Deadline, OutOfTime
-from tamp.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
-from tamp.pddl.structs import Task
 from tamp.pddlstream import from_gen_fn, from_list_fn, from_test
 from tamp.pddlstream import solve as solve_pddlstream
-from tamp.rejection import Rejection
+from tamp.stream import Call, Rejection
+from tamp.symbolic.algorithms.anytime import solve_anytime
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.algorithms.costs import BoundFunction
+from tamp.symbolic.algorithms.registry import ALGORITHMS
+from tamp.symbolic.algorithms.result import Effort, Outcome, Result, StreamTask
+from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.symbolic.pddl.structs import Task
+from tamp.system.deadline import Deadline, OutOfTime
 from tests.random_streams.oracle import World
 from tests.random_streams.problems import CONSTANTS, Atom, Formula, Problem, Source, domain_text, streams_text, text
 

@@ -9,11 +9,11 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.actuated import RATE, Actuated
-from tamp.world.kinematics import Kinematics
-from tamp.world.pose import Pose
-from tamp.world.robot import ROBOTS
-from tamp.world.scene import Body, Box, Part, RobotStart, Room, Scene
 
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)

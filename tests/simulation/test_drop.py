@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Part
 from tamp.simulation.drop import Drops, Item
-from tamp.world.pose import Pose
-from tamp.world.scene import Box, Part
 
 
 def test_a_box_stands_flat_and_falls_from_its_edge() -> None:

@@ -10,12 +10,12 @@ import sys
 import numpy as np
 import pytest
 
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Sphere
 from tamp.simulation.physics import World, load_bullet
 from tamp.simulation.settle import settle
 from tamp.simulation.shapes import centre_of_mass
-from tamp.world.pose import Pose
-from tamp.world.robot import ROBOTS
-from tamp.world.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Sphere
 
 ROBOT = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tamp.data import find_domain
+from tamp.geometric.loading.load import load_scene
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.physics import World
-from tamp.verification.sweep import Sweeper
-from tamp.world.load import load_scene
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import ROBOTS
+from tamp.system.files import find_domain
+from tamp.verification.collision_sweep import Sweeper
 
 PROBLEM = """\
 name: by_hand

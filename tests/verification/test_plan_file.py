@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from tamp.commands.verify import main
 from tamp.errors import InputError
-from tamp.verification.cli import main
-from tamp.verification.plan_file import read_plan
+from tamp.plan.read import read_plan
 
 Plan = dict[str, Any]
 Write = Callable[[Any], Path]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tamp.pddl.parser import parse_domain, parse_goal
+from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tamp.verification.formulas import show
 from tamp.verification.semantics import Semantics, State
 

@@ -7,10 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Box, Cavity, Cylinder, Part, RobotStart, Room, Scene, Sphere, Surface
 from tamp.simulation.physics import World
-from tamp.verification.supports import Supports, outside
-from tamp.world.pose import Pose
-from tamp.world.scene import Body, Box, Cavity, Cylinder, Part, RobotStart, Room, Scene, Sphere, Surface
+from tamp.verification.support_geometry import Supports, outside
 
 TABLE = Body(
     "table", (Part(Box((1.0, 1.0, 0.1))),), Pose((0, 0, 0.5)), movable=False,

@@ -9,13 +9,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.physics import World
-from tamp.verification.course import Held
-from tamp.verification.sampling import STEP, TURN, Sampler
-from tamp.verification.sweep import Findings, Natural, Sweeper
-from tamp.world.pose import Array, Pose
-from tamp.world.robot import ROBOTS
-from tamp.world.scene import Body, Box, Part, RobotStart, Room, Scene
+from tamp.verification.collision_sweep import Findings, Natural, Sweeper
+from tamp.verification.execution_state import Held
+from tamp.verification.trajectory_sampling import STEP, TURN, Sampler
 
 ROBOT = ROBOTS["panda_mobile"]()
 POST = Body("post", (Part(Box((0.02, 0.02, 2.0))),), Pose((2.0, 0.0, 1.0)), movable=False)

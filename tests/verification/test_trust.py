@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import tamp
-from tamp.streams.python_file import python_grounding
-from tamp.verification.cli import main
+from tamp.commands.verify import main
+from tamp.geometric.samplers.python_file import python_grounding
 from tamp.verification.verify import verify
 from tests.own import PYTHON, SAMPLED, Proposing, write_domain, write_problem
 
@@ -80,7 +80,7 @@ def test_a_false_fact_is_found_by_the_classifier_only(written: Written, capsys: 
     document["goal"] = "(upright milk table)"
     document["initial"].append(["stood", "milk", "milk_start", "table"])
     document["inputs"] = {**other["inputs"], "problem": other["inputs"]["problem"]}
-    from tamp.verification.files import sha256
+    from tamp.plan.sources import sha256
 
     document["inputs"]["problem"] = {"path": str(problem), "sha256": sha256(problem)}
     plan.write_text(json.dumps(document))
@@ -98,7 +98,7 @@ def test_a_fact_left_out_is_found_as_well(written: Written, capsys: pytest.Captu
     problem = write_problem(plan.parent, "(not (upright tea table))")
     document = json.loads(plan.read_text())
     initial = [fact for fact in document["initial"] if fact[0] != "stood"]
-    from tamp.verification.files import sha256
+    from tamp.plan.sources import sha256
 
     inputs = {**document["inputs"], "problem": {"path": str(problem), "sha256": sha256(problem)}}
     changed(plan, goal="(not (upright tea table))", initial=initial, inputs=inputs)

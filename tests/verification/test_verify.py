@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tamp.verification.cli import main
+from tamp.commands.verify import main
+from tamp.plan.violation import KINDS
 from tamp.verification.replay import LOOKS, LOOKS_BEYOND
-from tamp.verification.report import KINDS
 from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from tamp.stored import Stored, open_plan
+from tamp.plan.open import Stored, open_plan
 from tamp.view.document import page_document
-from tamp.view.film import Film, film_of
 from tamp.view.samples import shots
 from tamp.view.story import story_of
+from tamp.view.timeline import Film, film_of
 from tests.view.browser import program
 
 # Where no browser is installed, what needs one is left out; the other files test what goes into the page.

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from tamp import cli as solving
+from tamp.commands import solve as solving
+from tamp.commands.view import main
 from tamp.view import server
-from tamp.view.cli import main
 from tests.view.images import pixels
 
 SMALL = ["--size", "64x48"]

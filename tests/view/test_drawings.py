@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from tamp.view.looks import body_meshes, undrawable
-from tamp.world.meshes import load_mesh
-from tamp.world.pose import Pose
-from tamp.world.scene import Body, Visual
+from tamp.geometric.loading.meshes import load_mesh
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Body, Visual
+from tamp.view.appearance import body_meshes, undrawable
 
 TETRAHEDRON = "v 0 0 0\nv 0.05 0 0\nv 0 0.06 0\nv 0 0 0.07\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 URDF = """

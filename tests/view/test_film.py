@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tamp import load_problem, solve
-from tamp.plan_file import write_plan
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.plan.open import Stored, open_plan
+from tamp.plan.write import write_plan
 from tamp.simulation.physics import World
-from tamp.stored import Stored, open_plan
-from tamp.view.film import Film, Stay, film_of, holding, tool_path
-from tamp.world.kinematics import Kinematics
+from tamp.view.timeline import Film, Stay, film_of, holding, tool_path
 
 
 def test_actions_and_objects_are_the_plans(film: Film, stored: Stored) -> None:

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tamp.geometric.robot.kinematics import Kinematics
 from tamp.view.document import page_document
-from tamp.view.film import Film, film_of
 from tamp.view.page import page, write_page
 from tamp.view.samples import Shot
 from tamp.view.server import PageServer
 from tamp.view.story import Story
-from tamp.world.kinematics import Kinematics
+from tamp.view.timeline import Film, film_of
 from tests.view.browser import Browser
 from tests.view.images import pixels
 
@@ -172,7 +172,7 @@ def test_the_served_page_works_too(browser: Browser, document: dict[str, Any]) -
         browser.logged.clear()
         browser.requests.clear()
         browser.open(server.address)
-        browser.wait("window.tamp !== undefined && tamp.data.actions.length === 4")
+        browser.wait("window.tamp !== undefined && tamp.system.files.actions.length === 4")
         assert browser.logged == []
         assert [address for address in browser.requests if not address.startswith("data:")] == [server.address]
         server.shutdown()

@@ -19,10 +19,10 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.view.document import page_document
-from tamp.view.film import Film
 from tamp.view.page import page, write_page
 from tamp.view.server import PageServer
 from tamp.view.story import Story, story_of
+from tamp.view.timeline import Film
 
 VOID = {"meta", "link", "input", "br"}
 

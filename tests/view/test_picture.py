@@ -10,11 +10,11 @@ import pytest
 from PIL import Image
 
 from tamp.errors import InputError
-from tamp.view.film import Film, film_of
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Sphere
 from tamp.view.mesh import Mesh, read_mesh, shape_mesh, simplified
 from tamp.view.picture import Studio, framing, write_png, write_video
-from tamp.view.raster import BACKGROUND, Camera, render, triangles
-from tamp.world.scene import Box, Cylinder, Hull, Sphere
+from tamp.view.rasterizer import BACKGROUND, Camera, render, triangles
+from tamp.view.timeline import Film, film_of
 from tests.view.images import pixels
 
 RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0)

@@ -11,19 +11,18 @@ import jsonschema
 import pytest
 
 from tamp import Solution, load_problem, solve
-from tamp.algorithms.solution import StreamTask
-from tamp.algorithms.stream import BoundStream
-from tamp.call import Call
-from tamp.clock import Deadline
-from tamp.pddl.structs import And, Domain, Stream, Task
-from tamp.plan_file import plan_document
-from tamp.recording import Recorder
-from tamp.rejection import Rejection
-from tamp.streams.values import Grasp
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.values import Grasp
+from tamp.plan.write import plan_document
+from tamp.planner.recorder import Recorder
+from tamp.stream import Call, Rejection
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.structs import And, Domain, Stream, Task
+from tamp.system.deadline import Deadline
 from tamp.verification.verify import verify
 from tamp.view.open import film_of_solution
 from tamp.view.samples import shots
-from tamp.world.pose import Pose
 
 
 def planned(name: str, record: bool) -> Solution:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from grounding.dataset import Dataset
-from tamp.world.scene import Box, Part
+from tamp.geometric.scene.scene import Box, Part
 
 TEMPLATES = {"table": (0.8, 0.6, 0.4), "brick": (0.1, 0.06, 0.04), "cube": (0.06, 0.06, 0.06)}
 

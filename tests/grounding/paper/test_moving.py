@@ -9,9 +9,9 @@ from grounding.form import form_of
 from grounding.paper.moving import Moving, laid
 from grounding.random_poses import random_turn
 from grounding.registry import shipped_grounding
-from tamp.problem import load_problem
-from tamp.streams.resting import rest, resting_of
-from tamp.world.pose import Pose
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.stability.stable_poses import rest, resting_of
+from tamp.planner.problem import load_problem
 
 SCENE = load_problem("four_objects").scene
 

@@ -1,0 +1,36 @@
+"""The paper's comparison of samplers, its figure 8, with ours beside."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tamp.benchmark.case import relations
+from tamp.errors import InputError
+from tamp.geometric.samplers.choice import Registry
+
+FIG8 = (
+    "uniform", "uniform+mlp:alone", "uniform+gnn:alone", "tree-bb:alone", "tree-pc:alone", "mlp-bb:alone",
+    "gnn-bb:alone", "mlp-pc:alone", "gnn-pc:alone", "surface", "transfer", "flow",
+)  # fmt: skip
+"""Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed with it as usual."""
+
+
+def chosen(samplers: Sequence[str], known: Registry) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
+    """What of the samplers can be run, by relation, and why the others cannot.
+
+    Args:
+        samplers: As in `Case`.
+        known: All samplers by relation and name.
+    """
+    able: dict[str, Mapping[str, str]] = {}
+    skipped: dict[str, str] = {}
+    for sampler in samplers:
+        name = sampler.partition(":")[0]
+        if not any(name in makers for makers in known.values()):
+            skipped[name] = "this version has no such sampler"
+            continue
+        try:
+            able[sampler] = relations(sampler, known)
+        except InputError as error:
+            skipped[name] = f"its weights are not shipped ({error})"
+    return able, skipped

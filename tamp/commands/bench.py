@@ -1,0 +1,182 @@
+"""tamp-bench: problems x samplers x seeds, a line of results a run, tables and pictures."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tamp.commands.bench_options import Draw, Fig8, Run, Tabulate, parsed
+from tamp.errors import InputError
+from tamp.system.outputs import check_outputs
+from tamp.system.terminal import spoken
+
+if TYPE_CHECKING:
+    from tamp.benchmark.worker_pool import Crew
+    from tamp.geometric.samplers.choice import Registry
+
+BASELINE = "uniform"
+"""The sampler that others are compared with unless another one is named."""
+
+DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+
+
+@spoken
+def main(arguments: list[str] | None = None) -> None:
+    """Run tamp-bench and leave the process with 0, 2 for bad input, 130 interrupted."""
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: list[str]) -> int:
+    """Run tamp-bench and return its exit code."""
+    try:
+        chosen = parsed(arguments)
+        if isinstance(chosen, Tabulate):
+            _print_tables(_read(chosen.log), chosen.against)
+        elif isinstance(chosen, Draw):
+            _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""), chosen.log)
+        elif isinstance(chosen, Fig8):
+            _draw(_fig8(chosen), chosen.out.with_suffix(""), chosen.out)
+        else:
+            _run(chosen)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("\ninterrupted; the same command goes on where this one was", file=sys.stderr)
+        return INTERRUPTED
+    return DONE
+
+
+def _run(chosen: Run) -> list[dict[str, Any]]:
+    from tamp.benchmark.case import labelled, relations
+
+    known = _known()
+    samplers: dict[str, Mapping[str, str]] = {}
+    sources: dict[str, str] = {}
+    for sampler in chosen.samplers:
+        served = relations(sampler, known)
+        label, texts = labelled(sampler, served)
+        samplers[label] = served
+        sources |= texts
+    return _lead(chosen, samplers, range(chosen.first, chosen.first + chosen.seeds), chosen.algorithm, sources)
+
+
+def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
+    from tamp.benchmark.fig8 import FIG8
+    from tamp.benchmark.fig8 import chosen as among
+
+    samplers, skipped = among(FIG8, _known())
+    for name, why in skipped.items():
+        print(f"skipped {name}: {why}", file=sys.stderr)
+    return _lead(chosen, samplers, range(chosen.seeds), "adaptive")
+
+
+def _lead(
+    chosen: Run | Fig8,
+    samplers: Mapping[str, Mapping[str, str]],
+    seeds: range,
+    algorithm: str,
+    sources: Mapping[str, str] | None = None,
+) -> list[dict[str, Any]]:
+    """Check everything, run what is missing, print the tables; all results of the file."""
+    from tamp.benchmark.case import cases, named
+    from tamp.benchmark.log import Log
+    from tamp.benchmark.progress import Watch
+    from tamp.benchmark.scheduler import lead
+    from tamp.geometric.samplers.choice import sampler_files
+    from tamp.geometric.samplers.python_file import given_by_files
+    from tamp.planner.problem import load_problem
+    from tamp.planner.solve import ALGORITHMS
+
+    if algorithm not in ALGORITHMS:
+        raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
+    problems = [named(problem) for problem in chosen.problems]
+    read: list[Path] = []
+    for problem in dict.fromkeys(problems):  # an error in a file is one now, and not one in each run
+        for relation_samplers in samplers.values():
+            names, objects = given_by_files(relation_samplers, sources)
+            loaded = load_problem(problem, samplers=names, groundings=objects, registry=_registry())
+            read += [file for files in loaded.files.values() for file in files]
+            read += [*sampler_files(loaded.samplers.values()), *map(Path, sources or {})]
+    check_outputs({"--out": chosen.out}, read)
+    wanted = cases(problems, samplers, seeds, chosen.time, algorithm, sources)
+    with Log(chosen.out) as log:
+        log.check(chosen.time, algorithm)
+        missing = log.missing(wanted)
+        if missing:
+            crew = _crew(chosen, len(missing))
+            try:
+                lead(missing, crew, log, Watch(len(wanted), quiet=chosen.quiet).ended)
+            finally:
+                crew.close()
+        lines = log.lines
+    _print_tables(lines)
+    return lines
+
+
+def _crew(chosen: Run | Fig8, runs: int) -> Crew:
+    from tamp.benchmark.run_case import do, warm_up
+
+    work = partial(do, registry=_registry)
+    if chosen.ray is not None:
+        from tamp.benchmark.ray_pool import RayCrew
+
+        return RayCrew(chosen.ray, work, warm_up, chosen.jobs)
+    from tamp.benchmark.process_pool import Processes
+
+    return Processes(min(chosen.jobs or os.cpu_count() or 1, runs), work, warm_up)
+
+
+def _registry() -> Registry:
+    """The learned samplers."""
+    from tamp.commands.solve import registry
+
+    return registry()
+
+
+def _known() -> Registry:
+    """All samplers by relation and name."""
+    from tamp.geometric.samplers.registry import SAMPLERS
+
+    learned = _registry()
+    return {
+        relation: {**SAMPLERS.get(relation, {}), **learned.get(relation, {})}
+        for relation in dict.fromkeys([*SAMPLERS, *learned])
+    }
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    from tamp.benchmark.log import read_log
+
+    return read_log(path)
+
+
+def _print_tables(lines: Sequence[Mapping[str, Any]], against: str | None = None) -> None:
+    from tamp.benchmark.table import report
+
+    samplers = dict.fromkeys(line["config"]["sampler"] for line in lines)
+    if against is not None and against not in samplers:  # of a file's version, the name alone will do
+        alike = [name for name in samplers if re.sub(r"#[0-9a-f]{8}(?=,|:|$)", "", name) == against]
+        against = alike[0] if len(alike) == 1 else against
+    if against is not None and against not in samplers:
+        raise InputError(f"no runs with '{against}' among the results", found=against, choices=samplers)
+    usual = BASELINE if BASELINE in samplers and len(samplers) > 1 else None
+    print(report(lines, against or usual))
+
+
+def _draw(lines: Sequence[Mapping[str, Any]], folder: Path, log: Path) -> None:
+    from tamp.benchmark.picture import PICTURES, draw
+
+    check_outputs({f"the picture '{name}'": folder / f"{name}.png" for name in PICTURES}, (log,))
+
+    for path in draw(lines, folder):
+        print(f"{path} written")
+
+
+if __name__ == "__main__":
+    main()

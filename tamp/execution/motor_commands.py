@@ -1,0 +1,126 @@
+"""A plan's segments as commands to the motors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TypeGuard
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.execution.grasp_modes import GRASPS
+from tamp.execution.monitoring import EVERY, Watch
+from tamp.plan.read import Segment
+from tamp.simulation.actuated import RATE, Actuated
+
+CLOSING = 0.9
+"""The least that closing or opening takes, seconds: the fingers meet the body and come to rest."""
+
+REST = 0.15
+"""Seconds of standing still after each segment, in which what swings comes to rest."""
+
+Event = Callable[[], None]
+
+
+class Player:
+    """Carries out segments one after the other.
+
+    Args:
+        world: Where.
+        grasp: One of GRASPS.
+
+    Raises:
+        InputError: Another grasp.
+    """
+
+    def __init__(self, world: Actuated, grasp: str) -> None:
+        if grasp not in GRASPS:
+            raise InputError(f"unknown grasp '{grasp}'", found=grasp, choices=GRASPS)
+        self._world, self._grasp = world, grasp
+        self._passing: str | None = None
+
+    def play(
+        self,
+        segment: Segment,
+        body: str | None,
+        watch: Watch,
+        event: Event | None = None,
+        at: float = 0.0,
+        guard: str | None = None,
+    ) -> bool:
+        """Carry out a segment; whether it came to its end.
+
+        Args:
+            segment: What to do.
+            body: The scene's name of the body that the fingers close on.
+            watch: Looks on.
+            event: Called once at that share `at` of the segment's time.
+            guard: The base stops when this body is not between the fingers any more.
+        """
+        if segment.part == "gripper":
+            self._finger(segment, body, watch)
+            return True
+        return self._follow(segment, watch, event, at, guard if segment.part == "base" else None)
+
+    def finish(self) -> None:
+        """At an action's end: a body that was let go is felt again."""
+        if self._passing is not None:
+            if self._passing in self._world.solids and self._world.bound != self._passing:
+                self._world.pass_through(self._passing, False)
+            self._passing = None
+
+    def let_go(self) -> None:
+        """Open the fingers at once, whatever they hold."""
+        world = self._world
+        body = world.bound
+        world.unbind()
+        if body is not None:
+            world.pass_through(body, False)
+        world.squeezing, world.opening = False, world.widest
+
+    def _follow(self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None) -> bool:
+        world = self._world
+        first = 0 if segment.part == "base" else 3
+        columns = range(first, first + segment.positions.shape[1])
+        lasts = float(segment.times[-1])
+        count = max(1, math.ceil(lasts * RATE))
+        moments = np.linspace(1 / count, 1.0, count) * lasts
+        rows = np.stack([np.interp(moments, segment.times, segment.positions[:, k - first]) for k in columns], axis=1)
+        happens = min(int(at * count), count - 1)
+        before = world.conf.copy()
+        for step, row in enumerate(rows):
+            if event is not None and step == happens:
+                event()
+            world.conf[first : columns[-1] + 1] = row
+            world.tick(((world.conf - before) * RATE).tolist())
+            before[:] = world.conf
+            if step % EVERY == 0:
+                watch.look()
+                if guard is not None and not self._between(guard):
+                    world.conf[:3] = world.actual()[:3]
+                    break
+        self._wait(REST, watch)
+        return step == count - 1
+
+    def _finger(self, segment: Segment, body: str | None, watch: Watch) -> None:
+        world = self._world
+        lasts = max(float(segment.times[-1]), CLOSING)
+        if segment.detach is not None and world.bound is not None:
+            self._passing = world.bound
+            world.unbind()
+        world.opening = float(segment.opening[-1])
+        world.squeezing = segment.attach is not None and self._grasp == "friction"
+        self._wait(lasts, watch)
+        if segment.attach is not None and self._grasp == "constraint" and self._between(body):
+            world.bind(body)
+
+    def _between(self, body: str | None) -> TypeGuard[str]:
+        """Whether the body is where the fingers close: what is not there is not held by a constraint either."""
+        return body is not None and body in self._world.solids and self._world.near_fingers(body)
+
+    def _wait(self, seconds: float, watch: Watch) -> None:
+        for step in range(round(seconds * RATE)):
+            self._world.tick()
+            if step % EVERY == 0:
+                watch.look()

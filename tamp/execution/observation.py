@@ -1,0 +1,129 @@
+"""What is on and inside what, by the bodies' geometry where they are seen; and the scene as it is then."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import CONTACT_GAP, Scene
+from tamp.simulation.physics import FLOOR, World
+from tamp.symbolic.pddl.structs import Fact
+from tamp.verification.initial_state import apart
+from tamp.verification.support_geometry import Stand, Supports
+
+STILL = 0.0005
+"""Metres, and 5 times as many radians, within which a body counts as where it was seen before."""
+
+LIFTED = 0.004
+"""Metres by which a seen body is at most lifted or lowered, for the planner's air under what rests."""
+
+AWAY = Pose((500.0, 0.0, 0.0)).matrix
+"""Where the body in the hand carries nobody."""
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The scene as it is seen.
+
+    Attributes:
+        scene: Movable bodies where they are, with what they stand on; one in the hand keeps its old place.
+        facts: ("on", body, surface or body) and ("inside", body, cavity), in PDDL's names.
+        reasons: Why another such fact of a body and a place is not so.
+    """
+
+    scene: Scene
+    facts: frozenset[Fact]
+    reasons: Mapping[Fact, str]
+
+
+class Observer:
+    """Asks a second world without robot and without time; bodies that did not move are not asked again.
+
+    Use it as a context manager.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._world = World(scene)
+        self._supports = Supports(self._world)
+        self._seen: dict[str, Array] = {}
+
+    def __enter__(self) -> Observer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._world.close()
+
+    def become(self, scene: Scene) -> None:
+        """Bodies were added or taken away."""
+        if self._scene.bodies.keys() != scene.bodies.keys():
+            self._world.close()
+            self.__init__(scene)
+
+    def see(self, poses: Mapping[str, Array], base: Array, held: str | None) -> Truth:
+        """The truth about movable bodies at their T_world_body (4, 4), the base (3,) and the body in the hand."""
+        standing = [name for name in self._scene.movable if name in poses and name != held]
+        if held is not None:
+            self._seen.pop(held, None)
+            self._world.place(held, AWAY)
+        self._place(poses, standing)
+        bodies = dict(self._scene.bodies)
+        facts: set[Fact] = set()
+        reasons: dict[Fact, str] = {}
+        for name in standing:
+            stand = self._supports.stand(name)
+            support = self._feel(name, stand, facts, reasons)
+            pose = Pose.from_matrix(self._world.pose(name))
+            bodies[name] = replace(bodies[name], pose=pose, support=support, carriers=())
+        if held is not None:
+            bodies[held] = replace(bodies[held], support=None, carriers=())
+        x, y, yaw = (float(value) for value in base)
+        robot = replace(self._scene.robot, base=(x, y, yaw))
+        scene = replace(self._scene, bodies=MappingProxyType(bodies), robot=robot)
+        return Truth(scene, frozenset(facts), reasons)
+
+    def _place(self, poses: Mapping[str, Array], standing: list[str]) -> None:
+        """Put bodies where they are seen, the planner's air under those that rest: physics presses them together."""
+        moved = []
+        for name in standing:
+            T = poses[name]
+            before = self._seen.get(name)
+            if before is not None and max(apart(before, T)[0], apart(before, T)[1] / 5) < STILL:
+                continue
+            self._seen[name] = T.copy()
+            moved.append(name)
+            self._world.place(name, _raised(T, CONTACT_GAP))
+        for name in sorted(moved, key=lambda one: float(poses[one][2, 3])):
+            stand = self._supports.stand(name)
+            if stand.on:
+                rise = float(np.clip(CONTACT_GAP - stand.gap, -LIFTED, LIFTED))
+                self._world.place(name, _raised(self._world.pose(name), rise))
+
+    def _feel(self, name: str, stand: Stand, facts: set[Fact], reasons: dict[Fact, str]) -> str | None:
+        """Add what is so about a body; what it stands on as the scene has it, None for the floor and for nothing."""
+        support: str | None = None
+        scene, supports = self._scene, self._supports
+        asked = [("on", one.name, supports.on(name, one, stand)) for one in scene.surfaces.values()]
+        asked += [("inside", one.name, supports.inside(name, one, stand)) for one in scene.cavities.values()]
+        for predicate, place, why in asked:
+            fact = (predicate, name.lower(), place.lower())
+            if why is None:
+                facts.add(fact)
+                support = support or place
+            else:
+                reasons[fact] = why
+        below = sorted(stand.on - {FLOOR})
+        facts |= {("on", name.lower(), body.lower()) for body in below}
+        if support is None and stand.why is None:
+            support = next((body for body in below if self._scene.bodies[body].movable), None)
+        return support
+
+
+def _raised(T: Array, height: float) -> Array:
+    raised = T.copy()
+    raised[2, 3] += height
+    return raised

@@ -1,0 +1,217 @@
+"""The compiled decision over a whole edge; see kernels.py for the proof."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numba import types
+
+from tamp.geometric.collision.gjk import APART, CLOSE, INLINE, JIT
+from tamp.geometric.collision.kernels import (
+    FLOOR,
+    FREE,
+    HIT,
+    INTERVALS,
+    ROOM,
+    SELF,
+    TASKS,
+    UNDECIDED,
+    check,
+    demand,
+    place_frames,
+    place_part,
+    spheres_apart,
+)
+from tamp.geometric.collision.tables import HIGH, LOW, ON_FLOOR, SIZE
+from tamp.geometric.scene.pose import Array
+from tamp.system.compilation import njit
+
+
+@njit(**INLINE)
+def verdict(code, part, other):
+    """A code and the pair that it rests on, in one integer; `pair_of` reads it."""
+    return code | part << 2 | (other + 4096) << 14
+
+
+def pair_of(verdict: int) -> tuple[int, int]:
+    """The robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other part."""
+    return verdict >> 2 & 4095, (verdict >> 14) - 4096
+
+
+@njit(**INLINE)
+def _box(i, margin, parts, placed, reach, box):
+    """World box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
+    for r in range(3):
+        half = (
+            abs(placed[i, 3 * r]) * parts[i, SIZE]
+            + abs(placed[i, 3 * r + 1]) * parts[i, SIZE + 1]
+            + abs(placed[i, 3 * r + 2]) * parts[i, SIZE + 2]
+            + margin
+        )
+        box[i, r], box[i, 3 + r] = reach[i, r] - half, reach[i, r] + half
+
+
+@njit(**INLINE)
+def unpack(packed, index):
+    """Table `index` of `Tables.packed`, (rows, columns)."""
+    start, rows, columns = int(packed[3 * index]), int(packed[3 * index + 1]), int(packed[3 * index + 2])
+    return packed[start : start + rows * columns].reshape((rows, columns))
+
+
+@njit(**INLINE)
+def _overlap(box, i, obstacles, j):
+    return (
+        obstacles[j, LOW] <= box[i, 3] and obstacles[j, HIGH] >= box[i, 0]
+        and obstacles[j, LOW + 1] <= box[i, 4] and obstacles[j, HIGH + 1] >= box[i, 1]
+        and obstacles[j, LOW + 2] <= box[i, 5] and obstacles[j, HIGH + 2] >= box[i, 2]
+    )  # fmt: skip
+
+
+@njit(**JIT)
+def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found):
+    """All pairs whose bounding spheres or boxes, grown by what the pair needs, overlap: rows (part, other) of `found`.
+
+    All parts are placed. The last row of `box` is the box around the whole robot.
+    """
+    n, count = parts.shape[0], 0
+    for r in range(3):
+        box[n, r], box[n, 3 + r] = math.inf, -math.inf
+    for i in range(n):
+        _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
+        for r in range(3):
+            box[n, r], box[n, 3 + r] = min(box[n, r], box[i, r]), max(box[n, 3 + r], box[i, 3 + r])
+        if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
+            found[count, 0], found[count, 1] = i, FLOOR
+            count += 1
+    for p in range(pairs.shape[0]):
+        i, k = int(pairs[p, 0]), int(pairs[p, 1])
+        if not spheres_apart(i, k, demand(i, SELF - k, half, padding, parts, reach), parts, reach):
+            found[count, 0], found[count, 1] = i, SELF - k
+            count += 1
+    for j in range(obstacles.shape[0]):
+        if _overlap(box, n, obstacles, j):
+            for i in range(n):
+                if _overlap(box, i, obstacles, j):
+                    found[count, 0], found[count, 1] = i, j
+                    count += 1
+    return count
+
+
+def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
+    """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files has changed."""
+    vector, conf = types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C", readonly=True)
+    signature = types.int64(conf, conf, types.float64, vector)
+
+    @njit(signature, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
+    def decide(start, end, padding, tables):
+        if sources < 0:  # never: so that the number is a part of what is compiled
+            return np.int64(UNDECIDED)
+        room = unpack(tables, np.int64(0))[0]
+        for conf in (start, end):
+            if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
+                return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
+        joints, vertices, leaves = unpack(tables, np.int64(1)), unpack(tables, np.int64(2)), unpack(tables, np.int64(3))
+        parts, part_poses, pairs = unpack(tables, np.int64(4)), unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
+        obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
+        n = parts.shape[0]
+        # A few allocations, cut into pieces: each costs as much as a pair.
+        numbers, rows = np.empty(27), np.empty((13 + 3 * n, 12))
+        conf, change, guess, weights = numbers[:10], numbers[10:20], numbers[20:23], numbers[23:]
+        frames, s, placed, reach, box = (
+            rows[:8],
+            rows[8:12],
+            rows[12 : 12 + n],
+            rows[12 + n : 12 + 2 * n],
+            rows[12 + 2 * n :],
+        )
+        moves = False
+        for k in range(10):
+            change[k] = abs(end[k] - start[k])
+            moves = moves or change[k] > 0.0
+        change[0] = math.hypot(change[0], change[1])
+        ready = np.empty(n, dtype=np.int64)
+        for k in range(n):
+            ready[k] = 0
+        found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
+
+        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The first three, the ends
+        # (of no length) and the whole, find theirs themselves.
+        intervals = np.empty((INTERVALS if moves else 1, 2))
+        lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
+        tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
+        guesses = np.empty((TASKS if moves else 0, 3))
+        intervals[0, 0], intervals[0, 1] = 1.0, 0.0
+        if moves:
+            intervals[1, 0], intervals[1, 1] = 0.0, 0.0
+            intervals[2, 0], intervals[2, 1] = 0.5, 0.5
+        count, head, tail = 0, 0, 3 if moves else 1
+        while head < tail:
+            middle, half = intervals[head, 0], intervals[head, 1]
+            for k in range(10):
+                conf[k] = start[k] + middle * (end[k] - start[k])
+            place_frames(conf, joints, frames)
+            fresh = head < 3
+            if fresh:
+                for k in range(n):
+                    place_part(k, frames, change, parts, part_poses, placed, reach)
+                first, last = 0, _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
+            else:
+                first, last = lists[head, 0], lists[head, 1]
+            before = count
+            for t in range(first, last):
+                if fresh:
+                    i, other = found[t, 0], found[t, 1]
+                    guess[0] = guess[1] = guess[2] = 0.0
+                else:
+                    i, other = tasks[t, 0], tasks[t, 1]
+                    guess[0], guess[1], guess[2] = guesses[t, 0], guesses[t, 1], guesses[t, 2]
+                    for p in (i, SELF - other):
+                        if p >= 0 and ready[p] != head:
+                            place_part(p, frames, change, parts, part_poses, placed, reach)
+                            ready[p] = head
+                far = demand(i, other, half, padding, parts, reach)
+                answer = check(
+                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess,
+                    s, weights,
+                )  # fmt: skip
+                if answer == APART:
+                    continue
+                if answer == CLOSE:
+                    return verdict(np.int64(HIT), i, other)
+                if far <= padding or count == TASKS:
+                    return verdict(np.int64(UNDECIDED), i, other)
+                tasks[count, 0], tasks[count, 1] = i, other
+                guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
+                count += 1
+            if count > before:
+                if tail + 2 > INTERVALS:
+                    return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
+                for side in (-0.5, 0.5):
+                    intervals[tail, 0], intervals[tail, 1] = middle + side * half, 0.5 * half
+                    lists[tail, 0], lists[tail, 1] = before, count
+                    tail += 1
+            head += 1
+        return np.int64(FREE)
+
+    return decide  # pyright: ignore[reportReturnType]  # a numba dispatcher
+
+
+def sources_digest() -> int:
+    """A number that changes with any file that the kernel is compiled from; numba itself looks at one file only."""
+    files = (Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check"))
+    return zlib.crc32(b"".join(file.read_bytes() for file in files))
+
+
+sweep = _compiled(sources_digest())
+"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two configurations (10,) is free.
+
+Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked middle are at least
+this far from everything, all states between at least half of it. `tables`: `Tables.packed`, the robot and the bodies.
+
+The verdict is FREE; or HIT, with the pair that is nearer than the padding at some state of the edge; or UNDECIDED, with
+a pair for which rounding or room did not suffice. Arrays that are not of float64 in C order raise TypeError.
+"""

@@ -1,0 +1,49 @@
+"""Exact collision between convex parts by python-fcl; the only user of that library."""
+
+from __future__ import annotations
+
+import fcl
+import numpy as np
+
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Box, Cylinder, Part, Shape, Sphere
+
+
+class FclBody:
+    """The parts of one body (or link) as FCL objects that can be moved; remembers where they stand.
+
+    Args:
+        parts: Convex parts in the body's frame.
+    """
+
+    def __init__(self, parts: tuple[Part, ...]) -> None:
+        self.objects = [fcl.CollisionObject(geometry(part.shape)) for part in parts]
+        self._T_body_part = [part.pose.matrix for part in parts]
+        self._at: list[Array | None] = [None] * len(parts)
+
+    def place(self, index: int, T_world_body: Array) -> fcl.CollisionObject:
+        """Part `index` with the body at `T_world_body` (4, 4)."""
+        if self._at[index] is not T_world_body:
+            matrix = T_world_body @ self._T_body_part[index]
+            self.objects[index].setTransform(fcl.Transform(matrix[:3, :3], matrix[:3, 3]))
+            self._at[index] = T_world_body
+        return self.objects[index]
+
+
+def geometry(shape: Shape) -> fcl.CollisionGeometry:
+    """The FCL geometry of a shape, in the shape's own frame."""
+    if isinstance(shape, Box):
+        return fcl.Box(*shape.size)
+    if isinstance(shape, Cylinder):
+        return fcl.Cylinder(shape.radius, shape.height)
+    if isinstance(shape, Sphere):
+        return fcl.Sphere(shape.radius)
+    faces = np.column_stack([np.full(len(shape.faces), 3), shape.faces]).ravel()
+    return fcl.Convex(np.array(shape.vertices), len(shape.faces), faces)
+
+
+def touch(first: fcl.CollisionObject, second: fcl.CollisionObject, padding: float) -> bool:
+    """Whether two objects are nearer than `padding` metres; with 0, whether they intersect."""
+    if padding <= 0.0:
+        return fcl.collide(first, second) > 0
+    return fcl.distance(first, second) < padding

@@ -1,0 +1,291 @@
+"""A robot's motion against bodies and itself, decided in compiled code.
+
+`sweep` proves that a straight line in configuration space is free. It takes an interval of the line, places the robot
+at its middle and asks of every pair (part, obstacle) whether its distance there exceeds what the pair can lose within
+the interval; pairs that do are done with, the others go on to the two halves. Middles are visited level by level, so
+that a blocked edge is rejected early.
+
+How much a pair can lose: let T(s) p = E_1(s) ... E_n(s) p place a point p of a part, each E_j moved by one coordinate
+(base x and y together, base yaw, joints). Swapping one factor at a time,
+    T(s) p - T(m) p = sum_j E_1(s) ... E_(j-1)(s) [E_j(s) - E_j(m)] E_(j+1)(m) ... E_n(m) p,
+so |T(s) p - T(m) p| <= sum_j |q_j(s) - q_j(m)| rho_j, with rho_j the distance of the point, placed at the middle m,
+from axis j (1 for a translation). This holds for steps of any length. For two parts of the robot only the joints
+between them count. rho_j is bounded by that of the part's bounding sphere.
+
+With the distance d at the middle, half the interval's motion h and the padding p, d >= max(p, h + p / 2) proves that
+the pair stays p / 2 apart in the whole interval, and d < p rejects the edge. So a pair whose motion in the interval is
+below p is always decided.
+"""
+
+from __future__ import annotations
+
+import math
+
+from tamp.geometric.collision.gjk import APART, BETWEEN, CLOSE, INLINE, JIT, centre, separation, support
+from tamp.geometric.collision.tables import (
+    BOX,
+    CENTRE,
+    CYLINDER,
+    FRAME,
+    HULL,
+    KIND,
+    LEAF_COUNT,
+    LEAVES,
+    MARGIN,
+    POINT,
+    RADIUS,
+    SIZE,
+    SLACK,
+)
+from tamp.system.compilation import njit
+
+FREE, HIT, UNDECIDED = 0, 1, 2
+FLOOR, ROOM, SELF = -1, -2, -3
+"""What a part met: an obstacle's row (>= 0), the floor, the room's edge, or part k of the robot, written SELF - k."""
+
+INTERVALS, TASKS = 1024, 4096
+"""Room for the intervals of one edge and for their undecided pairs; an edge that needs more is UNDECIDED."""
+
+
+@njit(**INLINE)
+def _compose(a, i, b, j, out, k):
+    """Row k of out becomes pose a[i] times pose b[j]."""
+    for r in range(3):
+        x, y, z = a[i, 3 * r], a[i, 3 * r + 1], a[i, 3 * r + 2]
+        for c in range(3):
+            out[k, 3 * r + c] = x * b[j, c] + y * b[j, 3 + c] + z * b[j, 6 + c]
+        out[k, 9 + r] = x * b[j, 9] + y * b[j, 10] + z * b[j, 11] + a[i, 9 + r]
+
+
+@njit(**JIT)
+def place_frames(conf, joints, frames):
+    """World poses of the base (row 0) and of the frames after each joint (rows 1..7); scratch in row 8."""
+    c, s = math.cos(conf[2]), math.sin(conf[2])
+    f = frames
+    f[0, 0], f[0, 1], f[0, 2], f[0, 3], f[0, 4], f[0, 5] = c, -s, 0.0, s, c, 0.0
+    f[0, 6], f[0, 7], f[0, 8], f[0, 9], f[0, 10], f[0, 11] = 0.0, 0.0, 1.0, conf[0], conf[1], 0.0
+    for j in range(1, 8):
+        _compose(f, j - 1, joints, j - 1, f, j)
+        c, s = math.cos(conf[2 + j]), math.sin(conf[2 + j])
+        for r in range(0, 9, 3):
+            x, y = f[j, r], f[j, r + 1]
+            f[j, r], f[j, r + 1] = c * x + s * y, c * y - s * x
+
+
+@njit(**INLINE)
+def place_part(i, frames, change, parts, part_poses, placed, reach):
+    """Place part i in the world; reach[i] gets its centre (0..2) and how far it moves per unit of the edge.
+
+    reach[i, 3 + k]: largest motion due to joints 1..k, k = 0..7; reach[i, 11]: with the base's motion too.
+    """
+    frame = int(parts[i, FRAME])
+    _compose(frames, frame, part_poses, i, placed, i)
+    x, y, z = centre(parts, i, placed)
+    reach[i, 0], reach[i, 1], reach[i, 2] = x, y, z
+    radius = parts[i, RADIUS]
+    total = 0.0
+    reach[i, 3] = 0.0
+    for j in range(1, frame + 1):
+        if change[2 + j] > 0.0:
+            ax, ay, az = frames[j, 2], frames[j, 5], frames[j, 8]
+            dx, dy, dz = x - frames[j, 9], y - frames[j, 10], z - frames[j, 11]
+            cx, cy, cz = ay * dz - az * dy, az * dx - ax * dz, ax * dy - ay * dx
+            total += change[2 + j] * (math.sqrt(cx * cx + cy * cy + cz * cz) + radius)
+        reach[i, 3 + j] = total
+    if change[2] > 0.0:
+        dx, dy = x - frames[0, 9], y - frames[0, 10]
+        total += change[2] * (math.sqrt(dx * dx + dy * dy) + radius)
+    reach[i, 11] = total + change[0]
+
+
+@njit(**INLINE)
+def _from_core(shapes, i, poses, x, y, z):
+    """Lower bound of a world point's distance from part i: exact but for hulls, whose box stands in for them."""
+    dx, dy, dz = x - poses[i, 9], y - poses[i, 10], z - poses[i, 11]
+    lx = poses[i, 0] * dx + poses[i, 3] * dy + poses[i, 6] * dz - shapes[i, CENTRE]
+    ly = poses[i, 1] * dx + poses[i, 4] * dy + poses[i, 7] * dz - shapes[i, CENTRE + 1]
+    lz = poses[i, 2] * dx + poses[i, 5] * dy + poses[i, 8] * dz - shapes[i, CENTRE + 2]
+    kind = shapes[i, KIND]
+    if kind == POINT:
+        return math.sqrt(lx * lx + ly * ly + lz * lz) - shapes[i, MARGIN]
+    if kind == CYLINDER:
+        ox = max(0.0, math.sqrt(lx * lx + ly * ly) - shapes[i, SIZE])
+        oz = max(0.0, abs(lz) - shapes[i, SIZE + 2])
+        return math.sqrt(ox * ox + oz * oz)
+    ox = max(0.0, abs(lx) - shapes[i, SIZE])
+    oy = max(0.0, abs(ly) - shapes[i, SIZE + 1])
+    oz = max(0.0, abs(lz) - shapes[i, SIZE + 2])
+    return math.sqrt(ox * ox + oy * oy + oz * oz)
+
+
+@njit(**JIT)
+def _away(shapes, i, poses, x, y, z, out):
+    """Into `out`, the direction from the nearest point of part i's box to a world point, or from its centre to that."""
+    dx, dy, dz = x - poses[i, 9], y - poses[i, 10], z - poses[i, 11]
+    lx = poses[i, 0] * dx + poses[i, 3] * dy + poses[i, 6] * dz - shapes[i, CENTRE]
+    ly = poses[i, 1] * dx + poses[i, 4] * dy + poses[i, 7] * dz - shapes[i, CENTRE + 1]
+    lz = poses[i, 2] * dx + poses[i, 5] * dy + poses[i, 8] * dz - shapes[i, CENTRE + 2]
+    hx, hy, hz = shapes[i, SIZE], shapes[i, SIZE + 1], shapes[i, SIZE + 2]
+    if abs(lx) > hx or abs(ly) > hy or abs(lz) > hz:
+        lx -= min(hx, max(-hx, lx))
+        ly -= min(hy, max(-hy, ly))
+        lz -= min(hz, max(-hz, lz))
+    out[0] = poses[i, 0] * lx + poses[i, 1] * ly + poses[i, 2] * lz
+    out[1] = poses[i, 3] * lx + poses[i, 4] * ly + poses[i, 5] * lz
+    out[2] = poses[i, 6] * lx + poses[i, 7] * ly + poses[i, 8] * lz
+
+
+@njit(**INLINE)
+def _leaf_centre(leaves, k, poses, i):
+    x, y, z = leaves[k, 0], leaves[k, 1], leaves[k, 2]
+    return (
+        poses[i, 0] * x + poses[i, 1] * y + poses[i, 2] * z + poses[i, 9],
+        poses[i, 3] * x + poses[i, 4] * y + poses[i, 5] * z + poses[i, 10],
+        poses[i, 6] * x + poses[i, 7] * y + poses[i, 8] * z + poses[i, 11],
+    )
+
+
+@njit(**INLINE)
+def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, guess):
+    """Lower and upper bound of the distance of robot part i from obstacle j, by its bounding sphere, then its leaves.
+
+    A leaf's centre lies inside the part and the leaf stands out by SLACK at most, so that the sphere which is smaller
+    by that much is inside the part: it gives the upper bound, unless the obstacle is a hull, for which its box stood.
+    """
+    x, y, z = reach[i, 0], reach[i, 1], reach[i, 2]
+    bound = _from_core(obstacles, j, poses, x, y, z) - parts[i, RADIUS]
+    if bound >= far:
+        return bound, math.inf
+    first, count = int(parts[i, LEAVES]), int(parts[i, LEAF_COUNT])
+    leaf_bound = math.inf
+    for k in range(first, first + count):
+        lx, ly, lz = _leaf_centre(leaves, k, placed, i)
+        leaf = _from_core(obstacles, j, poses, lx, ly, lz) - leaves[k, 3]
+        if leaf < leaf_bound:
+            leaf_bound = leaf
+            x, y, z = lx, ly, lz
+    if count > 0:
+        bound = max(bound, leaf_bound)
+    if bound < far and guess[0] == 0.0 and guess[1] == 0.0 and guess[2] == 0.0:
+        _away(obstacles, j, poses, x, y, z, guess)
+    return bound, leaf_bound + parts[i, SLACK] if obstacles[j, KIND] != HULL else math.inf
+
+
+@njit(**JIT)
+def _leaf_distance(i, k, far, parts, placed, leaves, guess):
+    """Lower bound, at most `far`, of the distance between robot parts i and k: leaves of i against leaves or box of k.
+
+    `guess` gets the direction from k to i between the spheres that are nearest to each other.
+    """
+    best = far
+    bx = by = bz = 0.0
+    first_k, count_k = int(parts[k, LEAVES]), int(parts[k, LEAF_COUNT])
+    hx, hy, hz = parts[k, SIZE], parts[k, SIZE + 1], parts[k, SIZE + 2]
+    cx, cy, cz = parts[k, CENTRE], parts[k, CENTRE + 1], parts[k, CENTRE + 2]
+    for m in range(int(parts[i, LEAVES]), int(parts[i, LEAVES]) + int(parts[i, LEAF_COUNT])):
+        x, y, z = _leaf_centre(leaves, m, placed, i)
+        radius = leaves[m, 3]
+        dx, dy, dz = x - placed[k, 9], y - placed[k, 10], z - placed[k, 11]
+        lx = placed[k, 0] * dx + placed[k, 3] * dy + placed[k, 6] * dz
+        ly = placed[k, 1] * dx + placed[k, 4] * dy + placed[k, 7] * dz
+        lz = placed[k, 2] * dx + placed[k, 5] * dy + placed[k, 8] * dz
+        ox = lx - cx - min(hx, max(-hx, lx - cx))
+        oy = ly - cy - min(hy, max(-hy, ly - cy))
+        oz = lz - cz - min(hz, max(-hz, lz - cz))
+        limit = best + radius
+        square = ox * ox + oy * oy + oz * oz
+        if limit <= 0.0 or square >= limit * limit:
+            continue
+        if count_k == 0:
+            best = math.sqrt(square) - radius
+            bx, by, bz = ox, oy, oz
+        for n in range(first_k, first_k + count_k):
+            dx, dy, dz = lx - leaves[n, 0], ly - leaves[n, 1], lz - leaves[n, 2]
+            limit = best + radius + leaves[n, 3]
+            square = dx * dx + dy * dy + dz * dz
+            if limit > 0.0 and square < limit * limit:
+                best = math.sqrt(square) - radius - leaves[n, 3]
+                bx, by, bz = dx, dy, dz
+    guess[0] = placed[k, 0] * bx + placed[k, 1] * by + placed[k, 2] * bz
+    guess[1] = placed[k, 3] * bx + placed[k, 4] * by + placed[k, 5] * bz
+    guess[2] = placed[k, 6] * bx + placed[k, 7] * by + placed[k, 8] * bz
+    return best
+
+
+@njit(**INLINE)
+def _from_self(i, k, far, parts, placed, reach, leaves, guess):
+    """Lower and upper bound of the distance between robot parts i and k: spheres against boxes, then leaves."""
+    bound = _from_core(parts, i, placed, reach[k, 0], reach[k, 1], reach[k, 2]) - parts[k, RADIUS]
+    if bound >= far:
+        return bound, math.inf
+    bound = max(bound, _from_core(parts, k, placed, reach[i, 0], reach[i, 1], reach[i, 2]) - parts[i, RADIUS])
+    if bound >= far or guess[0] != 0.0 or guess[1] != 0.0 or guess[2] != 0.0:
+        return bound, math.inf
+    guess[0], guess[1], guess[2] = reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2]
+    swapped = parts[i, LEAF_COUNT] == 0
+    a, b = (k, i) if swapped else (i, k)
+    if parts[a, LEAF_COUNT] == 0:
+        return bound, math.inf
+    leaf_bound = _leaf_distance(a, b, far, parts, placed, leaves, guess)
+    if swapped:
+        guess[0], guess[1], guess[2] = -guess[0], -guess[1], -guess[2]
+    inner = leaf_bound + parts[a, SLACK]
+    if parts[b, LEAF_COUNT] > 0:
+        inner += parts[b, SLACK]
+    elif parts[b, KIND] != BOX:
+        inner = math.inf  # the leaves of a were held against the box around b
+    return max(bound, leaf_bound), inner
+
+
+@njit(**INLINE)
+def _from_floor(i, parts, placed, vertices):
+    """Height of the lowest point of robot part i above the plane z = 0; exact."""
+    _, _, z = support(parts, i, placed, vertices, 0.0, 0.0, -1.0)
+    return z - parts[i, MARGIN]
+
+
+@njit(**JIT)
+def check(i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess, s, weights):
+    """Decide a pair as `separation` does, from its spheres when they suffice.
+
+    `guess` is (0, 0, 0) or the direction that a check of this pair nearby ended with; it gets the one of this check.
+    """
+    if other == FLOOR:
+        height = _from_floor(i, parts, placed, vertices)
+        return APART if height >= far else (CLOSE if height < near else BETWEEN)
+    if other >= 0:
+        j, b, poses = other, obstacles, obstacle_poses
+        bound, inner = _from_obstacle(i, far, parts, placed, reach, b, poses, j, leaves, guess)
+        slack = parts[i, SLACK]
+    else:
+        j, b, poses = SELF - other, parts, placed
+        bound, inner = _from_self(i, j, far, parts, placed, reach, leaves, guess)
+        slack = parts[i, SLACK] + parts[j, SLACK]
+    if bound >= far:
+        return APART
+    if inner < near:
+        return CLOSE
+    if bound >= near and bound + slack < far:
+        return BETWEEN  # the exact distance would hardly help
+    return separation(parts, i, placed, b, j, poses, vertices, near, far, guess, s, weights)
+
+
+@njit(**INLINE)
+def demand(i, other, half, padding, parts, reach):
+    """The distance that pair (i, other) must have in the middle of an interval of half length `half`."""
+    if other <= SELF:
+        k = SELF - other
+        a, b = (i, k) if parts[i, FRAME] <= parts[k, FRAME] else (k, i)
+        low, high = int(parts[a, FRAME]), int(parts[b, FRAME])
+        motion = reach[b, 3 + high] - reach[b, 3 + low]
+    else:
+        motion = reach[i, 11]
+    return max(padding, half * motion + 0.5 * padding)
+
+
+@njit(**INLINE)
+def spheres_apart(i, k, far, parts, reach):
+    """Whether the bounding spheres of robot parts i and k are at least `far` apart."""
+    dx, dy, dz = reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2]
+    limit = far + parts[i, RADIUS] + parts[k, RADIUS]
+    return dx * dx + dy * dy + dz * dz >= limit * limit

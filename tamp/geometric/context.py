@@ -1,0 +1,136 @@
+"""What all streams of one problem share: the scene, the robot, and the tools that were built for them once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
+from tamp.geometric.collision.hand_collisions import HandCollisions
+from tamp.geometric.motion.passage import Passage
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.reachability import Reachability
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.samplers.mixture import Mixture
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Part, Scene
+from tamp.geometric.stability.stable_poses import Resting, resting_of
+from tamp.geometric.values import Grasp
+
+
+@dataclass
+class Context:
+    """The shared tools of one problem's streams.
+
+    Attributes:
+        scene: The problem's geometry.
+        robot: Its robot.
+        mixtures: Relation to the generators that serve it.
+        steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
+        holding: What is in the hand at the start; the scene has that body where it was before.
+        heights: How high the hand reaches, metres, at the places where `streams.heights` measured it.
+    """
+
+    scene: Scene
+    robot: Robot
+    mixtures: Mapping[str, Mixture]
+    steering: str = "se2"
+    holding: Grasp | None = None
+    heights: dict[tuple[int, int], float | None] = field(default_factory=dict[tuple[int, int], "float | None"])
+    _radii: dict[str, float] = field(default_factory=dict[str, float])
+    _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
+
+    @cached_property
+    def kinematics(self) -> Kinematics:
+        """Forward kinematics of the robot."""
+        return Kinematics(self.robot)
+
+    @cached_property
+    def ik(self) -> ArmIK:
+        """Inverse kinematics of the arm."""
+        return ArmIK(self.robot)
+
+    @cached_property
+    def reachability(self) -> Reachability:
+        """Where the base may stand for a tool pose."""
+        return Reachability(self.robot)
+
+    @cached_property
+    def collisions(self) -> Collisions:
+        """Collision detection among the scene's bodies and the robot."""
+        return Collisions(self.scene, self.robot, self.kinematics)
+
+    @cached_property
+    def hand(self) -> HandCollisions:
+        """Collision detection of the hand alone."""
+        return HandCollisions(self.scene, self.robot)
+
+    @cached_property
+    def passage(self) -> Passage:
+        """How wide the ways of the base are among the fixed bodies."""
+        return Passage(self.scene, self.robot)
+
+    @cached_property
+    def fixed_parts(self) -> tuple[list[tuple[str, Part, Pose]], Array, Array]:
+        """Of the fixed bodies: name, part and pose of the body; and all parts' lowest and highest corners, (n, 3)."""
+        bodies = [self.scene.bodies[name] for name in self.scene.fixed]
+        parts = [(body.name, part, body.pose) for body in bodies for part in body.parts]
+        boxes = np.array([bounds((part,), pose) for _, part, pose in parts]).reshape(-1, 2, 3)
+        return parts, boxes[:, 0], boxes[:, 1]
+
+    @cached_property
+    def home(self) -> Array:
+        """The arm's configuration between actions, shape (7,)."""
+        arm = self.scene.robot.arm
+        return np.array(self.robot.home if arm is None else arm)
+
+    @cached_property
+    def carrying_up(self) -> Array:
+        """The direction of up in the tool's frame while the arm is at home, shape (3,)."""
+        return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
+
+    def resting(self, body: str) -> Resting:
+        """The ways in which a body can rest."""
+        return resting_of(self.scene.bodies[body])
+
+    def radius(self, body: str) -> float:
+        """Of a sphere around the body's frame that contains the body, metres."""
+        if body not in self._radii:
+            low, high = bounds(self.scene.bodies[body].parts, Pose())
+            self._radii[body] = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+        return self._radii[body]
+
+    def conf(self, base: tuple[float, float, float] | Array, arm: Array) -> Array:
+        """The configuration (10,) of a base and an arm."""
+        return np.concatenate([np.asarray(base, dtype=float), arm])
+
+    def attachment(self, grasp: Grasp) -> Attachment:
+        """The grasp as the collision layer wants it."""
+        return Attachment(grasp.body, grasp.T_tool_body, grasp.opening)
+
+    def fixed_only(self, grasp: Grasp | None) -> Arrangement:
+        """The robot, with what it holds, among the fixed bodies."""
+        if grasp not in self._fixed_only:
+            attachment = None if grasp is None else self.attachment(grasp)
+            self._fixed_only[grasp] = self.collisions.arrangement({}, attachment)
+        return self._fixed_only[grasp]
+
+    def scene_at(self, poses: Mapping[str, Pose], proposed: str | None = None) -> Scene:
+        """The scene at a step of the plan: movable bodies at their poses there, those in the hand absent.
+
+        The one that a pose is proposed for stays, at its start: its shape is wanted. Without any poses nothing is known
+        about the step, and everything is at its start.
+        """
+        if not poses:
+            return replace(self.scene, bodies=dict(self.scene.bodies))
+        bodies = {
+            name: replace(body, pose=poses[name]) if name in poses and name != proposed else body
+            for name, body in self.scene.bodies.items()
+            if not body.movable or name in poses or name == proposed
+        }
+        return replace(self.scene, bodies=bodies)

@@ -1,0 +1,149 @@
+"""From a problem file in YAML to a frozen scene. docs/problem-format.md describes the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from tamp.errors import InputError
+from tamp.geometric.loading.bodies import Draft, read_body
+from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
+from tamp.geometric.loading.steadying import steady
+from tamp.geometric.loading.yaml_nodes import Node, Passage, read_yaml
+from tamp.geometric.scene.scene import RobotStart, Room, Scene
+from tamp.system.files import find_problem
+
+_KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
+
+
+@dataclass(frozen=True)
+class LoadedProblem:
+    """A problem file: the scene, and what only the symbolic side understands.
+
+    Attributes:
+        path: The file.
+        scene: Everything geometric.
+        goal: In PDDL, with its place in the file.
+        domain: The domain's name or path, when the file names one.
+        init: Facts that hold at the start beside those that the scene implies.
+        metric: In PDDL.
+        samplers: Sampler by relation, as `--sampler` gives them.
+        meshes: The mesh files that were read.
+        drawn: The mesh files that are only drawn, which no plan depends on.
+        warnings: What was repaired or looks odd, one sentence each.
+        lines: 1-based line of each body and of `robot`, for later errors about them.
+    """
+
+    path: Path
+    scene: Scene
+    goal: Passage
+    domain: str | None
+    init: tuple[Passage, ...]
+    metric: Passage | None
+    samplers: Mapping[str, str]
+    meshes: tuple[Path, ...]
+    warnings: tuple[str, ...]
+    drawn: tuple[Path, ...]
+    lines: Mapping[str, int]
+
+    def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
+        """An error about this problem, or about one of its bodies or its `robot`, with file and line."""
+        return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
+
+
+def load_scene(problem: str | Path) -> LoadedProblem:
+    """Load a problem file.
+
+    Args:
+        problem: A path, or the name of a shipped problem.
+
+    Raises:
+        InputError: Anything wrong with the file, with its line.
+    """
+    path = find_problem(problem)
+    root = read_yaml(path)
+    entries = root.mapping(_KEYS, required=("robot", "room", "bodies", "goal"))
+    name = entries["name"].text() if "name" in entries else path.stem
+    room = _room(entries["room"])
+    robot = _robot(entries["robot"], room)
+    drafts = {
+        body: read_body(body, node, path.parent) for body, node in entries["bodies"].mapping().items()
+    }  # fmt: skip
+    _check_names(drafts)
+    placed, warnings = place_bodies(drafts)
+    bodies, unsteady = steady(placed, drafts)
+    meshes = [(body, draft.mesh) for body, draft in drafts.items() if draft.mesh]
+    samplers = entries["samplers"].mapping() if "samplers" in entries else {}
+    return LoadedProblem(
+        path=path,
+        scene=Scene(name, MappingProxyType(bodies), robot, room),
+        goal=entries["goal"].passage(),
+        domain=entries["domain"].text() if "domain" in entries else None,
+        init=tuple(fact.passage() for fact in entries["init"].items()) if "init" in entries else (),
+        metric=entries["metric"].passage() if "metric" in entries else None,
+        samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
+        meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
+        drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
+        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
+        lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
+    )
+
+
+def _room(node: Node) -> Room:
+    entries = node.mapping(("x", "y"), required=("x", "y"))
+    limits: list[tuple[float, float]] = []
+    for axis in ("x", "y"):
+        low, high = entries[axis].numbers(2)
+        if not low < high:
+            raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
+        if max(-low, high) > FARTHEST:
+            raise entries[axis].error(f"the room reaches farther than {FARTHEST:g} m from the world's origin")
+        limits.append((low, high))
+    return Room(*limits)
+
+
+def _robot(node: Node, room: Room) -> RobotStart:
+    from tamp.geometric.robot.robot import ROBOTS  # not needed to read the rest
+
+    entries = node.mapping(("model", "base", "arm"), required=("model", "base"))
+    model = entries["model"].text(tuple(ROBOTS), "robot")
+    base = entries["base"].items(3)
+    x, y, yaw = base[0].number(), base[1].number(), base[2].angle()
+    for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
+        if not low <= value <= high:
+            raise entries["base"].error(
+                f"the robot starts out of the room: {axis} = {value:g} is not within [{low:g}, {high:g}]"
+            )
+    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
+
+
+def _arm(node: Node, model: str) -> tuple[float, ...]:
+    from tamp.geometric.robot.robot import ROBOTS
+
+    robot = ROBOTS[model]()
+    joints = node.items(len(robot.lower))
+    angles = tuple(joint.angle() for joint in joints)
+    for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):
+        if not low <= angle <= high:
+            what = f"{angle:g} rad is outside of the joint's limits [{low:.5g}, {high:.5g}]"
+            raise joint.error(f"{what}, the maker's less a margin")
+    return angles
+
+
+def _check_names(drafts: Mapping[str, Draft]) -> None:
+    """All share one space of names, in which case does not count (PDDL's rule); one place may be named as its body."""
+    owners = {"robot": "the robot", FLOOR: "the floor"}
+    for name, draft in drafts.items():
+        if name.lower() in owners:
+            raise draft.node.error(f"the name '{name}' is taken by {owners[name.lower()]}")
+        owners[name.lower()] = f"body '{name}'"
+    for name, draft in drafts.items():
+        own = True
+        for place in (*draft.body.surfaces, *draft.body.cavities):
+            key = place.name.lower()
+            if key in owners and not (own and place.name == name):
+                raise draft.node.error(f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}")
+            own = own and place.name != name
+            owners[key] = f"a surface or cavity of '{name}'"

@@ -1,0 +1,93 @@
+"""Motions of the arm while the base stands."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from tamp.geometric.motion.checker import Checker, Limits
+from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.sampling_based import JointSpace, connect
+from tamp.geometric.motion.shortcut import shortcut
+from tamp.geometric.scene.pose import Array
+from tamp.system.deadline import Deadline
+
+CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
+REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they turn out to be blocked
+SHORTCUTS = 30
+PATIENCE = 5
+
+
+def plan_arm(
+    checker: Checker,
+    base: Array,
+    start: Array,
+    goals: Array,
+    robot: Limits,
+    rng: np.random.Generator,
+    deadline: Deadline,
+    *,
+    effort: int = 1,
+    shortcuts: int = SHORTCUTS,
+) -> Planned:
+    """A collision-free path of the arm from `start` to one of `goals`.
+
+    The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the result has been
+    certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+
+    Args:
+        checker: The robot among the bodies.
+        base: x, y in metres and yaw, shape (3,).
+        start: Joint angles, shape (7,), radians.
+        goals: One goal (7,) or several (k, 7); those in collision are left out.
+        robot: Gives the joint limits.
+        rng: Advanced by two draws at most per call, plus those of the shortcuts.
+        deadline: Outer cap; the effort is the bound that keeps results reproducible.
+        effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
+        shortcuts: Random cuts to try.
+
+    Returns:
+        The path (n, 7), beginning with `start` and ending with one of `goals`, both exactly.
+    """
+    start = np.asarray(start, dtype=float)
+    candidates = np.atleast_2d(np.asarray(goals, dtype=float))
+    lower, upper = np.asarray(robot.lower, dtype=float), np.asarray(robot.upper, dtype=float)
+
+    def conf(arm: Array) -> Array:
+        return np.concatenate([base, arm])
+
+    def edge_free(a: Array, b: Array) -> bool:
+        return checker.edge_free(conf(a), conf(b))
+
+    def inside(arm: Array) -> bool:
+        return bool(np.all(lower <= arm) and np.all(arm <= upper))
+
+    candidates = candidates[[inside(goal) for goal in candidates]]
+    if not inside(start) or not len(candidates):
+        return Planned(None, Failure.LIMITS, 0)
+    if not checker.free(conf(start)):
+        return Planned(None, Failure.START, 0)
+    candidates = candidates[[checker.free(conf(goal)) for goal in candidates]]
+    if not len(candidates):
+        return Planned(None, Failure.GOAL, 0)
+
+    candidates = candidates[np.argsort(np.linalg.norm(candidates - start, axis=1), kind="stable")]
+    checks = 0
+    for goal in candidates:
+        checks += 1
+        if edge_free(start, goal):
+            return Planned(np.array([start, goal]), None, checks)
+        if deadline.passed:
+            return Planned(None, Failure.TIME, checks)
+    path, asked = connect(
+        JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
+        seed=int(rng.integers(1, 2**31)), checks=CHECKS * 4**effort, deadline=deadline, reach=REACH,
+    )  # fmt: skip
+    checks += asked
+    if path is None:
+        return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+    path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
+    checks += asked + len(path) - 1
+    certified = all(edge_free(a, b) for a, b in pairwise(path))
+    return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)

@@ -1,0 +1,193 @@
+"""Motions of the base through the room while the arm keeps its configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from tamp.geometric.motion.checker import Checker
+from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
+from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
+from tamp.geometric.motion.shortcut import shortcut
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Room
+from tamp.system.deadline import Deadline
+
+YAW = (2,)
+WEIGHTS = np.array([1.0, 1.0, 0.5])  # a radian of turning weighs half a metre, as in OMPL's SE2 space
+CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
+REACH = 1.0  # the longest edge of the trees, weighted metres
+SHORTCUTS = 30
+PATIENCE = 8
+CURVE_STEP = 0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
+RETREATS = (0.3, 0.6)  # metres to back away from furniture before turning
+PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
+
+EdgeTest = Callable[[Array, Array], bool]
+
+
+def plan_base(
+    checker: Checker,
+    arm: Array,
+    start: Array,
+    goal: Array,
+    room: Room,
+    rng: np.random.Generator,
+    deadline: Deadline,
+    *,
+    steering: str = "se2",
+    turning_radius: float = 0.5,
+    effort: int = 1,
+    shortcuts: int = SHORTCUTS,
+) -> Planned:
+    """A collision-free path of the base from `start` to `goal`.
+
+    With "se2" the base moves in any direction: the straight line (translating and turning at once), turning before or
+    after driving, and backing away first are tried in this order, then RRTConnect; the path is shortened. With
+    "reeds-shepp" it drives like a car, along sampled curves of `turning_radius` metres. Every edge of the result has
+    been certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+
+    Args:
+        checker: The robot, with what it holds, among the bodies.
+        arm: Joint angles, shape (7,), radians.
+        start: x, y in metres and yaw in radians, shape (3,).
+        goal: The same; its yaw is meant up to whole turns.
+        room: Where the base's centre may be.
+        rng: The source of the planner's seed and of the shortcuts.
+        deadline: Outer cap; the effort is the bound that keeps results reproducible.
+        steering: "se2" or "reeds-shepp".
+        turning_radius: For "reeds-shepp", metres.
+        effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
+        shortcuts: Random cuts to try ("se2" only).
+
+    Returns:
+        The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the numbers are
+        unwrapped, so that no edge turns the longer way round.
+
+    Raises:
+        ValueError: Unknown steering.
+    """
+    if steering not in ("se2", "reeds-shepp"):
+        raise ValueError(f"unknown steering '{steering}'. Choices: se2, reeds-shepp")
+    start = np.asarray(start, dtype=float)
+    goal = nearest(start, np.asarray(goal, dtype=float), YAW)
+    checks = 0
+
+    def conf(base: Array) -> Array:
+        return np.concatenate([base, arm])
+
+    def edge_free(a: Array, b: Array) -> bool:
+        nonlocal checks
+        checks += 1
+        return checker.edge_free(conf(a), conf(nearest(a, b, YAW)))
+
+    if not (_inside(room, start) and _inside(room, goal)):
+        return Planned(None, Failure.LIMITS, checks)
+    if not checker.free(conf(start)):
+        return Planned(None, Failure.START, checks)
+    if not checker.free(conf(goal)):
+        return Planned(None, Failure.GOAL, checks)
+
+    seed = int(rng.integers(1, 2**31))
+    budget = CHECKS * 4**effort
+    if steering == "se2":
+        path = _simple(start, goal, room, edge_free, deadline)
+        if path is None:
+            plane = PlaneSpace(room.x, room.y)
+            found, _ = connect(
+                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline, reach=REACH
+            )
+            path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
+        if path is not None and len(path) > 2:
+            path, _ = shortcut(
+                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS, periodic=YAW
+            )  # fmt: skip
+    else:
+        plane = PlaneSpace(room.x, room.y, turning_radius)
+        path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
+    if path is None:
+        return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+    certified = all(edge_free(a, b) for a, b in pairwise(path))
+    return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
+
+
+def _simple(start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline) -> Array | None:
+    """The first free one of the paths that a driver would think of."""
+    for path in _turn_and_drive(start, goal):
+        if deadline.passed:
+            return None
+        if all(edge_free(a, b) for a, b in pairwise(path)):
+            return path
+    ways_out = [start, *_retreats(start, room, edge_free)]
+    ways_in = [goal, *_retreats(goal, room, edge_free)]
+    paths = [np.array([start, out, into, goal]) for out in ways_out for into in ways_in]
+    paths.sort(key=lambda path: length(path, WEIGHTS))
+    for path in paths[1 : PAIRS + 1]:  # the first is the straight line
+        if deadline.passed:
+            return None
+        if edge_free(path[1], path[2]):
+            return path[np.concatenate([[True], edge_lengths(path) > 0.0])]
+    return None
+
+
+def _turn_and_drive(start: Array, goal: Array) -> Iterator[Array]:
+    yield np.array([start, goal])
+    turned = np.array([start[0], start[1], goal[2]])
+    arrived = np.array([goal[0], goal[1], start[2]])
+    if start[2] != goal[2] and np.any(start[:2] != goal[:2]):
+        yield np.array([start, turned, goal])
+        yield np.array([start, arrived, goal])
+
+
+def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
+    """Bases reached from `base` by sliding out, without turning: backwards first, then ever more to the sides."""
+    for angle in np.pi + np.array([0.0, 1.0, -1.0, 2.0, -2.0]) * np.pi / 4:
+        heading = base[2] + angle
+        for distance in RETREATS:
+            away = base + distance * np.array([np.cos(heading), np.sin(heading), 0.0])
+            if not _inside(room, away) or not edge_free(base, away):
+                break
+            yield away
+
+
+def _drive(
+    plane: PlaneSpace,
+    start: Array,
+    goal: Array,
+    room: Room,
+    edge_free: EdgeTest,
+    seed: int,
+    budget: int,
+    deadline: Deadline,
+) -> Array | None:
+    """Reeds-Shepp curves from start to goal, sampled."""
+
+    def sampled(a: Array, b: Array) -> Array:
+        return unwrap(curve(plane, a, b, CURVE_STEP), YAW)
+
+    def curve_free(a: Array, b: Array) -> bool:
+        samples = sampled(a, b)
+        return all(_inside(room, base) for base in samples) and all(edge_free(c, d) for c, d in pairwise(samples))
+
+    vertices: list[Array] = [start, goal]
+    if not curve_free(start, goal):
+        found, _ = connect(
+            plane, start, [goal], curve_free, seed=seed, checks=budget, deadline=deadline, reach=2.0 * REACH
+        )
+        if found is None:
+            return None
+        rest = [*found[1:-1], goal]
+        vertices = [start]
+        while rest:  # from each vertex jump as far ahead as a free curve leads
+            jump = next((j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0)
+            vertices.append(rest[jump])
+            rest = rest[jump + 1 :]
+    pieces = [sampled(a, b) for a, b in pairwise(vertices)]
+    return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW)
+
+
+def _inside(room: Room, base: Array) -> bool:
+    return bool(room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1])

@@ -1,0 +1,37 @@
+"""What a motion planner asks of the collision layer and of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from tamp.geometric.scene.pose import Array
+
+
+class Checker(Protocol):
+    """Decides configurations and straight edges between them; `tamp.geometric.collision.collisions.Arrangement` is one.
+
+    A configuration has shape (10,): base x, y in metres, base yaw, then the arm's seven joints, radians.
+    """
+
+    def free(self, conf: Array, /) -> bool:
+        """Whether nothing touches at `conf`."""
+        ...
+
+    def edge_free(self, start: Array, end: Array, /) -> bool:
+        """Whether nothing touches anywhere on the straight line of stored numbers from `start` to `end`."""
+        ...
+
+
+class Limits(Protocol):
+    """The limits of the arm's joints; `tamp.geometric.robot.robot.Robot` has them."""
+
+    @property
+    def lower(self) -> Sequence[float]:
+        """Smallest angles, shape (7,), radians."""
+        ...
+
+    @property
+    def upper(self) -> Sequence[float]:
+        """Largest angles."""
+        ...

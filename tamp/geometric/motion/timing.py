@@ -1,0 +1,135 @@
+"""From a certified polyline to a trajectory in time that never leaves it."""
+
+from __future__ import annotations
+
+import importlib
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tamp.geometric.motion.corner_blending import TICK, Corner, Rail, corners, lay
+from tamp.geometric.motion.path import without_repeats
+from tamp.geometric.scene.pose import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Timed:
+    """A trajectory: positions (m, d) at times (m,) in seconds from 0, increasing, and straight lines in between."""
+
+    times: Array
+    positions: Array
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(self.times[-1])
+
+
+def time_path(
+    path: Array,
+    velocity: Array,
+    acceleration: Array,
+    edge_free: Callable[[Array, Array], bool] | None = None,
+) -> Timed:
+    """Time a path, from rest to rest, as fast as the limits allow.
+
+    The trajectory runs along the polyline itself and rests at its corners, except where `edge_free` certifies a
+    rounding, whose chords are then part of the result, and where vertices sample a smooth curve closely. Every vertex
+    that is not rounded is a sample. Velocities between samples, and accelerations as differences of those velocities,
+    stay within the limits.
+
+    Args:
+        path: Shape (n, d); angles unwrapped.
+        velocity: Limits, shape (d,), in the path's units per second.
+        acceleration: Limits, shape (d,), per second squared.
+        edge_free: Whether the straight edge between two rows is free; None: the polyline is kept exactly.
+
+    Returns:
+        From the path's first row to its last, both exactly; samples at most about TICK seconds apart on straight parts.
+    """
+    path = without_repeats(np.asarray(path, dtype=float))
+    velocity, acceleration = np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float)
+    if len(path) == 1:
+        return Timed(np.zeros(1), path)
+    passed = corners(path, acceleration, edge_free)
+    rests = [k for k, corner in enumerate(passed) if not corner.taken]
+    return _joined([_piece(passed[i : j + 1], velocity, acceleration) for i, j in pairwise(rests)])
+
+
+def prefetch() -> threading.Thread:
+    """Import what `time_path` needs in the background, so that it is there when the plan is."""
+
+    def load() -> None:
+        importlib.import_module("tamp.geometric.motion.parametrization")
+
+    thread = threading.Thread(target=load, name="import toppra", daemon=True)
+    thread.start()
+    return thread
+
+
+def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
+    """Through corners that are passed without resting, from rest to rest."""
+    if len(passed) > 2:
+        from tamp.geometric.motion.parametrization import speeds  # toppra takes 0.75 s to import
+
+        rail = lay(passed)
+        rates = speeds(rail, velocity, acceleration)
+        if rates is not None:
+            return _slowed(_sampled(rail, rates), velocity, acceleration)
+    vertices = [corner.vertex for corner in passed]
+    return _joined([_straight(a, b, velocity, acceleration) for a, b in pairwise(vertices)])
+
+
+def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
+    """One edge from rest to rest: full acceleration, full speed, full braking."""
+    step = np.abs(end - start)
+    with np.errstate(divide="ignore"):
+        top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))  # in edges per second (squared)
+    top = min(top, push**0.5)  # a short edge brakes before it reaches full speed
+    ramp = top / push
+    duration = 1.0 / top + ramp
+    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / TICK))) + 1)
+    left = duration - times
+    done = np.where(times < ramp, 0.5 * push * times**2, top * (times - 0.5 * ramp))
+    done = np.where(left < ramp, 1.0 - 0.5 * push * left**2, done)
+    positions = start + done[:, None] * (end - start)
+    positions[0], positions[-1] = start, end
+    return Timed(times, positions)
+
+
+def _joined(pieces: list[Timed]) -> Timed:
+    """One trajectory after the other, each beginning where the last ended."""
+    starts = np.cumsum([0.0] + [piece.duration for piece in pieces])
+    times = [start + piece.times[1:] for start, piece in zip(starts[:-1], pieces, strict=True)]
+    positions = [piece.positions[1:] for piece in pieces]
+    return Timed(np.concatenate([np.zeros(1), *times]), np.concatenate([pieces[0].positions[:1], *positions]))
+
+
+def _sampled(rail: Rail, rates: Array) -> Timed:
+    """The nodes at their times, and more samples on the straight parts; the acceleration is constant between nodes."""
+    gaps = np.diff(rail.stations)
+    spans = 2.0 * gaps / (rates[:-1] + rates[1:])
+    counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
+    i = np.repeat(np.arange(len(spans)), counts)  # the interval of each sample
+    ends = np.cumsum(counts)
+    shares = (np.arange(len(i)) - (ends - counts)[i] + 1) / counts[i]
+    starts = np.concatenate([[0.0], np.cumsum(spans)[:-1]])
+    elapsed = shares * spans[i]
+    travelled = (rates[i] + 0.5 * (rates[i + 1] - rates[i]) * shares) * elapsed / gaps[i]
+    positions = rail.positions[i] + travelled[:, None] * (rail.positions[i + 1] - rail.positions[i])
+    positions[ends - 1] = rail.positions[1:]
+    return Timed(np.concatenate([[0.0], starts[i] + elapsed]), np.concatenate([rail.positions[:1], positions]))
+
+
+def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
+    """The same with all times stretched by the little that differences of the samples may exceed the limits."""
+    spans = np.diff(timed.times)
+    rates = np.diff(timed.positions, axis=0) / spans[:, None]
+    rest = np.zeros((1, rates.shape[1]))
+    middles = 0.5 * (np.concatenate([[0.0], spans]) + np.concatenate([spans, [0.0]]))
+    changes = np.diff(np.concatenate([rest, rates, rest]), axis=0) / middles[:, None]
+    excess = max(1.0, float(np.max(np.abs(rates) / velocity)), float(np.max(np.abs(changes) / acceleration)) ** 0.5)
+    return Timed(timed.times * excess, timed.positions)

@@ -1,0 +1,116 @@
+"""Which generators serve a relation: a name, and whether it is mixed with the hand-made one or alone."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from tamp.errors import InputError
+from tamp.geometric.samplers.mixture import Mixture
+from tamp.geometric.samplers.registry import SAMPLERS
+from tamp.geometric.samplers.sampler import Classifier, Generator
+
+Grounding = Generator | Classifier
+"""What grounds a relation: its generator, its classifier, or an object that is both."""
+
+Registry = Mapping[str, Mapping[str, Callable[..., Grounding]]]
+"""Relation to sampler name to what makes it, f(); it may raise InputError. See ANY."""
+
+ANY = "*"
+"""The relation under which a registry has suffixes of files for names; what reads such a file is f(relation, file)."""
+
+GIVEN = "given"
+"""The name of an object that was given in the place of a name."""
+
+MODES = ("mixed", "alone")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A sampler, by name, for a relation.
+
+    Attributes:
+        name: In the registry.
+        alone: Whether no other generator takes part.
+    """
+
+    name: str
+    alone: bool
+
+    @property
+    def text(self) -> str:
+        """As `--sampler` takes it, without the mode that is usual."""
+        if self.alone == (self.name in HAND_MADE):
+            return self.name
+        return f"{self.name}:{'alone' if self.alone else 'mixed'}"
+
+
+HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
+"""The samplers that are alone unless it is said that they are mixed."""
+
+
+def parse_choice(relation: str, text: str, known: Registry, folder: Path | None = None) -> Choice:
+    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole path.
+
+    Args:
+        relation: Of any name where a file serves it.
+        text: What is to be read.
+        known: All samplers.
+        folder: Where a relative path starts; by default where the program runs.
+
+    Raises:
+        InputError: Unknown relation, name or mode.
+    """
+    name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
+    if Path(name).suffix in known.get(ANY, {}):
+        return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
+    name, colon, mode = text.partition(":")
+    if relation not in known or relation == ANY:
+        choices = [other for other in known if other != ANY]
+        remedy = f"Of one's own: {relation}=FILE{next(iter(known[ANY]))}" if known.get(ANY) else ""
+        raise InputError(f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy)
+    if name not in known[relation]:
+        raise InputError(f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation])
+    if colon and mode not in MODES:
+        remedy = f"For example: {relation}={name}:alone"
+        raise InputError(f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy)
+    return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
+
+
+def sampler_files(samplers: Iterable[str]) -> list[Path]:
+    """The files that samplers are made from, as far as they are named by files: weights with their card, Python."""
+    names = [Path(text.removesuffix(":alone").removesuffix(":mixed")) for text in samplers]
+    return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
+
+
+def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:
+    """What makes the chosen sampler; it may raise InputError."""
+    if choice.name in known.get(relation, {}):
+        return known[relation][choice.name]
+    return partial(known[ANY][Path(choice.name).suffix], relation, Path(choice.name))
+
+
+def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
+    """The chosen generator, with the relation's hand-made one beside it unless it is to be alone."""
+    trusted = next(iter(SAMPLERS.get(relation, {})), None)
+    if choice.alone or trusted is None or choice.name == trusted:
+        return Mixture((Path(choice.name).name,), (generator,))
+    return Mixture((Path(choice.name).name, trusted), (generator, SAMPLERS[relation][trusted]()))
+
+
+def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
+    """Relation to name, of RELATION=NAME.
+
+    Raises:
+        InputError: Something else.
+    """
+    chosen: dict[str, str] = {}
+    for pair in pairs:
+        relation, equals, name = pair.partition("=")
+        if not (relation and equals and name):
+            raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
+        chosen[relation] = name
+    return chosen

@@ -1,0 +1,73 @@
+"""The tool's straight way to a grasp: whether the hand fits there, before anything is said of arm or base."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tamp.geometric.context import Context
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.values import Grasp
+from tamp.stream import Call, Rejection
+
+LIFT = 0.02
+"""How far a held body is lifted straight up before it is drawn back, metres."""
+
+RETREAT = 0.10
+"""How far the tool draws back along its own axis, metres."""
+
+FLAT = 0.02
+"""Height of a body, metres, below which the fingers may not get deep enough beside it, nor under it."""
+
+PROBES = (0.0, 0.5, 1.0)
+"""Where on the way the hand is looked at."""
+
+
+def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: Call) -> bool | Rejection:
+    """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
+    fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
+    hit = approach_hits(context, pose, grasp, fixed)
+    if hit is None:
+        return True
+    loaded = f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    return Rejection(f"{loaded or _flat(context, body, pose, hit)}hand hits {hit}")
+
+
+def test_approach_clear(
+    context: Context, body: str, pose: Pose, grasp: Grasp, other: str, other_pose: Pose, call: Call
+) -> bool | Rejection:
+    """Whether another body leaves the hand its way to a grasp: false only when the hand hits it."""
+    if body == other or approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
+        return True
+    return Rejection(f"hits {other}", (other,))
+
+
+def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
+    """What to say first of a body so flat that fingers meet what it lies on before they hold it."""
+    low, high = bounds(context.scene.bodies[body].parts, pose)
+    tall = float(high[2] - low[2])
+    below = bounds(context.scene.bodies[hit].parts, context.scene.bodies[hit].pose)
+    carries = (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
+    return f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+
+
+def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]) -> str | None:
+    """The first of other bodies that the hand hits on its way to the grasp, or on its way back with the body."""
+    standing = list(others)
+    T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
+    back = -RETREAT * T_world_tool[:3, 2]
+    up = np.array([0.0, 0.0, LIFT])
+    away = [_moved(T_world_tool, share * back) for share in PROBES]
+    out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in PROBES)]
+    hand = context.hand
+    return hand.hits(away, context.robot.opening, None, standing) or hand.hits(
+        out, grasp.opening, context.attachment(grasp), standing
+    )
+
+
+def _moved(matrix: Array, offset: Array) -> Array:
+    moved = matrix.copy()
+    moved[:3, 3] += offset
+    return moved

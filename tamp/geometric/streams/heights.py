@@ -1,0 +1,103 @@
+"""How high the hand gets at a place, measured with the arm itself: a reason that names it has a figure that holds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tamp.geometric.context import Context
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.streams.approach import LIFT
+
+ABOVE = 0.9
+"""Nothing below this is too high for the arm, metres: no need to measure."""
+
+RINGS = np.arange(0.10, 1.0, 0.05)
+"""Distances between the arm's foot and the tool that are looked at, metres."""
+
+FURTHER = (0.0, 0.05, 0.10)
+"""How much farther than it must stand the robot is thought to stand in the measurement, metres."""
+
+BEARINGS = 16
+"""Directions from which the robot is thought to come."""
+
+PITCHES = np.radians((0.0, 15.0, 30.0, 45.0))
+"""How much the hand is thought to look down: what stands on something is in the way of one that looks up."""
+
+PRECISION = 0.005
+"""Of the measured height, metres."""
+
+AROUND = 0.05
+"""Places nearer to each other than this are taken for one, metres."""
+
+
+def too_high(context: Context, point: Array) -> str | None:
+    """In words that a point (3,) is higher than the hand reaches there; None where it is not."""
+    x, y, z = (float(value) for value in point)
+    if z < ABOVE:
+        return None
+    reached = highest(context, x, y)
+    if reached is None or z + LIFT <= reached:
+        return None
+    return f"too high: the hand reaches to {reached:.2f} m here"
+
+
+def highest(context: Context, x: float, y: float) -> float | None:
+    """The height of the tool above a point that the arm gets to from where the robot can stand; None without such.
+
+    The hand looks level or down by up to 45 degrees, towards the point.
+    """
+    key = (round(x / AROUND), round(y / AROUND))
+    if key not in context.heights:
+        distance = _nearest_stand(context, x, y)
+        context.heights[key] = None if distance is None else _measured(context, distance)
+    return context.heights[key]
+
+
+def _nearest_stand(context: Context, x: float, y: float) -> float | None:
+    """How near to the point the arm's foot gets, the robot facing it, the arm at home, among the fixed bodies."""
+    room, foot = context.scene.room, float(np.linalg.norm(context.robot.T_base_arm.position[:2]))
+    among = context.fixed_only(None)
+    for distance in RINGS:
+        for angle in np.arange(BEARINGS) * 2 * math.pi / BEARINGS:
+            base = np.array((x, y, 0.0)) - (distance + foot) * np.array((math.cos(angle), math.sin(angle), 0.0))
+            base[2] = angle
+            inside = room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]
+            if inside and among.free(context.conf(base, context.home)):
+                return float(distance)
+    return None
+
+
+def _measured(context: Context, distance: float) -> float | None:
+    """The greatest height of the tool so far in front of the arm's foot that has a solution."""
+    foot = context.robot.T_base_arm.position
+    best = None
+    for pitch in PITCHES:
+        approach = np.array((math.cos(pitch), 0.0, -math.sin(pitch)))
+        for closing in (np.array((0.0, 1.0, 0.0)), np.cross(approach, (0.0, 1.0, 0.0))):
+            for more in FURTHER:
+                T = np.eye(4)
+                T[:3, 0], T[:3, 1], T[:3, 2] = np.cross(closing, approach), closing, approach
+                T[:3, 3] = (foot[0] + distance + more, 0.0, foot[2])
+                height = _top(context, T, best or ABOVE - 0.4)
+                best = height if best is None else max(best, height or best)
+    return best
+
+
+def _top(context: Context, T: Array, least: float) -> float | None:
+    """The height up to which the tool has solutions above `least`, in steps that halve; None where not even there."""
+
+    def reached(height: float) -> bool:
+        T[2, 3] = height
+        return len(context.ik.solve(T, enough=1)) > 0
+
+    if not reached(least):
+        return None
+    step = 0.32
+    while step > PRECISION / 2:
+        if reached(least + step):
+            least += step
+        else:
+            step /= 2
+    return least

@@ -1,0 +1,178 @@
+"""Where to stand and how to reach: a base pose and the arm's last stretch to a grasp."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from tamp.geometric.context import Context
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.streams.approach import LIFT, RETREAT
+from tamp.geometric.streams.heights import too_high
+from tamp.geometric.values import BaseConf, Grasp, Reach
+from tamp.stream import Call, Rejection
+
+STEP = 0.01
+"""Spacing of the tool poses along the last stretch, metres,"""
+
+FINE = 0.0025
+"""and near singularities, where the joints move fast."""
+
+TURN = 0.1
+"""The most that a joint may turn from one to the next, radians: in between, the tool strays by less than 1.5 mm."""
+
+BATCH = 16
+"""Base poses looked at in one try: most stand in some furniture, which is found out quickly."""
+
+WAY_OUT = 0.5
+"""A base pose is worth trying when the robot can slide this far away from it, metres,"""
+
+NOOK = 0.05
+"""or, so that no place is ruled out for good, with this probability."""
+
+PATIENCE = 12
+"""Tries without a success after which a grasp there is given up. Poses and grasps are drawn without end, so that no
+solution is lost for good, and another of those is the better bet than the thousandth place for the base."""
+
+SOLUTIONS = 24
+"""Arm solutions looked at from one base pose,"""
+
+BRANCHES = 3
+"""and those of them from which the approach is tried."""
+
+UNREACHED = ("out of reach", "no straight approach")
+"""Reasons behind which there may be one with a figure."""
+
+
+def inverse_kinematics(
+    context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
+) -> Iterator[tuple[BaseConf, Reach] | Rejection]:
+    """Base poses and approaches that are free of the fixed bodies, with the hand empty and with the body in it.
+
+    The approach is a straight line along the tool's axis; with the body in hand it is lifted straight up first, so that
+    it does not scrape along its support. Ends after PATIENCE tries without any success.
+    """
+    T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
+    failures = 0.0
+    while failures < PATIENCE:
+        reason: Rejection | None = None
+        for base in context.reachability.sample(T_world_tool, call.rng, BATCH):
+            refused = _standing(context, body, grasp, base, call)
+            if refused is not None:
+                reason = reason or refused
+                continue
+            found = _reaching(context, grasp, base, T_world_tool, call)
+            if not isinstance(found, Rejection):
+                failures = -math.inf
+                yield found
+                reason = None
+                break
+            reason = found
+        if reason is not None:
+            if reason.reason in UNREACHED:
+                high = too_high(context, T_world_tool[:3, 3])
+                reason = reason if high is None else Rejection(high)
+            failures += 1
+            yield reason if failures < PATIENCE else replace(reason, given_up=True)
+
+
+def _standing(context: Context, body: str, grasp: Grasp, base: Array, call: Call) -> Rejection | None:
+    """Why the robot cannot stand there with the arm at home, with the body or without; cheap, and often the answer."""
+    room = context.scene.room
+    if not (room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]):
+        return Rejection("base outside of the room")
+    home = context.conf(base, context.home)
+    for held, who in ((None, "base"), (grasp, f"{body} carried here")):
+        among = context.fixed_only(held)
+        if not among.free(home):
+            return Rejection(f"{who} hits {_other(among.hits(home, PROBE))}")
+    if not _can_leave(context, grasp, base, home) and call.rng.random() >= NOOK:
+        return Rejection("base stands in a nook")
+    return None
+
+
+def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool:
+    """Whether the robot can slide out of this place, backwards or to a side, with the body in hand."""
+    loaded = context.fixed_only(grasp)
+    for angle in (math.pi, 0.75 * math.pi, -0.75 * math.pi, 0.5 * math.pi, -0.5 * math.pi):
+        heading = base[2] + angle
+        away = home.copy()
+        away[:2] += WAY_OUT * np.array([math.cos(heading), math.sin(heading)])
+        if loaded.edge_free(home, away):
+            return True
+    return False
+
+
+def _reaching(
+    context: Context, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
+) -> tuple[BaseConf, Reach] | Rejection:
+    empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
+    T_base_tool = np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
+    solutions = context.ik.solve(T_base_tool)
+    if len(solutions) == 0:
+        return Rejection("out of reach")
+    # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch possible.
+    order = np.argsort(np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions)))
+    reason = Rejection("no straight approach")
+    confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
+    # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
+    clear = [conf for conf in confs if empty.free(conf)] or confs
+    for conf in clear[:BRANCHES]:
+        hit = empty.hits(conf)
+        if hit is not None:
+            reason = Rejection(f"hits {_other(hit)}")
+            continue
+        reach = _approach(context, T_base_tool, conf[3:])
+        if reach is None:
+            continue
+        approach, lift = (np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift))
+        hit = empty.path_hits(approach) or loaded.path_hits(lift) or empty.path_hits(np.array([approach[0], lift[-1]]))
+        if hit is not None:
+            reason = Rejection(f"hits {_other(hit)}")
+            continue
+        if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
+            reason = Rejection("no room before the approach")
+            continue
+        return BaseConf(float(base[0]), float(base[1]), float(base[2])), reach
+    return reason
+
+
+def _approach(context: Context, T_base_tool: Array, q: Array) -> Reach | None:
+    """The straight lines away from the grasp: back along the tool's axis; and up, then back."""
+    back = T_base_tool[:3, 2]
+    away = follow_line(context, T_base_tool, -RETREAT * back, q)
+    if away is None:
+        return None
+    up = follow_line(context, T_base_tool, np.array([0.0, 0.0, LIFT]), q)
+    if up is None:
+        return None
+    lifted = T_base_tool.copy()
+    lifted[2, 3] += LIFT
+    out = follow_line(context, lifted, -RETREAT * back, up[-1])
+    if out is None:
+        return None
+    return Reach(away[::-1].copy(), np.concatenate([up, out[1:]]))
+
+
+def follow_line(context: Context, T_base_tool: Array, offset: Array, q: Array) -> Array | None:
+    """Arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the base frame, from q."""
+    length = float(np.linalg.norm(offset))
+    for step in (STEP, FINE):
+        count = max(1, math.ceil(length / step))
+        targets = np.repeat(T_base_tool[None], count, axis=0)
+        targets[:, :3, 3] += np.linspace(1 / count, 1.0, count)[:, None] * offset
+        path = context.ik.follow(list(targets), q, TURN)
+        if path is not None:
+            return np.concatenate([q[None], path])
+    return None
+
+
+PROBE = 0.002
+"""The padding of `free`, metres, with which its verdict is named."""
+
+
+def _other(pair: tuple[str, str] | None) -> str:
+    return "something" if pair is None else pair[1]

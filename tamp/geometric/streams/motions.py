@@ -1,0 +1,182 @@
+"""Motions of whole actions: drive somewhere, pick, place. What they certify holds in the state that they were shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tamp.geometric.collision.collisions import Arrangement
+from tamp.geometric.context import Context
+from tamp.geometric.motion.arm import plan_arm
+from tamp.geometric.motion.base import plan_base
+from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
+from tamp.stream import Call, Rejection
+
+HARDEST = 4
+"""The greatest effort of a motion plan; each level allows four times as many edges as the one before."""
+
+LOOKS = 33
+"""Configurations on the straight way that are looked at to say what is in it."""
+
+
+@dataclass(frozen=True)
+class _Query:
+    """One motion problem.
+
+    Attributes:
+        plan: How to plan it in an arrangement at an effort.
+        confs: Its path as configurations (n, 10).
+        ends: Start and goal as configurations (10,).
+    """
+
+    plan: Callable[[Arrangement, int], Planned]
+    confs: Callable[[Array], Array]
+    ends: tuple[Array, Array]
+
+
+def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[Motion | Rejection]:
+    """The base drives, the arm at home, perhaps with a body in hand."""
+    start = next(value for name, *values in call.fluents for value in values if name == "at-base")
+    held = next((values[1] for name, *values in call.fluents if name == "holding"), None)
+    poses = {values[0]: values[1] for name, *values in call.fluents if name == "at-pose"}
+    opening = context.robot.opening if held is None else held.opening
+
+    def plan(arrangement: Arrangement, effort: int) -> Planned:
+        ends = np.array(start.array), np.array(goal.array)
+        return plan_base(
+            arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline, effort=effort,
+            steering=context.steering,
+        )  # fmt: skip
+
+    stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
+    query = _Query(plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands)
+    for planned in _attempts(context, poses, held, query):
+        if isinstance(planned, Rejection):
+            yield planned
+        else:
+            yield Motion((Path("base", planned, opening, None if held is None else held.body),))
+
+
+def plan_pick(
+    context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
+) -> Iterator[Motion | Rejection]:
+    """From home to the body, close the hand, and back home with it."""
+    for found in _transits(context, body, pose, grasp, base, reach, call):
+        if isinstance(found, Rejection):
+            yield found
+            continue
+        empty, loaded = found
+        opened = context.robot.opening
+        yield Motion(
+            (
+                Path("arm", np.concatenate([empty, reach.approach]), opened),
+                Grip((opened, grasp.opening), attach=grasp),
+                Path("arm", np.concatenate([reach.lift, loaded[::-1][1:]]), grasp.opening, body),
+            )
+        )
+
+
+def plan_place(
+    context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
+) -> Iterator[Motion | Rejection]:
+    """From home with the body to its place, open the hand, and back home."""
+    for found in _transits(context, body, pose, grasp, base, reach, call):
+        if isinstance(found, Rejection):
+            yield found
+            continue
+        empty, loaded = found
+        opened = context.robot.opening
+        yield Motion(
+            (
+                Path("arm", np.concatenate([loaded, reach.lift[::-1][1:]]), grasp.opening, body),
+                Grip((grasp.opening, opened), detach=body),
+                Path("arm", np.concatenate([reach.approach[::-1], empty[::-1]]), opened),
+            )
+        )
+
+
+def _transits(
+    context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
+) -> Iterator[tuple[Array, Array] | Rejection]:
+    """Arm paths from home to before the approach: with the hand empty and the body in place, and with it in hand.
+
+    One path usually serves both, so the loaded one is planned first; it is the harder.
+    """
+    others = {name: other for _, name, other in call.fluents if name != body}
+    stand = np.array(base.array)
+    out = reach.lift[-1]
+
+    def plan(arrangement: Arrangement, effort: int) -> Planned:
+        return plan_arm(arrangement, stand, context.home, out, context.robot, call.rng, call.deadline, effort=effort)
+
+    reached = context.conf(stand, context.home), context.conf(stand, out)
+    query = _Query(plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached)
+    with_body = {**others, body: pose}
+    for loaded in _attempts(context, others, grasp, query):
+        if isinstance(loaded, Rejection):
+            yield loaded
+            continue
+        among = context.collisions.arrangement(with_body)
+        if _free(among, query.confs(loaded)):
+            yield loaded, loaded
+            continue
+        for empty in _attempts(context, with_body, None, query):
+            yield empty if isinstance(empty, Rejection) else (empty, loaded)
+            break
+
+
+def _attempts(
+    context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query
+) -> Iterator[Array | Rejection]:
+    """Paths, or why there is none, with growing effort; ends when a failure is final."""
+    attachment = None if held is None else context.attachment(held)
+    arrangement = context.collisions.arrangement(poses, attachment)
+    for effort in range(HARDEST + 1):
+        planned = query.plan(arrangement, effort)
+        while planned.path is not None:
+            yield planned.path
+            planned = query.plan(arrangement, effort)
+        yield _diagnosed(context, poses, held, query, effort)
+        if planned.failure in (Failure.START, Failure.GOAL, Failure.LIMITS):
+            return
+
+
+def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int) -> Rejection:
+    """Name the movable bodies in the way: those that a path among the fixed bodies alone runs into."""
+    relaxed = query.plan(context.fixed_only(held), effort)
+    if relaxed.path is None:
+        failure = relaxed.failure or Failure.EXHAUSTED
+        ahead = _straight_ahead(context, held, query)
+        where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
+        ends = [end[:2] for end in query.ends]
+        gap = context.passage.narrow(ends[1]) if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any() else None
+        if gap is not None:
+            return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
+        return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
+    attachment = None if held is None else context.attachment(held)
+    confs = query.confs(relaxed.path)
+    blockers = tuple(
+        name
+        for name, pose in poses.items()
+        if not _free(context.collisions.arrangement({name: pose}, attachment, fixed=False), confs)
+    )
+    if not blockers:
+        return Rejection("no motion found")
+    return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
+
+
+def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:
+    """The fixed bodies that the straight way runs into."""
+    start, goal = query.ends
+    arrangement = context.fixed_only(held)
+    hits = [arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)]
+    return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
+
+
+def _free(arrangement: Arrangement, confs: Array) -> bool:
+    return all(arrangement.edge_free(a, b) for a, b in pairwise(confs))

@@ -1,0 +1,66 @@
+"""What is out of the arm's reach for certain."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tamp.geometric.context import Context
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.streams.flat import too_flat
+from tamp.geometric.streams.heights import too_high
+from tamp.stream import Call, Rejection
+
+PAD = 0.02
+"""How far the fingers reach beyond the tool's origin, metres."""
+
+
+def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool | Rejection:
+    """Whether any base pose in the room could bring any point of the arm to the body, and a hand around it.
+
+    False only when the contrary is proven.
+    """
+    flat = too_flat(context, body, pose)
+    if flat is not None:
+        return Rejection(flat)
+    return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
+
+
+def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
+    """Whether the arm could touch a box with corners `low` and `high` (3,) from some place in the room.
+
+    Necessary conditions: the shoulder stays at one height and over the room's rectangle grown by its offset, and the
+    base on the part of the floor to which its way is wide enough.
+    """
+    robot, room = context.robot, context.scene.room
+    shoulder, span = _shoulder(robot), arm_length(robot)
+    vertical = max(low[2] - shoulder[2], shoulder[2] - high[2], 0.0)
+    if vertical > span:
+        side = "high" if low[2] > shoulder[2] else "low"
+        lowest = np.array((*(low + high)[:2] / 2, low[2]))
+        measured = too_high(context, lowest) if side == "high" else None
+        most = f"too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m"
+        return Rejection(f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})")
+    offset = math.hypot(shoulder[0], shoulder[1])
+    horizontal = math.hypot(
+        max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),
+        max(low[1] - room.y[1] - offset, room.y[0] - offset - high[1], 0.0),
+    )
+    if math.hypot(horizontal, vertical) > span:
+        return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
+    gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
+    return True if gap is None else Rejection(f"out of reach ({gap.text})")
+
+
+def arm_length(robot: Robot) -> float:
+    """From the second joint to the finger tips of the arm stretched out, metres; an upper bound."""
+    pieces = [joint.origin for joint in robot.joints[2:]] + [robot.T_flange_hand, robot.T_hand_tool]
+    return sum(math.hypot(*piece.position) for piece in pieces) + PAD
+
+
+def _shoulder(robot: Robot) -> Array:
+    """Where the second joint is in the base's frame, (3,)."""
+    return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)

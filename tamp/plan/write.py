@@ -1,0 +1,291 @@
+"""A solution as a plan file: JSON with all that `tamp-verify` needs; its schema is plan.schema.json."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import json
+import platform
+import re
+from pathlib import Path
+from typing import Any
+
+from tamp.errors import InputError
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Reach
+from tamp.geometric.values import Path as Polyline
+from tamp.planner.recorder import Sample
+from tamp.planner.solution import Action, Solution
+from tamp.planner.timed_trajectories import Segment
+from tamp.system.outputs import write_whole
+
+PACKAGES = ("numpy", "numba", "ompl", "python-fcl", "pin", "EAIK", "toppra")
+"""Those whose versions can change a plan."""
+
+DIGITS = 9
+"""Decimals of the numbers in a plan file: nanometres."""
+
+
+def plan_document(solution: Solution) -> dict[str, Any]:
+    """The plan file's content. Only what stands under "timing" differs between two runs with one seed."""
+    problem = solution.problem
+    task = problem.stream_task.task
+    record = record_document(solution)
+    return {
+        "format": "tamp-plan",
+        "version": 1,
+        "inputs": {
+            "problem": _file(problem.files["problem"][0]),
+            "domain": _file(problem.files["domain"][0]),
+            "streams": _file(problem.files["streams"][0]),
+            "meshes": [_file(path) for path in problem.files["meshes"]],
+        },
+        "seed": solution.seed,
+        "options": {"algorithm": solution.algorithm, "samplers": dict(sorted(problem.samplers.items()))},
+        "versions": {
+            "tamp": _version("tamp"),
+            "python": platform.python_version(),
+            **{name: _version(name) for name in PACKAGES},
+        },
+        "robot": problem.scene.robot.model,
+        "objects": {name: list(types) for name, types in sorted(task.objects.items())},
+        "initial": [list(fact) for fact in sorted(task.initial) if fact[0] not in problem.complements],
+        "goal": problem.goal,
+        "values": {name: _value(value) for name, value in solution.values.items()},
+        "certified": [list(fact) for fact in solution.certified if fact[0] not in problem.complements],
+        "actions": [_action(action) for action in solution.plan],
+        "cost": solution.cost,
+        "duration": _number(solution.duration),
+        "statistics": _statistics(solution),
+        **({} if record is None else {"record": record}),
+        "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
+    }
+
+
+def record_document(solution: Solution) -> dict[str, Any] | None:
+    """What was tried: samples, the skeletons; None when it was not recorded."""
+    record = solution.record
+    if record is None:
+        return None
+    chosen = {value for value in solution.values.values() if isinstance(value, Pose | Grasp)}
+    return {
+        "samples": [_sample(sample, sample.value in chosen) for sample in record.samples],
+        "dropped": record.dropped,
+        "skeletons": [
+            {
+                "actions": list(attempt.actions),
+                "rounds": attempt.rounds,
+                "bound": attempt.bound,
+                "failures": list(attempt.failures),
+            }
+            for attempt in record.attempts
+        ],
+    }
+
+
+def _sample(sample: Sample, used: bool) -> dict[str, Any]:
+    return {
+        "stream": sample.stream,
+        "arguments": [_body(name) for name in sample.arguments],
+        **_value(sample.value),
+        "used": used,
+        "refusals": [
+            {"stream": stream, "reason": reason, "count": count}
+            for (stream, reason), count in sample.refusals.most_common()
+        ],
+    }
+
+
+def plan_text(solution: Solution) -> str:
+    """The plan file of a solved problem, as it is written.
+
+    Raises:
+        InputError: The solution has no plan, or a file that it was made from is gone.
+    """
+    if not solution.solved:
+        raise InputError("there is no plan to write")
+    text = json.dumps(plan_document(solution), indent=1, ensure_ascii=False, allow_nan=False)
+    return _compact(text) + "\n"
+
+
+def write_plan(solution: Solution, path: str | Path) -> Path:
+    """Write a solved problem's plan file, whole or not at all. Folders are made.
+
+    Raises:
+        InputError: The solution has no plan, or the file cannot be written.
+    """
+    target = Path(path)
+    content = plan_text(solution).encode()
+    try:
+        write_whole(target, content)
+    except OSError as error:
+        raise InputError(f"cannot write the plan: {error.strerror}", file=target) from error
+    return target
+
+
+def summary_document(solution: Solution) -> dict[str, Any]:
+    """What `--json` prints: the outcome, and the plan without its trajectories."""
+    return {
+        "outcome": solution.outcome.name.lower(),
+        "message": solution.outcome.value,
+        "explanation": list(solution.explanation),
+        "tried": [
+            {
+                "action": tally.action,
+                "stream": tally.stream,
+                "tries": tally.tries,
+                "successes": tally.successes,
+                "reasons": dict(tally.reasons.most_common()),
+            }
+            for tally in solution.tallies
+        ],
+        "problem": solution.problem.name,
+        "seed": solution.seed,
+        "actions": [
+            {
+                "name": action.name,
+                "objects": list(action.objects),
+                "arguments": list(action.arguments),
+                "start": _number(action.start),
+                "duration": _number(action.trajectory.duration),
+                "cost": action.cost,
+            }
+            for action in solution.plan
+        ],
+        "cost": solution.cost,
+        "duration": _number(solution.duration),
+        **_optimization(solution),
+        "statistics": _statistics(solution),
+        "warnings": list(solution.warnings),
+        "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
+    }
+
+
+def _optimization(solution: Solution) -> dict[str, Any]:
+    if not solution.improvements:
+        return {}
+    steps = [
+        {"seconds": round(i.seconds, 6), "cost": i.cost, "actions": i.actions, "duration": _number(i.duration)}
+        for i in solution.improvements
+    ]
+    return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
+
+
+def _statistics(solution: Solution) -> dict[str, Any]:
+    effort = solution.effort
+    return {
+        "searches": effort.searches,
+        "expanded": effort.expanded,
+        "skeletons": effort.skeletons,
+        **({"refuted": effort.refuted} if effort.refuted else {}),
+        "streams": {
+            name: {
+                "calls": statistics.calls,
+                "successes": statistics.successes,
+                "rejections": dict(sorted(statistics.reasons.items())),
+            }
+            for name, statistics in solution.statistics.items()
+        },
+    }
+
+
+def _action(action: Action) -> dict[str, Any]:
+    return {
+        "name": action.name,
+        "arguments": list(action.arguments),
+        "start": _number(action.start),
+        "duration": _number(action.trajectory.duration),
+        "cost": action.cost,
+        "segments": [_segment(segment) for segment in action.trajectory.segments],
+    }
+
+
+def _segment(segment: Segment) -> dict[str, Any]:
+    shared = {"part": segment.part, "times": _numbers(segment.times)}
+    if segment.part != "gripper":
+        return {
+            **shared,
+            "positions": _rows(segment.positions),
+            "opening": _number(segment.opening),
+            "holding": _body(segment.holding),
+        }
+    document: dict[str, Any] = {**shared, "opening": _numbers(segment.positions[:, 0])}
+    if segment.attach is not None:
+        document["attach"] = {"body": _body(segment.attach.body), "T_tool_body": _pose(segment.attach.T_tool_body)}
+    if segment.detach is not None:
+        document["detach"] = _body(segment.detach)
+    return document
+
+
+def _value(value: object) -> dict[str, Any]:
+    match value:
+        case Pose():
+            return {"type": "pose", **_pose(value)}
+        case Grasp():
+            opening = _number(value.opening)
+            held = {"body": _body(value.body), "T_tool_body": _pose(value.T_tool_body), "opening": opening}
+            return {"type": "grasp", **held}
+        case BaseConf():
+            return {"type": "base-conf", "base": [_number(number) for number in value.array]}
+        case Reach():
+            return {"type": "reach", "approach": _rows(value.approach), "lift": _rows(value.lift)}
+        case Motion():
+            return {"type": "motion", "segments": [_motion_segment(item) for item in value.segments]}
+        case _:
+            return {"type": "value", "text": repr(value)}
+
+
+def _motion_segment(item: Polyline | Grip) -> dict[str, Any]:
+    if isinstance(item, Polyline):
+        points = _rows(item.points)
+        return {"part": item.part, "points": points, "opening": _number(item.opening), "holding": _body(item.holding)}
+    attach = None if item.attach is None else _body(item.attach.body)
+    return {
+        "part": "gripper",
+        "opening": [_number(width) for width in item.opening],
+        "attach": attach,
+        "detach": _body(item.detach),
+    }
+
+
+def _body(name: str | None) -> str | None:
+    """A body as the plan's objects have it: PDDL's names are lower case."""
+    return None if name is None else name.lower()
+
+
+def _pose(pose: Pose) -> dict[str, list[float]]:
+    return {
+        "position": [_number(number) for number in pose.position],
+        "quaternion": [round(number, 12) for number in pose.quaternion],
+    }
+
+
+def _number(number: float) -> float:
+    return round(float(number), DIGITS) + 0.0
+
+
+def _numbers(row: Array) -> list[float]:
+    return [_number(number) for number in row]
+
+
+def _rows(rows: Array) -> list[list[float]]:
+    return [_numbers(row) for row in rows]
+
+
+def _file(path: Path) -> dict[str, str]:
+    try:
+        return {"path": str(path), "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+    except OSError as error:
+        raise InputError(f"it cannot be read any more: {error.strerror}", file=path) from error
+
+
+def _version(package: str) -> str:
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return "unknown"
+
+
+def _compact(text: str) -> str:
+    """Rows of numbers on one line each."""
+    return re.sub(r"\[\s+([-\d.,e\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", text)

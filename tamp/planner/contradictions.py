@@ -1,0 +1,96 @@
+"""Whether a plan's states bear out what classifiers said of its poses, each asked with other bodies at their start."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from tamp.geometric.scene.classifier import Classifier
+from tamp.geometric.scene.pose import Pose
+from tamp.planner.problem import Problem
+from tamp.relations.observed import moved, observe
+from tamp.symbolic.algorithms.result import Result
+from tamp.symbolic.pddl.relations import Relation
+from tamp.symbolic.pddl.structs import Action, And, Domain, Fact
+
+MOST = 3
+"""Contradictions that are told."""
+
+
+@dataclass(frozen=True)
+class _State:
+    """The poses' names by the names of bodies that stand, after so many actions; PDDL's names."""
+
+    number: int
+    at: Mapping[str, str]
+
+
+def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
+    """What classifiers say in the states of a plan of relations that they said otherwise when its poses were drawn.
+
+    One that looks at its arguments alone never does; one that looks at what is around them may.
+    """
+    if not problem.classifiers or not result.actions:
+        return ()
+    task = problem.stream_task.task
+    found: dict[str, None] = {}
+    for name, classifier in problem.classifiers.items():
+        relation = problem.relations[name]
+        for state in _states(task.domain, task.initial, result):
+            last = state.number == len(result.actions)
+            stated = {*result.certified, *(task.initial if last else ())}  # of the others no condition need ask
+            for words in _otherwise(problem, relation, classifier, state, stated, result.objects.values):
+                found[
+                    f"after {state.number} actions ({' '.join((name, *words))}) is not what it was when its pose was "
+                    f"drawn: the classifier of '{name}' looks at bodies that it is not asked about"
+                ] = None
+    return tuple(found)[:MOST]
+
+
+def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_State]:
+    """The states after each action, as far as its effects say plainly where bodies stand."""
+    at = {fact[1]: fact[2] for fact in initial if fact[0] == "at-pose" and len(fact) == 3}
+    actions = {action.name: action for action in domain.actions}
+    states: list[_State] = []
+    for number, ground in enumerate(result.actions, 1):
+        at = _after(actions[ground.name], ground.arguments, at)
+        states.append(_State(number, at))
+    return states
+
+
+def _after(action: Action, arguments: tuple[str, ...], at: Mapping[str, str]) -> dict[str, str]:
+    table = dict(zip((one.name for one in action.parameters), arguments, strict=True))
+    after = dict(at)
+    plain = [one for one in action.effects if one.atom.predicate == "at-pose" and one.condition == And(())]
+    for effect in sorted(plain, key=lambda one: one.adds):
+        body, pose = (table.get(term, term) for term in effect.atom.terms)
+        if effect.adds:
+            after[body] = pose
+        elif after.get(body) == pose:
+            del after[body]
+    return after
+
+
+def _otherwise(
+    problem: Problem,
+    relation: Relation,
+    classifier: Classifier,
+    state: _State,
+    stated: Collection[Fact],
+    values: Mapping[str, object],
+) -> list[tuple[str, ...]]:
+    """Arguments of which the classifier says in a state what the plan's facts deny."""
+    task, scene = problem.stream_task.task, problem.scene
+    words = {name.lower(): name for name in scene.movable}
+    poses = {words[body]: pose for body, name in state.at.items() if isinstance(pose := values[name], Pose)}
+    held = next((name for name in scene.movable if name not in poses), None)
+    seen = observe(relation, classifier, moved(scene, poses, held), task.domain, task.objects, task.initial, state.at)
+    false = {
+        one: next((other for other in problem.complements if other.rstrip("~") == f"not-{one}"), "")
+        for one in relation.predicates
+    }
+    wrong = [fact for fact in seen.fails if fact in stated]
+    wrong += [fact for fact in seen.holds if (false[fact[0]], *fact[1:]) in stated]
+    first = relation.facts[0]
+    places = [1 + first.terms.index(variable) for variable in relation.arguments]
+    return sorted({tuple(fact[place] for place in places) for fact in wrong if fact[0] == first.predicate})

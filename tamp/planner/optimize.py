@@ -1,0 +1,124 @@
+"""Planning that goes on after the first plan: fewer actions, then shorter motions, until the time is up."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from random import Random
+
+from tamp.errors import InputError
+from tamp.planner.assembly import assemble, ended_early, random_streams, timed
+from tamp.planner.problem import Problem
+from tamp.planner.recorder import Recorder
+from tamp.planner.solution import Improvement, Solution
+from tamp.planner.timed_trajectories import Timed
+from tamp.symbolic.algorithms.anytime import solve_anytime
+from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result
+from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.interrupts import Alarm
+
+LEAST = 1e-3
+"""The part by which the motion must be shorter to count as an improvement."""
+
+MANY = 20_000
+"""Timed paths that are kept."""
+
+
+def optimize(
+    problem: Problem,
+    *,
+    max_time: float = 30.0,
+    seed: int = 0,
+    progress: Progress | None = None,
+    improved: Callable[[Solution], None] | None = None,
+    record: bool = False,
+) -> Solution:
+    """Plan by the algorithm "adaptive", then improve the plan until the time is up or the user interrupts.
+
+    The same seed gives the same sequence of improvements; how many there are depends on the clock.
+
+    Args:
+        problem: From `load_problem`.
+        max_time: Seconds, all of which are used.
+        seed: Of all randomness.
+        progress: Called now and then with what was done so far.
+        improved: Called with each plan that is better than those before it.
+        record: As for `solve`.
+
+    Returns:
+        The best plan, with all improvements and the lower bound of the cost; as from `solve` when there is none.
+
+    Raises:
+        InputError: A time that is not positive.
+    """
+    if not max_time > 0.0:
+        raise InputError(f"the time must be positive, not {max_time:g}")
+    deadline = Deadline(max_time)
+    recorder = Recorder() if record else None
+    task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
+    known: Timed = {}
+    best: list[Solution] = []
+
+    def better(result: Result) -> bool:
+        began = deadline.elapsed()
+        if len(known) > MANY:
+            known.clear()
+        plan = timed(problem, result, known)
+        now = deadline.elapsed()
+        seconds = {"total": now, "timing": now - began}
+        found = assemble(problem, _frozen(result), plan, seed, "adaptive", seconds, recorder)
+        if best and not improves(found, best[0]):
+            return False
+        step = Improvement(now, found.cost, len(found.plan), found.duration)
+        if not best:
+            best.append(replace(found, improvements=(step,)))
+            return True
+        best[0] = replace(found, improvements=(*best[0].improvements, step), bound=best[0].bound)
+        if improved is not None:
+            improved(best[0])
+        return True
+
+    def bounded(bound: float) -> None:
+        best[0] = replace(best[0], bound=bound)
+        if improved is not None:
+            improved(best[0])
+
+    def plan() -> Result:
+        return solve_anytime(
+            task, random_streams(seed), deadline, progress or _silent, better, bounded, Random(seed)
+        )  # fmt: skip
+
+    outcome = Outcome.TIMEOUT
+    try:
+        result = Alarm(deadline, strangers=STRANGERS).run(plan)
+        if not best:
+            seconds = {"total": deadline.elapsed(), "timing": 0.0}
+            return assemble(problem, result, (), seed, "adaptive", seconds, recorder)
+    except OutOfTime:
+        pass
+    except KeyboardInterrupt:
+        outcome = Outcome.INTERRUPTED
+    if not best:
+        return ended_early(problem, outcome, seed, "adaptive", deadline.elapsed(), recorder)
+    return replace(best[0], seconds={**best[0].seconds, "total": deadline.elapsed()})
+
+
+def improves(new: Solution, old: Solution) -> bool:
+    """Whether a plan is better: cheaper, or as cheap with fewer actions, or with those of shorter motion."""
+    if not math.isclose(new.cost, old.cost, rel_tol=1e-9, abs_tol=1e-9):
+        return new.cost < old.cost
+    if len(new.plan) != len(old.plan):
+        return len(new.plan) < len(old.plan)
+    return new.duration < (1.0 - LEAST) * old.duration
+
+
+def _frozen(result: Result) -> Result:
+    """The counts as they are now: the run goes on counting."""
+    return replace(result, statistics=copy.deepcopy(result.statistics), effort=replace(result.effort))
+
+
+def _silent(effort: Effort) -> None:
+    pass

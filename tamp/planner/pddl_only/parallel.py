@@ -1,0 +1,78 @@
+"""A symbolic problem by several searches at a time, each in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any
+
+from tamp.planner.pddl_only.problem import SymbolicProblem
+from tamp.planner.pddl_only.solve import SymbolicSolution, choose, solve_symbolic
+from tamp.symbolic.algorithms.result import Outcome
+from tamp.symbolic.search.heuristics.loops.selection import prepare as prepare_loops
+from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
+from tamp.symbolic.search.operators import NONE, Operator
+from tamp.system.deadline import Deadline
+from tamp.system.race import Tell, race
+
+ANY = (
+    ("greedy", "ff+landmarks"), ("wastar", "ff+landmarks"), ("eager", "ff"), ("greedy", "hadd"), ("wastar", "hadd"),
+)  # fmt: skip
+"""Searches that differ in what they find easy."""
+
+OPTIMAL = (("astar", "lmcut"), ("astar", "hmax"), ("astar", "blind"))
+"""Those whose plans are the cheapest."""
+
+
+def portfolio(search: str | None, heuristic: str | None, jobs: int) -> list[tuple[str, str]]:
+    """The search that was asked for, and up to `jobs - 1` others that promise as much."""
+    first = choose(search, heuristic)
+    optimal = first[0] == "astar" and ADMISSIBLE.issuperset(first[1].split("+"))
+    return list(dict.fromkeys((first, *(OPTIMAL if optimal else ANY))))[:jobs]
+
+
+def solve_symbolic_parallel(
+    problem: SymbolicProblem, *, jobs: int, search: str | None, heuristic: str | None, max_time: float
+) -> SymbolicSolution:
+    """Plan by several searches; the first plan, or proof that there is none, counts.
+
+    Args:
+        problem: From `load_symbolic`.
+        jobs: Most processes at a time; there are only as many as there are different searches for the purpose.
+        search: Of the first one, as for `solve_symbolic`; if it is optimal, so are the others.
+        heuristic: Of the first one.
+        max_time: Seconds.
+
+    Raises:
+        InputError: As for `solve_symbolic`.
+    """
+    if jobs == 1:
+        return solve_symbolic(problem, search=search, heuristic=heuristic, max_time=max_time)
+    prepare_loops()
+    deadline = Deadline(max_time)
+    pairs = portfolio(search, heuristic, jobs)
+
+    def member(search: str, heuristic: str) -> Callable[[Tell], dict[str, Any]]:
+        def run(tell: Tell) -> dict[str, Any]:
+            solution = solve_symbolic(problem, search=search, heuristic=heuristic, max_time=deadline.left())
+            solution = replace(solution, plan=tuple(map(_bare, solution.plan)))
+            return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+
+        return run
+
+    def ends(number: int, answer: dict[str, Any]) -> bool:
+        return answer["outcome"] in (Outcome.SOLVED, Outcome.INFEASIBLE)
+
+    try:
+        found = race([member(*pair) for pair in pairs], ends, deadline)
+        outcome = Outcome.TIMEOUT
+    except KeyboardInterrupt:
+        found, outcome = None, Outcome.INTERRUPTED
+    if found is None:
+        return SymbolicSolution(problem, outcome, *pairs[0], seconds={"total": deadline.elapsed()})
+    return SymbolicSolution(problem=problem, **found.answer)
+
+
+def _bare(operator: Operator) -> Operator:
+    """What of an operator a report reads."""
+    return Operator(operator.name, operator.arguments, NONE, NONE, NONE, NONE, operator.cost)

@@ -1,0 +1,234 @@
+"""From files to a problem: the scene, the task in symbols, and the streams tied to their functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tamp.errors import InputError
+from tamp.geometric.context import Context
+from tamp.geometric.loading.load import LoadedProblem, load_scene
+from tamp.geometric.loading.overlaps import check_overlaps
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.samplers.choice import Grounding, Registry, mix
+from tamp.geometric.scene.classifier import Classifier
+from tamp.geometric.scene.scene import Scene
+from tamp.geometric.streams.registry import STREAMS
+from tamp.geometric.values import Grasp
+from tamp.planner.initial_state import initial_state
+from tamp.planner.missing_function import without_function
+from tamp.planner.own_relations import decided
+from tamp.planner.served import Served, line_of
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.algorithms.costs import BoundFunction
+from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.lint import lint
+from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.symbolic.pddl.relations import Relation
+from tamp.symbolic.pddl.structs import StreamFile, Task
+from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
+from tamp.system.files import find_domain
+
+load_compiled_loops()
+
+METRIC = "minimize total-cost"
+"""The metric that a problem may name."""
+
+STEERINGS = ("se2", "reeds-shepp")
+"""How the base may move: in any direction, or like a car."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything that planning needs.
+
+    Attributes:
+        name: The problem's.
+        scene: Its geometry.
+        context: What its streams share.
+        stream_task: The task in symbols with its streams.
+        goal: The goal's text.
+        files: Input files by role: "problem", "domain", "streams", and "mesh" ones.
+        samplers: Which sampler serves which relation.
+        warnings: What was repaired or looks odd.
+        classifiers: By relation of the user's own, what says whether it holds.
+        relations: The same relations: their facts and of what they are asked.
+        complements: Predicates of the task that the user's files do not have.
+    """
+
+    name: str
+    scene: Scene
+    context: Context
+    stream_task: StreamTask
+    goal: str
+    files: Mapping[str, tuple[Path, ...]]
+    samplers: Mapping[str, str]
+    warnings: tuple[str, ...]
+    classifiers: Mapping[str, Classifier] = field(default_factory=dict[str, Classifier])
+    relations: Mapping[str, Relation] = field(default_factory=dict[str, Relation])
+    complements: frozenset[str] = frozenset()
+
+
+def load_problem(
+    problem: str | Path,
+    domain: str | Path | None = None,
+    *,
+    streams: str | Path | None = None,
+    samplers: Mapping[str, str] | None = None,
+    groundings: Mapping[str, Grounding] | None = None,
+    registry: Registry | None = None,
+    functions: Mapping[str, Callable[..., Any]] | None = None,
+    steering: str = "se2",
+    scene: Scene | None = None,
+    holding: Grasp | None = None,
+) -> Problem:
+    """Load a problem.
+
+    Args:
+        problem: A YAML file, or the name of a shipped problem.
+        domain: A PDDL file or the name of a shipped domain; by default the one that the problem names.
+        streams: The streams file; by default `<domain>.streams.pddl` beside the domain.
+        samplers: Relation to the sampler that serves it, over those that the problem names: NAME, NAME:mixed or
+            NAME:alone. Hand-made ones are alone by themselves, others are mixed with the first hand-made one.
+        groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
+            samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
+            served to the streams sample-<relation> and test-<relation>.
+        registry: Further samplers: relation to name to what makes the object; also of files (`samplers.choice`).
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
+            f(context, *inputs).
+        steering: How the base moves: "se2" or "reeds-shepp".
+        scene: Where things are by now, instead of where the file has them; and what is in the hand by now, `holding`.
+
+    Raises:
+        InputError: Anything wrong with the files or the names, with its place.
+    """
+    if steering not in STEERINGS:
+        raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
+    loaded = load_scene(problem)
+    if scene is not None:
+        loaded = replace(loaded, scene=scene)
+    domain_path = _domain_path(loaded, domain)
+    parsed = parse_domain(read_pddl(domain_path), domain_path)
+    streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
+    declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
+    start = initial_state(loaded.scene, parsed, holding)
+    goal = parse_goal(
+        loaded.goal.text, parsed, start.objects, loaded.path,
+        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+    )  # fmt: skip
+    for passage in loaded.init:
+        start.facts |= parse_facts(
+            passage.text, parsed, start.objects, loaded.path,
+            line_offset=passage.line - 1, column_offset=passage.column - 1,
+        )  # fmt: skip
+    _check_metric(loaded)
+    served = Served.of(loaded, samplers or {}, groundings or {}, registry or {})
+    mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
+    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering, holding)
+    if scene is None:  # what is seen may touch
+        check_overlaps(loaded)
+    _check_start(loaded, context)
+    bound = _bind(declared, parsed, context, {**served.functions(declared, parsed), **(functions or {})})
+    _refuse_decided(declared)
+    known = decided(served, declared, parsed, goal, start.objects, start.facts, context)
+    costs = tuple(
+        BoundFunction(function, partial((functions or {})[function.name], context))
+        for function in declared.functions
+        if function.name in (functions or {})
+    )
+    initial = frozenset(start.facts) | known.facts
+    task = Task(loaded.scene.name, known.domain, start.objects, initial, known.goal, {})
+    return Problem(
+        name=loaded.scene.name,
+        scene=loaded.scene,
+        context=context,
+        stream_task=StreamTask(task, (*bound, *known.streams), start.values, costs),
+        goal=" ".join(loaded.goal.text.split()),
+        files={
+            "problem": (loaded.path.resolve(),),
+            "domain": (domain_path.resolve(),),
+            "streams": (streams_path.resolve(),),
+            "meshes": tuple(path.resolve() for path in loaded.meshes),
+        },
+        samplers={relation: choice.text for relation, choice in served.choices.items()},
+        warnings=(
+            *loaded.warnings,
+            *_unused(functions or {}, declared),
+            *lint(parsed, declared, goal, start.facts),
+            *known.warnings,
+        ),
+        classifiers=known.classifiers,
+        relations=known.relations,
+        complements=known.complements,
+    )
+
+
+def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
+    if domain is not None:
+        return find_domain(domain)
+    if loaded.domain is None:
+        raise loaded.error(
+            "no domain", remedy="Name one in the file (domain: cupboard) or on the command line, before the problem"
+        )
+    try:
+        return find_domain(loaded.domain, loaded.path.parent)
+    except InputError as error:
+        raise error.at(loaded.path, line_of(loaded, "domain")) from None
+
+
+def _check_metric(loaded: LoadedProblem) -> None:
+    metric = loaded.metric
+    if metric is not None and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC:
+        remedy = "The one that there is: (minimize (total-cost))"
+        raise InputError(f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy)
+
+
+def _bind(
+    declared: StreamFile, domain: Any, context: Context, functions: Mapping[str, Callable[..., Any]]
+) -> tuple[BoundStream, ...]:
+    known = {**STREAMS, **functions}
+    bound: list[BoundStream] = []
+    for stream in declared.streams:
+        if stream.name not in known:
+            raise without_function(stream, declared.file, known)
+        types = output_types(stream, domain)
+        outputs = tuple(types[name] for name in stream.outputs)
+        bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
+    return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
+
+
+def _always(*inputs: Any, call: Any) -> bool:
+    return True
+
+
+def _refuse_decided(declared: StreamFile) -> None:
+    for predicate in declared.predicates:
+        place = predicate.place
+        raise InputError(
+            f"'{predicate.name}' is a :predicate, which scenes do not have",
+            file=declared.file,
+            line=place.line if place else None,
+            column=place.column if place else None,
+            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+        )
+
+
+def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
+    names = [one.name for one in (*declared.streams, *declared.functions)]
+    return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
+
+
+def _check_start(loaded: LoadedProblem, context: Context) -> None:
+    scene = loaded.scene
+    conf = context.conf(scene.robot.base, context.home)
+    held = context.holding and context.attachment(context.holding)
+    poses = {name: scene.bodies[name].pose for name in scene.movable if held is None or name != held.body}
+    if (hit := context.collisions.arrangement(poses, held).hits(conf)) is not None:
+        link, other = hit
+        outside = {link, other} & set(scene.bodies)
+        remedy = "Move its base, or what stands there" if outside else "Give it another 'arm:'"
+        raise loaded.error(f"the robot starts in collision: {link} hits {other}", "robot", remedy)

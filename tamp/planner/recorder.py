@@ -1,0 +1,125 @@
+"""What the streams of a run drew and refused, for those who want to see it. Planning is the same with it or without."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.values import Grasp
+from tamp.stream import Call, Rejection, Wild
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.algorithms.result import Attempt, StreamTask
+
+LIMIT = 2000
+"""Samples that are kept of a run, beside those of the plan,"""
+
+EACH = 200
+"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves room for others."""
+
+
+@dataclass(eq=False)
+class Sample:
+    """A pose or a grasp that a stream drew or looked at.
+
+    Attributes:
+        stream: The one that drew it.
+        arguments: Names of the objects that it was drawn for, the body first.
+        value: T_world_body, or a grasp.
+        refusals: Who said no to it, and why: (stream, reason), counted.
+    """
+
+    stream: str
+    arguments: tuple[str, ...]
+    value: Pose | Grasp
+    refusals: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
+
+
+@dataclass(frozen=True)
+class Record:
+    """What was tried in a run.
+
+    Attributes:
+        samples: In the order in which they were drawn.
+        dropped: How many more there were.
+        attempts: The skeletons, in the order in which they were found.
+    """
+
+    samples: tuple[Sample, ...]
+    dropped: int
+    attempts: tuple[Attempt, ...]
+
+
+class Recorder:
+    """Listens to a run's streams; of what they say nothing is changed."""
+
+    def __init__(self, limit: int = LIMIT, each: int = EACH) -> None:
+        self.samples: list[Sample] = []
+        self.dropped = 0
+        self._limit, self._each = limit, each
+        self._known: dict[Pose | Grasp, Sample] = {}
+        self._late: dict[Pose | Grasp, Sample] = {}
+        self._counts: Counter[tuple[str, str, bool]] = Counter()
+
+    def watched(self, task: StreamTask) -> StreamTask:
+        """The same task with streams that are listened to."""
+        return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
+
+    def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
+        """What was heard, all of the values that the plan uses included."""
+        late = [self._late[value] for value in used if isinstance(value, Pose | Grasp) and value in self._late]
+        return Record((*self.samples, *late), self.dropped - len(late), attempts)
+
+    def _watched(self, stream: BoundStream) -> BoundStream:
+        def function(*inputs: Any, call: Call) -> Any:
+            made = stream.function(*inputs, call=replace(call, refused=partial(self._refused, stream.name, inputs)))
+            if stream.is_test:
+                self._heard(stream.name, inputs, made)
+                return made
+            return self._drawn(stream.name, inputs, made)
+
+        return replace(stream, function=function)
+
+    def _drawn(self, stream: str, inputs: tuple[Any, ...], made: Iterable[Any]) -> Iterator[Any]:
+        for value in made:
+            self._heard(stream, inputs, value)
+            yield value
+
+    def _heard(self, stream: str, inputs: tuple[Any, ...], value: Any) -> None:
+        if isinstance(value, Wild):
+            value = value.value
+        if isinstance(value, Pose | Grasp):
+            self._sample(stream, inputs, value, refused=False)
+        elif isinstance(value, Rejection):
+            for kind in (Pose, Grasp):  # the first one is what the stream is about, others are those in its way
+                subject = next((part for part in inputs if isinstance(part, kind)), None)
+                sample = None if subject is None else self._known.get(subject) or self._late.get(subject)
+                if sample is not None:
+                    sample.refusals[stream, value.reason] += 1
+
+    def _refused(self, stream: str, inputs: tuple[Any, ...], pose: Pose, reason: str) -> None:
+        """A generator's own proposal that its stream did not take."""
+        sample = self._sample(stream, inputs, pose, refused=True)
+        if sample is not None:
+            sample.refusals[stream, reason] += 1
+
+    def _sample(self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool) -> Sample | None:
+        if value in self._known:
+            return self._known[value]
+        names = tuple(part for part in inputs if isinstance(part, str))
+        if not names:
+            return None
+        sample = Sample(stream, names, value)
+        kind = (stream, names[0], refused)
+        if len(self.samples) >= self._limit or self._counts[kind] >= self._each:
+            self.dropped += 1
+            if not refused:  # the plan may come to use it
+                self._late[value] = sample
+            return None
+        self._counts[kind] += 1
+        self._known[value] = sample
+        self.samples.append(sample)
+        return sample

@@ -1,0 +1,229 @@
+"""A solution in words."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable
+
+from tamp.errors import printable
+from tamp.planner.problem import Problem
+from tamp.planner.solution import Action, Solution
+from tamp.planner.timed_trajectories import Segment
+from tamp.symbolic.algorithms.result import Outcome
+from tamp.symbolic.pddl.structs import And
+
+WIDTH = 110
+"""Columns of the longest line that is not wrapped."""
+
+MOST = 8
+"""Lines about what failed."""
+
+STANDING = ("supported", "contained")
+"""Predicates that say where a body is; one of the user's own may speak of a place where it is not."""
+
+PARTS = {
+    "motion": ("plan-",),
+    "ik": ("inverse-kinematics",),
+    "grasps": ("sample-grasp",),
+    "placements": ("sample-",),
+    "tests": ("test-",),
+}
+"""Parts of the time in the summary, by the beginning of the streams' names; the first that fits."""
+
+
+APART = ("search", "timing", "explaining", "other tries")
+"""Parts of the time that are no streams'."""
+
+
+def headline(problem: Problem) -> str:
+    """One line about the problem."""
+    goal = problem.stream_task.task.goal
+    goals = len(goal.parts) if isinstance(goal, And) else 1
+    movable = len(problem.scene.movable)
+    return (
+        f"{printable(problem.name)}: {_count(goals, 'goal')}, "
+        f"{movable} movable of {_count(len(problem.scene.bodies), 'body')}, {problem.scene.robot.model}"
+    )
+
+
+def summary(solution: Solution, loading: float = 0.0) -> str:
+    """What the command line prints when planning has ended, after so many seconds before it began."""
+    lines = [f"warning: {warning}" for warning in solution.warnings]
+    total = solution.seconds.get("total", 0.0)
+    if solution.solved:
+        count = _count(len(solution.plan), "action")
+        moving = f"{solution.duration:.1f} s of motion"
+        lines.append(f"Solved in {total:.2f} s: {count}, {moving}, cost {solution.cost:g}")
+        lines += ["", *_rows(solution)] if solution.plan else ["  the goal holds at the start"]
+    else:
+        lines += _no_plan(solution, total)
+    if solution.improvements and solution.bound is not None:
+        better = _count(len(solution.improvements) - 1, "improvement")
+        lines += [
+            "",
+            f"  {better}; lower bound of the cost {solution.bound:g}, gap {100 * (solution.gap or 0.0):.0f} %",
+        ]
+    return "\n".join([*lines, *_tried(solution), "", *_effort(solution, loading)])
+
+
+def improvement(solution: Solution) -> str:
+    """One line about the latest improvement."""
+    latest = solution.improvements[-1]
+    count = _count(latest.actions, "action")
+    line = f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    if solution.bound is None or solution.gap is None:
+        return line
+    return f"{line}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
+
+
+def _no_plan(solution: Solution, total: float) -> list[str]:
+    sentence = {
+        Outcome.TIMEOUT: f"No plan in {total:.1f} s",
+        Outcome.INTERRUPTED: f"Interrupted after {total:.1f} s, no plan yet",
+    }.get(solution.outcome, solution.outcome.value)
+    if len(solution.explanation) == 1:
+        mark = "." if solution.outcome is Outcome.INFEASIBLE else ":"
+        return [f"{sentence}{mark} {solution.explanation[0]}"]
+    return [f"{sentence}{':' if solution.explanation else '.'}", *(f"  {line}" for line in solution.explanation)]
+
+
+def _tried(solution: Solution) -> list[str]:
+    """What failed most, by action and stream, in columns."""
+    rows = [tally for tally in solution.tallies if tally.failures][:MOST]
+    if not rows:
+        return []
+    title = "what was tried for"
+    actions = max(len(title), *(len(tally.action) for tally in rows))
+    streams = max(len(tally.stream) for tally in rows)
+    lines = ["", f"  {title:{actions}}  {'by':{streams}}  {'worked':>15}   why not"]
+    for tally in rows:
+        worked = f"{tally.successes:,} of {tally.tries:,}"
+        reasons = ", ".join(f"{count:,} {reason}" for reason, count in tally.reasons.most_common(3))
+        lines.append(f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}")
+    return lines
+
+
+def _rows(solution: Solution) -> list[str]:
+    """The actions in columns: number, name, bodies, where, how long."""
+    places = _places(solution)
+    rows: list[tuple[str, str, str]] = []
+    for action in solution.plan:
+        bases = [segment for segment in action.trajectory.segments if segment.part == "base"]
+        where = _move(bases, first=not rows) if bases else _manipulated(action, places)
+        what = [name for name in action.objects if name not in where.split()]
+        rows.append((action.name, " ".join(what), where))
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    columns = ["  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)) for row in rows]
+    durations = [f"{action.trajectory.duration:5.1f} s" for action in solution.plan]
+    return [
+        f"  {number:2d}  {row}  {duration}"
+        for number, (row, duration) in enumerate(zip(columns, durations, strict=True), start=1)
+    ]
+
+
+def _places(solution: Solution) -> dict[tuple[str, str], str]:
+    """Where a body at a pose is, by their names: what a fact such as (supported mug p1 table) says of the two."""
+    problem = solution.problem
+    scene = problem.scene
+    known = {place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)}
+    places: dict[tuple[str, str], str] = {}
+    facts = (*sorted(problem.stream_task.task.initial), *solution.certified)
+    for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
+        if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
+            name = known[fact[3]]
+            places.setdefault((fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}")
+    return places
+
+
+def _manipulated(action: Action, places: dict[tuple[str, str], str]) -> str:
+    """Where a body is taken from, or put."""
+    names = action.arguments
+    where = next((places[body, pose] for body in names for pose in names if (body, pose) in places), "")
+    taken = any(segment.attach is not None for segment in action.trajectory.segments)
+    return f"from {where.partition(' ')[2]}" if where and taken else where
+
+
+def _move(segments: list[Segment], first: bool) -> str:
+    start = f"{_base(segments[0], 0)} " if first else ""
+    return f"{start}-> {_base(segments[-1], -1)}"
+
+
+def _base(segment: Segment, index: int) -> str:
+    x, y, yaw = segment.positions[index]
+    degrees = math.degrees(math.remainder(float(yaw), 2 * math.pi))
+    return f"({x + 0.0:.2f}, {y + 0.0:.2f}, {degrees + 0.0:.0f}°)"
+
+
+def _effort(solution: Solution, loading: float) -> list[str]:
+    total = max(solution.seconds.get("total", 0.0), 1e-9)
+    parts: dict[str, float] = {}
+    for name, seconds in solution.seconds.items():
+        part = name if name in APART else _part(name)
+        if part is not None:
+            parts[part] = parts.get(part, 0.0) + seconds
+    rest = "improving" if solution.improvements else "other"
+    times = [f"{part} {share} %" for part, share in time_shares(parts, total, rest)]
+    passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
+    effort = solution.effort
+    searched = [
+        _count(effort.skeletons, "skeleton"),
+        _count(effort.searches, "search", "searches"),
+        f"{_count(effort.expanded, 'state')} expanded",
+        *([f"{_count(effort.refuted, 'plan')} dropped in the replay"] if effort.refuted else ()),
+    ]
+    samples: list[str] = []
+    for name, statistics in solution.statistics.items():
+        if statistics.calls:
+            reasons = ", ".join(f"{count} {reason}" for reason, count in statistics.reasons.most_common(3))
+            kept = _glued(f"{name} {statistics.successes} of {statistics.calls}")
+            samples.append(f"{kept}{f' ({reasons})' if reasons else ''}")
+    return [
+        *_listed("time", map(_glued, times), passed),
+        *_listed("search", map(_glued, searched)),
+        *_listed("samples", samples),
+    ]
+
+
+def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
+    """Whole percents of the time that add up to a hundred, the largest part first; `rest` is what no part claims."""
+    told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
+    told[rest] = max(0.0, total - sum(told.values()))
+    whole = max(total, sum(told.values()))
+    exact = {part: 100.0 * seconds / whole for part, seconds in told.items()}
+    shares = {part: math.floor(share) for part, share in exact.items()}
+    nearest = sorted(exact, key=lambda part: shares[part] - exact[part])
+    for part in nearest[: 100 - sum(shares.values())]:
+        shares[part] += 1
+    order = sorted(shares, key=lambda part: (part == rest, -exact[part]))
+    return [(part, shares[part]) for part in order if shares[part] > 0]
+
+
+def _glued(text: str) -> str:
+    """The same with spaces at which a line is not broken."""
+    return text.replace(" ", "\u00a0")
+
+
+def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
+    """Items after a label, wrapped, perhaps with something before a colon."""
+    lines = textwrap.wrap(
+        "\u00a0· ".join(items),
+        WIDTH,
+        initial_indent=f"  {label:<9}{f'{first}: ' if first else ''}",
+        subsequent_indent=" " * 11,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return [line.replace("\u00a0", " ").removesuffix(" ·") for line in lines]
+
+
+def _part(stream: str) -> str | None:
+    for part, beginnings in PARTS.items():
+        if stream.startswith(beginnings):
+            return part
+    return None if stream == "total" else "other streams"
+
+
+def _count(number: int, one: str, many: str | None = None) -> str:
+    plural = many or (one[:-1] + "ies" if one.endswith("y") else one + "s")
+    return f"{number:,} {one if number == 1 else plural}"

@@ -1,0 +1,95 @@
+"""Planning as a function: a problem in, a solution out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from tamp.errors import InputError
+from tamp.planner.assembly import assemble, ended_early, random_streams, timed
+from tamp.planner.contradictions import contradictions
+from tamp.planner.problem import Problem
+from tamp.planner.recorder import Recorder
+from tamp.planner.solution import Action, Solution
+from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.registry import ALGORITHMS
+from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result, StreamTask
+from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.interrupts import Alarm
+
+AGAIN = 8
+"""Plans that are made at most until the classifiers bear one out."""
+
+
+def solve(
+    problem: Problem,
+    *,
+    max_time: float = 30.0,
+    seed: int = 0,
+    algorithm: str = "adaptive",
+    progress: Progress | None = None,
+    record: bool = False,
+) -> Solution:
+    """Plan.
+
+    The same seed gives the same plan, as long as the time did not run out.
+
+    Args:
+        problem: From `load_problem`.
+        max_time: Seconds.
+        seed: Of all randomness.
+        algorithm: "adaptive" or "incremental".
+        progress: Called now and then with what was done so far.
+        record: Keep what was tried in the solution, for `tamp.view`; the plan is the same.
+
+    Raises:
+        InputError: Unknown algorithm, or a time that is not positive.
+    """
+    if algorithm not in ALGORITHMS:
+        raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
+    if not max_time > 0.0:
+        raise InputError(f"the time must be positive, not {max_time:g}")
+    deadline = Deadline(max_time)
+    recorder = Recorder() if record else None
+    task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
+
+    def plan() -> tuple[Result, tuple[Action, ...], float]:
+        result = _borne_out(problem, task, seed, algorithm, deadline, progress or _silent)
+        planned = deadline.elapsed()
+        return result, timed(problem, result), planned
+
+    try:
+        result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
+    except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
+        outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
+        return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
+    total = deadline.elapsed()
+    return assemble(problem, result, actions, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
+
+
+def _borne_out(
+    problem: Problem, task: StreamTask, seed: int, algorithm: str, deadline: Deadline, progress: Progress
+) -> Result:
+    """A plan in whose states the classifiers of the user's own relations say what they said of its poses.
+
+    Only those that look at more than their arguments can make the first plan another one than that of the seed.
+    """
+    make_rng = random_streams(seed)
+    result = ALGORITHMS[algorithm](task, make_rng, deadline, progress)
+    wrong = contradictions(problem, result)
+    for again in range(1, AGAIN):
+        if not wrong or deadline.passed:
+            break
+        result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)
+        wrong = contradictions(problem, result)
+    return replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong) if wrong else result
+
+
+def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:
+    return make_rng(f"{again} {key}")
+
+
+def _silent(effort: Effort) -> None:
+    pass

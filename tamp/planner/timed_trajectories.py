@@ -1,0 +1,149 @@
+"""From the motions of a bound plan to timed trajectories, action by action."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.geometric.context import Context
+from tamp.geometric.motion.timing import time_path
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.values import Grasp, Grip, Motion, Path
+from tamp.symbolic.algorithms.result import GroundAction
+
+GRIP_TIME = 0.5
+"""Seconds that the fingers take to open or close, at least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A piece of an action's trajectory.
+
+    Attributes:
+        part: "base", "arm" or "gripper".
+        times: Seconds from the segment's start, shape (n,), increasing from 0.
+        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in between.
+        opening: Of the fingers, metres, while base or arm move.
+        holding: The body in the hand meanwhile.
+        attach: The grasp that a gripper segment ends with.
+        detach: The body that it lets go.
+    """
+
+    part: str
+    times: Array
+    positions: Array
+    opening: float
+    holding: str | None = None
+    attach: Grasp | None = None
+    detach: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The segments of one action, one after the other."""
+
+    segments: tuple[Segment, ...]
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(sum(segment.times[-1] for segment in self.segments))
+
+
+Timed = dict[tuple[object, ...], tuple[Path, Segment]]
+"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the bodies are."""
+
+
+def trajectories(
+    context: Context, actions: Sequence[GroundAction], values: dict[str, object], known: Timed | None = None
+) -> list[Trajectory]:
+    """Time the motions among the actions' arguments, in the plan's order.
+
+    Corners are rounded only where the rounding is free of collision among the bodies as they stand at that moment.
+
+    Args:
+        context: Of the problem.
+        actions: The plan.
+        values: By name.
+        known: What other plans share with this one; added to.
+    """
+    replay = _Replay(context, {} if known is None else known)
+    return [
+        Trajectory(
+            tuple(
+                segment
+                for name in action.arguments
+                if isinstance(motion := values.get(name), Motion)
+                for segment in replay.timed(motion)
+            )
+        )
+        for action in actions
+    ]
+
+
+class _Replay:
+    """Follows where the robot and the bodies are."""
+
+    def __init__(self, context: Context, known: Timed) -> None:
+        scene = context.scene
+        self._known = known
+        self._context = context
+        self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
+        self._held: Grasp | None = context.holding
+        if self._held is not None:
+            self._poses.pop(self._held.body)
+        self._base: Array = np.array(scene.robot.base)
+        self._arm: Array = context.home
+
+    def timed(self, motion: Motion) -> list[Segment]:
+        return [self._grip(item) if isinstance(item, Grip) else self._path(item) for item in motion.segments]
+
+    def _grip(self, grip: Grip) -> Segment:
+        if grip.attach is not None:
+            self._held = grip.attach
+            self._poses.pop(grip.attach.body, None)
+        elif self._held is not None:
+            tool = Pose.from_matrix(self._context.kinematics.tool(self._context.conf(self._base, self._arm)))
+            self._poses[self._held.body] = tool @ self._held.T_tool_body
+            self._held = None
+        positions = np.array(grip.opening)[:, None]
+        speed = sum(finger.velocity for finger in self._context.robot.fingers)
+        times = np.array([0.0, max(GRIP_TIME, abs(grip.opening[1] - grip.opening[0]) / speed)])
+        return Segment("gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach)
+
+    def _path(self, path: Path) -> Segment:
+        """The path timed, or what it was timed to before in the same circumstances."""
+        held = None if self._held is None else (self._held.body, self._held.T_tool_body.position)
+        bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
+        key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
+        if key not in self._known:
+            self._known[key] = path, self._time(path)
+        segment = self._known[key][1]
+        if path.part == "base":
+            self._base = segment.positions[-1]
+        else:
+            self._arm = path.points[-1]
+        return segment
+
+    def _time(self, path: Path) -> Segment:
+        context, robot = self._context, self._context.robot
+        attachment = None if self._held is None else context.attachment(self._held)
+        arrangement = context.collisions.arrangement(self._poses, attachment)
+        velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
+
+        def conf(point: Array) -> Array:
+            return context.conf(point, self._arm) if path.part == "base" else context.conf(self._base, point)
+
+        def edge_free(a: Array, b: Array) -> bool:
+            return arrangement.edge_free(conf(a), conf(b))
+
+        joints = slice(0, 3) if path.part == "base" else slice(3, None)
+        points = path.points
+        if path.part == "base":  # whole turns are not lost between one drive and the next: the yaw goes on where it was
+            points = points.copy()
+            points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
+        timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
+        return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

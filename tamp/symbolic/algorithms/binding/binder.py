@@ -1,0 +1,242 @@
+"""Finding values for a skeleton: draw, test, and jump back to a choice that the failure depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field
+
+from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
+from tamp.symbolic.algorithms.bound_stream import Instance, Streams
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience
+from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.pddl.structs import Fact
+from tamp.system.deadline import Deadline, OutOfTime
+
+REFUSALS = 20
+"""Complete sets of values that may turn out not to hold before a skeleton is left for this time."""
+
+RECENT = 3
+"""How many of an instance's latest results are tried again before drawing new ones."""
+
+
+@dataclass
+class _Level:
+    """One node on the way down: where its candidates come from, and which earlier levels its failure depends on."""
+
+    candidates: Iterator[tuple[str, ...]]
+    conflict: set[int]
+    culprits: set[int] = field(default_factory=set[int])
+
+
+class Binder:
+    """Backtracking with conflict-directed backjumping (Prosser 1993) over the stream calls of a skeleton.
+
+    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest level in it. Every
+    failure is noted in `experience` under the symbolic fact that it concerns.
+    """
+
+    def __init__(self, streams: Streams, experience: Experience, deadline: Deadline) -> None:
+        self._streams = streams
+        self._experience = experience
+        self._deadline = deadline
+        self.units = 0
+        self._met: list[tuple[Node, Instance]] = []
+
+    def bind(
+        self,
+        skeleton: Skeleton,
+        tries: int,
+        budget: int,
+        fresh: Set[int] = frozenset(),
+        *,
+        holds: Callable[[dict[int, str]], bool] | None = None,
+    ) -> dict[int, str] | None:
+        """Values for all variables, or None when none were found within the budget.
+
+        Args:
+            skeleton: What to bind; it remembers the values that worked, to be tried first next time.
+            tries: New draws a visit of a node.
+            budget: Draws in all.
+            fresh: The nodes that are to take new values before those that worked.
+            holds: Has the last word on values for all variables; what it refuses is not returned.
+        """
+        nodes = skeleton.nodes
+        makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
+        values: dict[int, str] = {}
+        levels: list[_Level] = []
+        spent_before = self.units
+        self._met.clear()
+        refusals = 0
+        while True:
+            index = len(levels)
+            if index < len(nodes):
+                levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
+            elif holds is None or holds(values):
+                return values
+            else:
+                refusals += 1
+                if refusals > REFUSALS or not levels:
+                    return None
+                levels[-1].conflict.update(range(index - 1))  # any of them may be to blame
+            while True:
+                level = levels[-1]
+                index = len(levels) - 1
+                outputs = next(level.candidates, None)
+                if outputs is not None:
+                    values.update(zip(nodes[index].outputs, outputs, strict=True))
+                    break
+                levels.pop()
+                for variable in nodes[index].outputs:
+                    values.pop(variable, None)
+                conflict = level.conflict | level.culprits
+                conflict.discard(index)
+                if not conflict or self.units - spent_before > budget:
+                    if self.units == spent_before:  # nothing is left to draw: what is known to fail failed once more
+                        for node, instance in self._met:
+                            self._note(node, instance, False)
+                    if not conflict:
+                        self._settle(nodes, index)
+                    return None
+                target = max(conflict)
+                for dropped in range(target + 1, len(levels)):
+                    for variable in nodes[dropped].outputs:
+                        values.pop(variable, None)
+                del levels[target + 1 :]
+                levels[target].culprits |= conflict
+                if self._deadline.passed:
+                    raise OutOfTime
+
+    def _settle(self, nodes: Sequence[Node], failed: int) -> None:
+        """Ask the later tests of real values too, once one failed for good: the next search learns from all.
+
+        Not those that rest on what a test of this skeleton has yet to certify.
+        """
+        tests = [node for node in nodes if node.stream.is_test]
+        pending = {atom.predicate for node in tests for atom in node.stream.declaration.certified}
+        for node in nodes[failed + 1 :]:
+            declaration = node.stream.declaration
+            words = [term for term in node.inputs if isinstance(term, str)]
+            asks = node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            if not asks or any(atom.predicate in pending for atom in declaration.domain):
+                continue
+            instance = self._streams.instance(node.stream.name, tuple(words))
+            if not instance.exhausted:
+                if self._deadline.passed:
+                    raise OutOfTime
+                self.units += 1
+                self._note(node, instance, self._streams.draw(instance) is not None)
+
+    def _enter(
+        self,
+        skeleton: Skeleton,
+        index: int,
+        makers: dict[int, int],
+        values: dict[int, str],
+        tries: int,
+        fresh: bool,
+    ) -> _Level:
+        node = skeleton.nodes[index]
+        inputs = tuple(value_of(term, values) for term in node.inputs)
+        fluents = node.given.union(
+            (fact[0], *(value_of(term, values) for term in fact[1]))
+            for fact, _ in node.fluents
+            if all(isinstance(term, str) or term in values for term in fact[1])
+        )
+        instance = self._streams.instance(node.stream.name, inputs, fluents)
+        conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
+        return _Level(self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict)
+
+    def _candidates(
+        self,
+        skeleton: Skeleton,
+        index: int,
+        instance: Instance,
+        makers: dict[int, int],
+        conflict: set[int],
+        tries: int,
+        fresh: bool,
+    ) -> Iterator[tuple[str, ...]]:
+        """The value that was taken last time and a few recent ones, then new draws, then the earliest results.
+
+        New draws come before most earlier results, since what failed once often fails again; the earliest ones come
+        back so that, with growing `tries`, every pair of values meets.
+        """
+        node = skeleton.nodes[index]
+        key: tuple[object, ...] = (instance.inputs, frozenset[Fact]() if node.stream.is_advisory else instance.fluents)
+        offered: set[tuple[str, ...]] = set()
+
+        def offer(outputs: tuple[str, ...]) -> bool:
+            if outputs in offered:
+                return False
+            offered.add(outputs)
+            skeleton.memory[index] = (key, outputs)
+            return True
+
+        remembered = skeleton.memory.get(index)
+        if not fresh and remembered is not None and remembered[0] == key and offer(remembered[1]):
+            yield remembered[1]
+        earlier = list(instance.results)
+        for outputs in () if fresh else reversed(earlier[-RECENT:]):
+            if offer(outputs):
+                yield outputs
+        if instance.exhausted and not instance.results:
+            self._met.append((node, instance))
+        draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
+        for _ in range(draws if fresh else max(draws - len(earlier), (draws + 1) // 2)):
+            if self._deadline.passed:
+                raise OutOfTime
+            if instance.exhausted:
+                break
+            self.units += 1
+            outputs = self._streams.draw(instance)
+            self._note(node, instance, outputs is not None)
+            if outputs is not None and offer(outputs):
+                yield outputs
+        for outputs in earlier[:draws]:
+            if offer(outputs):
+                yield outputs
+        if not instance.results:
+            self._blame(node, instance, makers, conflict)
+
+    def _note(self, node: Node, instance: Instance, success: bool) -> None:
+        if success or instance.last is None:
+            self._experience.note(node.fact, None)
+            return
+        if node.stream.is_fluent and instance.last.blockers:
+            present = _present(node, instance.last.blockers)
+            if present:
+                self._experience.note_nogood(node.fact, present, instance.last.reason)
+                return
+        elif node.stream.is_fluent and instance.exhausted and not instance.results:
+            present = frozenset(fact for _, fact in node.fluents)
+            words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
+            if not any(word.startswith(MARK) for word in words):
+                for fact in self._streams.certified(instance, node.guess[1]):
+                    self._experience.note_exact(fact, node.stream.declaration.fluents, present)
+            if present:  # nobody says what of the state is to blame
+                self._experience.note_nogood(node.fact, present, instance.last.reason)
+        self._experience.note(node.fact, instance.last.reason)
+
+    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]) -> None:
+        """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
+        if not node.stream.is_fluent:
+            return
+        blockers = instance.last.blockers if instance.last is not None else ()
+        for (_, terms), fact in node.fluents:
+            if not blockers or any(word in blockers for word in fact[1:]):
+                conflict |= {makers[term] for term in terms if isinstance(term, int)}
+
+
+def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
+    """The symbolic state facts about the blockers."""
+    return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
+
+
+def value_of(term: Term, values: Mapping[int, str]) -> str:
+    """A term's value."""
+    return term if isinstance(term, str) else values[term]
+
+
+def substitute(fact: LiftedFact, values: Mapping[int, str]) -> Fact:
+    """A lifted fact with its variables' values."""
+    return (fact[0], *(value_of(term, values) for term in fact[1]))

@@ -1,0 +1,103 @@
+"""A skeleton: an action plan over variables, and the stream calls that give them values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.pddl.structs import Fact
+
+Term = str | int
+"""A real object's name, or the number of a variable."""
+
+LiftedFact = tuple[str, tuple[Term, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Usage:
+    """A test's fact that a step needs because `present` holds in the state before it."""
+
+    fact: Fact
+    present: frozenset[Fact]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One action of an optimistic plan.
+
+    Attributes:
+        name: The action's.
+        arguments: Real objects or placeholders.
+        state: The fluent facts before it.
+        read: The fluent facts that it rests on, those behind derived ones and effects that take place among them.
+        added: The facts that it makes true.
+        deleted: The facts of the state that it makes false.
+        static: The static facts that it rests on.
+        derived: Those of them that derivations rest on.
+        usages: The tests that the state asks for.
+        cost: Its cost.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    state: frozenset[Fact]
+    read: frozenset[Fact]
+    added: frozenset[Fact]
+    deleted: frozenset[Fact]
+    static: frozenset[Fact]
+    derived: frozenset[Fact]
+    usages: tuple[Usage, ...]
+    cost: float = 1.0
+
+
+@dataclass(eq=False)
+class Node:
+    """One stream call of a skeleton.
+
+    Attributes:
+        stream: Whose call it is.
+        guess: The symbolic inputs and outputs that stand behind the variables, as (inputs, outputs).
+        inputs: Terms.
+        outputs: Variables.
+        step: The first step that needs it.
+        fluents: The facts that its function is shown, with what each is called symbolically.
+        fact: The first symbolic fact that it certifies: what is blamed when it fails.
+        given: Facts that its function is shown as well, in every state.
+        needs: The calls that certify what it is called for: they come before it.
+    """
+
+    stream: BoundStream
+    guess: tuple[tuple[str, ...], tuple[str, ...]]
+    inputs: tuple[Term, ...]
+    outputs: tuple[int, ...]
+    step: int
+    fact: Fact
+    fluents: tuple[tuple[LiftedFact, Fact], ...] = ()
+    given: frozenset[Fact] = frozenset()
+    needs: list[Node] = field(default_factory=list["Node"])
+
+
+@dataclass(eq=False)
+class Skeleton:
+    """An action plan over variables, and the stream calls that give them values.
+
+    Attributes:
+        steps: The optimistic plan.
+        actions: Name and terms of each action.
+        nodes: The calls, in an order that fails early.
+        certified: The static facts that the plan rests on, over terms.
+    """
+
+    steps: tuple[Step, ...]
+    actions: tuple[tuple[str, tuple[Term, ...]], ...]
+    nodes: tuple[Node, ...]
+    certified: tuple[LiftedFact, ...]
+    rounds: int = 0
+    memory: dict[int, tuple[tuple[object, ...], tuple[str, ...]]] = field(
+        default_factory=dict[int, tuple[tuple[object, ...], tuple[str, ...]]]
+    )
+
+    @property
+    def signature(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """What tells it from other skeletons."""
+        return tuple((step.name, step.arguments) for step in self.steps)

@@ -1,0 +1,68 @@
+"""From a grounded plan to the steps of a skeleton."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from tamp.symbolic.algorithms.binding.skeleton import Step, Usage
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience
+from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.operators import Grounded, Guard, Operator
+from tamp.symbolic.search.plan_trace import Trace, trace
+from tamp.symbolic.search.search import Plan
+
+NOGOOD = "(nogood)"
+"""The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
+
+
+def with_nogoods(grounded: Grounded, experience: Experience) -> tuple[Grounded, dict[Fact, float]]:
+    """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
+    if not experience.nogoods:
+        return grounded, {}
+    guards: dict[Fact, list[Guard]] = {}
+    prices: dict[Fact, float] = {}
+    for number, ((fact, present), record) in enumerate(experience.nogoods.items()):
+        name = (NOGOOD, str(number))
+        prices[name] = record.price
+        guards.setdefault(fact, []).append(Guard(present, name))
+    operators = tuple(
+        _guarded(operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())])
+        for operator in grounded.operators
+    )
+    return replace(grounded, operators=operators), prices
+
+
+def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
+    if not guards:
+        return operator
+    return replace(operator, guards=(*operator.guards, *guards))
+
+
+def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tuple[tuple[Step, ...], Trace]:
+    """The plan's steps, and the trace that they come from."""
+    traced = trace(grounded, plan.operators, prices)
+    steps: list[Step] = []
+    for step in traced.steps:
+        operator = step.operator
+        usages = [
+            Usage(guard.lifted_by, guard.facts)
+            for guard in step.guards
+            if guard.lifted_by is not None and guard.lifted_by[0] != NOGOOD
+        ]
+        used = {usage.fact for usage in usages}
+        steps.append(
+            Step(
+                name=operator.name,
+                arguments=operator.arguments,
+                state=step.state,
+                read=step.read,
+                added=step.added,
+                deleted=step.deleted,
+                static=frozenset(fact for fact in step.static if fact[0] != NOGOOD and fact not in used),
+                derived=step.derived,
+                usages=tuple(sorted(usages, key=lambda usage: (usage.fact, sorted(usage.present)))),
+                cost=operator.cost,
+            )
+        )
+    return tuple(steps), traced

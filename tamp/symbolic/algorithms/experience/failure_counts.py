@@ -1,0 +1,135 @@
+"""What was tried for each action of the plans that were tried, and why it failed."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from tamp.symbolic.algorithms.binding.skeleton import Skeleton
+from tamp.symbolic.algorithms.bound_stream import ADVISORY
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
+from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.pddl.structs import Fact
+
+LATEST = 100
+"""So many plans, the latest, are looked at: the user waits for the answer."""
+
+
+@dataclass
+class Tally:
+    """The calls of one stream for one action with its objects, over all plans that were tried.
+
+    Attributes:
+        action: "place mug on shelf_2"; the objects are those of the problem.
+        stream: Its name.
+        tries: Results asked for.
+        successes: Those that came, or held.
+        reasons: Why the others did not.
+    """
+
+    action: str
+    stream: str
+    tries: int = 0
+    successes: int = 0
+    reasons: Counter[str] = field(default_factory=Counter[str])
+
+    @property
+    def failures(self) -> int:
+        """Tries without a result."""
+        return self.tries - self.successes
+
+    @property
+    def never(self) -> bool:
+        """Whether all tries failed."""
+        return self.tries > 0 and self.successes == 0
+
+    def text(self) -> str:
+        """One line."""
+        reasons = ", ".join(f"{count} {reason}" for reason, count in self.reasons.most_common(3))
+        how = "never worked" if self.never else f"worked {self.successes} times"
+        return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
+
+
+def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]) -> tuple[Tally, ...]:
+    """What was tried by action and stream: what never worked first, then by failures.
+
+    Args:
+        skeletons: The plans that were tried, in order.
+        experience: What binding them has taught.
+        names: The values of the problem's objects: those that are their own names stand for things.
+    """
+    records: dict[Fact, list[Record]] = {fact: [record] for fact, record in experience.facts.items()}
+    for (fact, _), record in experience.nogoods.items():
+        records.setdefault(fact, []).append(record)
+    made: dict[tuple[str, str], Tally] = {}
+    counted: set[tuple[str, str, Fact]] = set()
+    for skeleton in skeletons[-LATEST:]:
+        users = _users(skeleton)
+        labels: dict[int, str] = {}
+        for node, user in zip(skeleton.nodes, users, strict=True):
+            if node.fact not in records:
+                continue
+            if user not in labels:
+                labels[user] = _label(skeleton, user, users, names)
+            key = (labels[user], node.stream.name)
+            if (*key, node.fact) in counted:
+                continue
+            counted.add((*key, node.fact))
+            tally = made.setdefault(key, Tally(*key))
+            for record in records[node.fact]:
+                tally.tries += record.successes + record.failures
+                tally.successes += record.successes
+                tally.reasons.update(record.reasons)
+    rows = [tally for tally in made.values() if tally.tries]
+    return tuple(sorted(rows, key=lambda row: (not row.never, -row.failures)))
+
+
+def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
+    """The things of the problem that reasons name as hit or blocking, and how often; most first."""
+    counts: Counter[str] = Counter()
+    for row in rows:
+        for reason, count in row.reasons.items():
+            if "hits " in reason or "blocked by " in reason:
+                words = reason.replace(",", " ").lower().split()
+                counts.update({word: count for word in words if isinstance(names.get(word), str)})
+    return tuple(counts.most_common())
+
+
+def _users(skeleton: Skeleton) -> list[int]:
+    """For each call the step with which it has most objects in common; the first of those that need it."""
+    steps: dict[str, list[int]] = defaultdict(list)
+    for number, step in enumerate(skeleton.steps):
+        for word in dict.fromkeys(step.arguments):
+            steps[word].append(number)
+    users: list[int] = []
+    for node in skeleton.nodes:
+        shared: dict[int, int] = {}
+        for word in {*node.guess[0], *node.guess[1]}:
+            for number in steps.get(word, ()):
+                shared[number] = shared.get(number, 0) + 1
+        users.append(min(shared, key=lambda number: (-shared[number], number)) if shared else node.step)
+    return users
+
+
+def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]) -> str:
+    """An action with the things that it concerns: those among its arguments, and where its values come from."""
+    if number >= len(skeleton.steps):
+        return "the goal"
+    step = skeleton.steps[number]
+    things = _things(step.arguments, names)
+    text = " ".join([step.name, *things])
+    for node, user in zip(skeleton.nodes, users, strict=True):
+        if user == number and not set(node.guess[1]).isdisjoint(step.arguments):
+            further = [thing for thing in _things(node.guess[0], names) if thing not in things]
+            if further:
+                relation = node.stream.name.removeprefix(ADVISORY)
+                text += f" {relation} {' '.join(further)}" if relation != node.stream.name else f" {' '.join(further)}"
+                things += further
+    if things or number + 1 >= len(skeleton.steps):
+        return text
+    return f"{text}, to {_label(skeleton, number + 1, users, names)}"
+
+
+def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:
+    return [word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)]

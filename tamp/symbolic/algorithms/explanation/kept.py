@@ -1,0 +1,89 @@
+"""What stays as it is for good and keeps actions from being taken: "can stays loaded with crate"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from tamp.symbolic.algorithms.explanation.unachievable_facts import plain_atoms
+from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
+from tamp.symbolic.search.lasting import forbidden_by, lasting
+from tamp.symbolic.search.operators import Grounded, Operator
+
+CALLS = 2
+"""Calls that are named as the reason why a thing stays where it is."""
+
+
+def kept_from(
+    problem: StreamTask, grounded: Grounded, calls: Mapping[str, tuple[frozenset[str], str]], goal: str
+) -> Iterator[str]:
+    """For each action about the goal's objects that something forbids for good: the action, what it is, and why.
+
+    Args:
+        problem: The task, whose rules say what a fact means.
+        grounded: The optimistic task.
+        calls: The calls that ended without a value, each with the objects that it is about and its reason.
+        goal: As text.
+    """
+    wanted = set(goal.replace("(", " ").replace(")", " ").split())
+    for_good = lasting(grounded).forbidden
+    for operator, facts in for_good or forbidden_by(grounded, grounded.initial):
+        about = [word for word in operator.arguments if word in wanted]
+        if not about:
+            continue
+        for fact in sorted(facts):
+            others = [word for word in fact[1:] if isinstance(problem.values.get(word), str) and word not in about]
+            reasons = [f"{call}: {why}" for call, (names, why) in calls.items() if not names.isdisjoint(others)]
+            because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
+            state = _state(problem, operator, fact)
+            if not for_good and (state is None or not others or not reasons):
+                continue  # it may be only for now
+            if state is None:
+                yield f"{operator.name} wants ({' '.join(fact)}) not to hold, which nothing makes false{because}"
+                continue
+            things = " ".join(word for word in state[1:] if isinstance(problem.values.get(word), str))
+            with_others = f" with {' and '.join(others)}" if others else ""
+            never = f", so that {operator.name} is never possible" if for_good else ""
+            yield f"{things} {'stays' if for_good else 'is'} {state[0]}{with_others}{never}{because}"
+
+
+def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:
+    """The derived fact that the operator wants not to hold, and that holds because of a fluent one."""
+    domain = problem.task.domain
+    for action in domain.actions:
+        if action.name != operator.name:
+            continue
+        given = dict(zip((parameter.name for parameter in action.parameters), operator.arguments, strict=False))
+        for atom in _unwanted(action.precondition):
+            head = (atom.predicate, *(given.get(term, term) for term in atom.terms))
+            if head == fact:
+                return None
+            for rule in domain.derived:
+                if rule.head.predicate == atom.predicate and _follows(problem, rule.head, rule.body, head, fact):
+                    return head
+    return None
+
+
+def _unwanted(formula: Formula) -> Iterator[Atom]:
+    if isinstance(formula, Not) and isinstance(formula.body, Atom):
+        yield formula.body
+    elif isinstance(formula, And):
+        for part in formula.parts:
+            yield from _unwanted(part)
+
+
+def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fact: Fact) -> bool:
+    """Whether the rule derives the head from the fact, as far as its other plain conditions hold at the start."""
+    binding = dict(zip(rule_head.terms, head[1:], strict=False))
+    atoms = plain_atoms(body)
+    for atom in atoms:
+        if atom.predicate != fact[0]:
+            continue
+        grown = {**dict(zip(atom.terms, fact[1:], strict=False)), **binding}
+        if (atom.predicate, *(grown.get(term, term) for term in atom.terms)) != fact:
+            continue
+        others = [tuple(grown.get(term, term) for term in other.terms) for other in atoms if other is not atom]
+        names = [other.predicate for other in atoms if other is not atom]
+        if all((name, *terms) in problem.task.initial for name, terms in zip(names, others, strict=True)):
+            return True
+    return False

@@ -1,0 +1,179 @@
+"""What a fact that nothing can make true lacks: the precondition at which the nearest way to it ends."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Formula, Parameter, Task
+
+DEEPEST = 4
+"""Steps of a chain of missing facts that are worth reading."""
+
+LOOKS = 2000
+"""Facts looked at for each way to a fact; after that the best so far counts."""
+
+Binding = dict[str, str]
+
+
+@dataclass(frozen=True)
+class _Way:
+    """An action, rule or stream that could make a fact true: its name, its conditions, its variables' types."""
+
+    name: str
+    conditions: tuple[Atom, ...]
+    types: Mapping[str, tuple[str, ...]]
+    binding: Binding
+
+
+class Missing:
+    """Looks for what is missing.
+
+    Args:
+        task: Its actions and rules.
+        streams: Those of the task.
+        facts: All that can become true, optimistically.
+        types: Of objects and placeholders.
+        assumed: Predicates whose facts are taken to hold wherever they are asked for.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        streams: Sequence[BoundStream],
+        facts: Iterable[Fact],
+        types: Mapping[str, tuple[str, ...]],
+        assumed: Iterable[str] = (),
+    ) -> None:
+        self._task, self._streams, self._types, self._assumed = task, streams, types, frozenset(assumed)
+        self._known = frozenset(facts)
+        self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
+        for fact in sorted(self._known):
+            self._by_predicate[fact[0]].append(fact)
+        self._looks = 0
+
+    def reason(self, fact: Fact) -> str:
+        """In words why nothing makes the fact true: "cook needs (hot stove), which nothing makes true"."""
+        said: list[str] = []
+        seen = {fact}
+        for _ in range(DEEPEST):
+            found = self._nearest(fact)
+            if found is None:
+                break
+            name, lacks = found
+            said.append(f"{name} needs {' and '.join(map(_shown, lacks))}")
+            fact = (lacks[0].predicate, *lacks[0].terms)
+            if fact in seen:
+                break
+            seen.add(fact)
+        if not said:
+            return "no action makes it true"
+        return f"{', and '.join(said)}, which nothing makes true"
+
+    def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
+        """The way to a fact that lacks least, and what it lacks; None when there is no way or none lacks anything."""
+        best: tuple[str, list[Atom]] | None = None
+        for way in self._ways(fact):
+            self._looks = 0
+            lacks = self._lacks(list(way.conditions), way.binding, way.types, len(way.conditions) + 1)
+            if lacks and (best is None or len(lacks) < len(best[1])):
+                best = way.name, lacks
+        return best
+
+    def _ways(self, fact: Fact) -> Iterator[_Way]:
+        domain = self._task.domain
+        for action in domain.actions:
+            for effect in action.effects:
+                if effect.adds:
+                    conditions = (*plain_atoms(action.precondition), *plain_atoms(effect.condition))
+                    parameters = (*action.parameters, *effect.parameters)
+                    yield from self._way(action.name, effect.atom, conditions, _typed(parameters), fact)
+        for rule in domain.derived:
+            types = {**_typed(rule.parameters), **_inner(rule.body)}
+            yield from self._way(f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact)
+        for stream in self._streams:
+            declared = stream.declaration
+            for atom in declared.certified:
+                yield from self._way(stream.name, atom, declared.domain, {}, fact)
+
+    def _way(
+        self, name: str, head: Atom, conditions: Iterable[Atom], types: Mapping[str, tuple[str, ...]], fact: Fact
+    ) -> Iterator[_Way]:
+        if head.predicate == fact[0]:
+            binding = self._matched(head, fact, {}, types)
+            if binding is not None:
+                yield _Way(name, tuple(conditions), types, binding)
+
+    def _lacks(
+        self, conditions: list[Atom], binding: Binding, types: Mapping[str, tuple[str, ...]], fewer: int
+    ) -> list[Atom] | None:
+        """The conditions that cannot be had in the best binding, if they are fewer than that."""
+        if not conditions:
+            return []
+        atom = min(conditions, key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"))
+        rest = [one for one in conditions if one is not atom]
+        best: list[Atom] | None = None
+        if atom.predicate in self._assumed or atom.predicate == "=":
+            return self._lacks(rest, binding, types, fewer)
+        for fact in self._by_predicate[atom.predicate]:
+            self._looks += 1
+            if self._looks > LOOKS:
+                break
+            grown = self._matched(atom, fact, binding, types)
+            if grown is None:
+                continue
+            found = self._lacks(rest, grown, types, fewer)
+            if found is not None and len(found) < fewer:
+                best, fewer = found, len(found)
+            if best == [] or grown == binding:
+                return best
+        if fewer > 1:
+            found = self._lacks(rest, binding, types, fewer - 1)
+            if found is not None and len(found) + 1 < fewer:
+                best = [Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)), *found]
+        return best
+
+    def _matched(
+        self, atom: Atom, fact: Fact, binding: Binding, types: Mapping[str, tuple[str, ...]]
+    ) -> Binding | None:
+        if len(atom.terms) != len(fact) - 1:
+            return None
+        grown = dict(binding)
+        for term, word in zip(atom.terms, fact[1:], strict=True):
+            if word.startswith("?"):  # any object
+                continue
+            if not term.startswith("?"):
+                if term != word:
+                    return None
+            elif grown.setdefault(term, word) != word or not self._fits(word, types.get(term, ("object",))):
+                return None
+        return grown
+
+    def _fits(self, word: str, wanted: tuple[str, ...]) -> bool:
+        return self._task.domain.fits(self._types.get(word, ()), wanted)
+
+
+def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
+    """The atoms that must hold for a formula to hold, as far as they are plain."""
+    if isinstance(formula, Atom):
+        return (formula,)
+    if isinstance(formula, And):
+        return tuple(atom for part in formula.parts for atom in plain_atoms(part))
+    return plain_atoms(formula.body) if isinstance(formula, Exists) else ()
+
+
+def _inner(formula: Formula) -> dict[str, tuple[str, ...]]:
+    if isinstance(formula, And):
+        return {name: types for part in formula.parts for name, types in _inner(part).items()}
+    return {**_typed(formula.parameters), **_inner(formula.body)} if isinstance(formula, Exists) else {}
+
+
+def _typed(parameters: Iterable[Parameter]) -> dict[str, tuple[str, ...]]:
+    return {parameter.name: parameter.types for parameter in parameters}
+
+
+def _shown(atom: Atom) -> str:
+    """A fact to read; of what is not known yet there is "some"."""
+    return f"({' '.join([atom.predicate, *(f'some {t[1:]}' if t[:1] == '?' else t for t in atom.terms)])})"

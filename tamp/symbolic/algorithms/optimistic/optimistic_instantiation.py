@@ -1,0 +1,288 @@
+"""Streams instantiated optimistically: every call is assumed to succeed, its outputs are placeholders."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from tamp.symbolic.algorithms.bound_stream import BoundStream, ground
+from tamp.symbolic.algorithms.optimistic.fact_index import FactIndex, unify
+from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula, Not, Or, Task
+
+MARK = "#"
+"""Placeholders begin with it: "#p3" stands for any pose that its stream may yield."""
+
+
+LEVELS = 8
+"""Depth of guesses that rest on guesses, at first."""
+
+ENOUGH = 2000
+"""Guesses at first; twenty objects in the cupboard take 1,800."""
+
+
+@dataclass(eq=False, slots=True)  # not frozen: there are thousands, made three times faster
+class Guess:
+    """One optimistic stream call; never changed.
+
+    Attributes:
+        stream: Its stream.
+        inputs: Real objects or placeholders.
+        outputs: Placeholders of its own.
+        domain: The facts that it rests on.
+        certified: The facts that it would make true.
+        level: One more than the deepest guess that it rests on.
+    """
+
+    stream: BoundStream
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    domain: tuple[Fact, ...]
+    certified: tuple[Fact, ...]
+    level: int
+
+    @property
+    def is_grounded(self) -> bool:
+        """Whether all inputs are real, so that what its function says of them is final."""
+        return not any(name.startswith(MARK) for name in self.inputs)
+
+
+class Named(NamedTuple):
+    """A call's placeholders, the facts that it rests on, and those that it would make true."""
+
+    outputs: tuple[str, ...]
+    domain: tuple[Fact, ...]
+    certified: tuple[Fact, ...]
+
+
+@dataclass
+class Optimism:
+    """All guesses: which static facts could become true, and by which call.
+
+    Attributes:
+        makers: Fact to the guess that certifies it, the first one of several.
+        guesses: All of them.
+        types: Placeholder to its types.
+        assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
+            one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
+        complete: Whether nothing was left out for being deep or one too many: what is not here cannot become true.
+    """
+
+    makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
+    guesses: list[Guess] = field(default_factory=list[Guess])
+    types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
+    complete: bool = True
+
+    def maker(self, fact: Fact) -> Guess | None:
+        """The call that certifies a fact; that of an assumed one is made up when it is asked for."""
+        known = self.makers.get(fact)
+        if known is not None or fact[0] not in self.assumed:
+            return known
+        stream, atom = self.assumed[fact[0]]
+        declaration = stream.declaration
+        binding = dict(zip(atom.terms, fact[1:], strict=True))
+        inputs = tuple(binding[name] for name in declaration.inputs)
+        domain = ground(declaration.domain, declaration.inputs, inputs)
+        certified = ground(declaration.certified, declaration.inputs, inputs)
+        made = self.makers[fact] = Guess(stream, inputs, (), domain, certified, 0)
+        return made
+
+    def promise(self, placeholder: str) -> Fact:
+        """A fact that the call which gives a placeholder certifies of it."""
+        return next(fact for fact, guess in self.makers.items() if placeholder in guess.outputs and placeholder in fact)
+
+
+def imagine(
+    streams: Sequence[BoundStream],
+    facts: Iterable[Fact],
+    *,
+    dead: frozenset[tuple[str, tuple[str, ...]]] = frozenset(),
+    levels: int = LEVELS,
+    deepest: int | None = None,
+    enough: int = ENOUGH,
+    names: dict[tuple[str, tuple[str, ...]], Named] | None = None,
+) -> Optimism:
+    """Instantiate streams from known facts and from each other's promises, to a fixpoint or `levels` deep.
+
+    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there are no more of the
+    level that was reached then, nor of deeper ones, but for tests, which feed nothing.
+
+    Args:
+        streams: Those worth instantiating (see `relevant`).
+        facts: Known static facts, types as unary facts among them.
+        dead: Calls (stream, inputs) that are known to yield nothing.
+        levels: Greatest depth of guesses resting on guesses.
+        deepest: The same for those with outputs, which others rest on; by default as many.
+        enough: Number of guesses from which on they become shallower. The first level is always complete.
+        names: The placeholders of calls imagined before, and the facts about them, kept and added to: what was learned
+            is kept under their names, so a name must always mean the same.
+    """
+    optimism = Optimism()
+    index = FactIndex()
+    named: dict[tuple[str, tuple[str, ...]], Named] = {} if names is None else names
+    counts = Counter(name.rstrip("0123456789") for call in named.values() for name in call.outputs)
+    seen: set[tuple[str, tuple[str, ...]]] = set(dead)
+    level_of: dict[Fact, int] = {}
+    queue: list[Fact] = []
+    for fact in facts:
+        if fact not in level_of:
+            level_of[fact] = 0
+            queue.append(fact)
+    total, growing = 0, levels if deepest is None else min(deepest, levels)
+    by_predicate: dict[str, list[tuple[BoundStream, int]]] = defaultdict(list)
+    for stream in streams:
+        for position, atom in enumerate(stream.declaration.domain):
+            by_predicate[atom.predicate].append((stream, position))
+
+    def guess(stream: BoundStream, binding: Mapping[str, str]) -> None:
+        declaration = stream.declaration
+        inputs = tuple([binding.get(name, name) for name in declaration.inputs])
+        key = (stream.name, inputs)
+        if key in seen:
+            return
+        seen.add(key)
+        call = named.get(key)
+        domain = ground(declaration.domain, declaration.inputs, inputs) if call is None else call.domain
+        level = 1
+        for fact in domain:
+            if level_of[fact] >= level:
+                level = level_of[fact] + 1
+        nonlocal growing, total
+        if level > (levels if stream.is_test else growing):
+            optimism.complete = False
+            return
+        total += 1
+        if total >= enough:
+            growing = max(1, min(growing, level - 1))
+        if call is None:
+            outputs: list[str] = []
+            for name in declaration.outputs:
+                prefix = MARK + name.lstrip("?").rstrip("0123456789")
+                counts[prefix] += 1
+                outputs.append(f"{prefix}{counts[prefix]}")
+            variables = (*declaration.inputs, *declaration.outputs)
+            certified = ground(declaration.certified, variables, (*inputs, *outputs))
+            call = named[key] = Named(tuple(outputs), domain, certified)
+        if call.outputs:
+            optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
+        made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
+        optimism.guesses.append(made)
+        for fact in call.certified:
+            if fact not in level_of:
+                optimism.makers[fact] = made
+                level_of[fact] = level
+                queue.append(fact)
+
+    for stream in streams:
+        if not stream.declaration.domain and not stream.declaration.inputs:
+            guess(stream, {})
+    position = 0
+    while position < len(queue):
+        fact = queue[position]
+        position += 1
+        index.add(fact)  # now and not before: so a call is found with the last of its facts, and levels come in order
+        for stream, place in by_predicate.get(fact[0], ()):
+            if level_of[fact] >= (levels if stream.is_test else growing):
+                optimism.complete = False
+                continue
+            domain = stream.declaration.domain
+            binding = unify(domain[place], fact, {})
+            if binding is not None:
+                rest = (*domain[:place], *domain[place + 1 :])
+                for complete in list(index.join(rest, binding)):
+                    guess(stream, complete)
+    return optimism
+
+
+def relevant(
+    streams: Iterable[BoundStream], predicates: Iterable[str], asked: Callable[[tuple[str, ...]], bool] | None = None
+) -> list[BoundStream]:
+    """The streams whose certified facts the given predicates, or other relevant streams, can use.
+
+    Args:
+        streams: Those to choose from.
+        predicates: Those that conditions mention.
+        asked: Whether something of these types is asked for, whatever is certified of it (see `anything`).
+    """
+    needed = set(predicates)
+    remaining = list(streams)
+    chosen: list[BoundStream] = []
+    progress = True
+    while progress:
+        progress = False
+        for stream in list(remaining):
+            used = any(atom.predicate in needed for atom in stream.declaration.certified)
+            if used or (asked is not None and any(asked(types) for types in stream.output_types)):
+                remaining.remove(stream)
+                chosen.append(stream)
+                needed.update(atom.predicate for atom in stream.declaration.domain)
+                progress = True
+    order = {stream.name: i for i, stream in enumerate(streams)}
+    return sorted(chosen, key=lambda stream: order[stream.name])
+
+
+def type_facts(task: Task) -> list[Fact]:
+    """Types as unary facts, an object's own and those above: (movable mug), (body mug), (object mug)."""
+    facts: dict[Fact, None] = {}
+    domain = task.domain
+    for name, types in {**domain.constants, **task.objects}.items():
+        for type_ in ("object", *domain.types):
+            if type_ == "object" or any(domain.is_a(own, type_) for own in types):
+                facts[type_, name] = None
+    return list(facts)
+
+
+def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
+    """The test streams whose facts are only asked for in order to lift a guard: under a negation in a derived rule.
+
+    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate. It
+    is asked of what streams give, or of types: where only given facts say what it may be asked of, they are looked up.
+    """
+    everything = list(streams)
+    positive = {atom.predicate for atom, sign in _atoms(task) if sign}
+    positive |= {atom.predicate for stream in everything for atom in stream.declaration.domain}
+    makers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
+    for stream in everything:
+        for atom in stream.declaration.certified:
+            makers[atom.predicate].append((stream, atom))
+    return {
+        predicate: made[0]
+        for predicate, made in makers.items()
+        if len(made) == 1
+        and made[0][0].is_test
+        and len(made[0][0].declaration.certified) == 1
+        and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
+        and predicate not in positive
+        and all(
+            atom.predicate in makers or atom.predicate in task.domain.types for atom in made[0][0].declaration.domain
+        )
+    }
+
+
+def used_predicates(task: Task) -> set[str]:
+    """The predicates that conditions of the task mention."""
+    return {atom.predicate for atom, _ in _atoms(task)}
+
+
+def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
+    """The atoms of all conditions, each with whether it helps by holding.
+
+    In an action's condition a negation counts as help, since only a derived rule's negation can become a guard.
+    """
+    stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
+    stack += [(action.precondition, True, False) for action in task.domain.actions]
+    stack += [(effect.condition, True, False) for action in task.domain.actions for effect in action.effects]
+    stack += [(rule.body, True, True) for rule in task.domain.derived]
+    while stack:
+        formula, sign, in_rule = stack.pop()
+        match formula:
+            case Atom():
+                yield formula, sign
+            case And(parts) | Or(parts):
+                stack += [(part, sign, in_rule) for part in parts]
+            case Not(body):
+                stack.append((body, sign != in_rule, in_rule))
+            case Exists(_, body) | Forall(_, body):
+                stack.append((body, sign, in_rule))

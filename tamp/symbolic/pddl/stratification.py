@@ -1,0 +1,74 @@
+"""The order in which derived predicates can be evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tamp.symbolic.pddl.nodes import error
+from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formula, Not, Or, Place
+
+
+def strata(rules: Sequence[Derived]) -> dict[str, int]:
+    """The stratum of every derived predicate, counted from 0.
+
+    A predicate stands no lower than those it rests on, and above those whose negation it rests on: with the strata
+    below complete, what is not derived is false (Thiébaux, Hoffmann, Nebel: In Defense of PDDL Axioms, 2005).
+
+    Raises:
+        InputError: When a predicate rests on its own negation, at that negation.
+    """
+    levels = {rule.head.predicate: 0 for rule in rules}
+    uses = [(rule.head.predicate, atom, positive) for rule in rules for atom, positive in _uses(rule.body, True)]
+    uses = [use for use in uses if use[1].predicate in levels]
+    # Levels only rise; one that exceeds the number of predicates rises for ever.
+    changed = True
+    while changed:
+        changed = False
+        for head, atom, positive in uses:
+            level = levels[atom.predicate] + (0 if positive else 1)
+            if level > levels[head]:
+                levels[head] = level
+                changed = True
+        if any(level >= len(levels) for level in levels.values()):
+            raise _cyclic(uses)
+    return levels
+
+
+def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
+    """The error at the first negation that lies on a cycle."""
+    for head, atom, positive in uses:
+        way = None if positive else _way(atom.predicate, head, uses)
+        if way:
+            place = atom.place or Place(None, 1, 1)
+            cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))
+            return error(place, f"derived predicate '{head}' rests on its own negation: {cycle}")
+    raise ValueError("no negation lies on a cycle")
+
+
+def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple[str, ...] | None:
+    """Predicates from `start` to `goal`, each resting on the next."""
+    ways: list[tuple[str, ...]] = [(start,)]
+    seen = {start}
+    while ways:
+        way = ways.pop(0)
+        if way[-1] == goal:
+            return way
+        for head, atom, _ in uses:
+            if head == way[-1] and atom.predicate not in seen:
+                seen.add(atom.predicate)
+                ways.append((*way, atom.predicate))
+    return None
+
+
+def _uses(formula: Formula, positive: bool) -> Iterator[tuple[Atom, bool]]:
+    """The atoms of a formula, and whether each stands under an even number of negations."""
+    match formula:
+        case Atom():
+            yield formula, positive
+        case Not(body):
+            yield from _uses(body, not positive)
+        case And(parts) | Or(parts):
+            for part in parts:
+                yield from _uses(part, positive)
+        case Exists(_, body) | Forall(_, body):
+            yield from _uses(body, positive)

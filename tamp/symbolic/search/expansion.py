@@ -1,0 +1,96 @@
+"""What all searches share: the cheapest known way to each state, counts and limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from tamp.symbolic.search.heuristics.registry import Estimate, Heuristic
+from tamp.symbolic.search.operators import Operator
+from tamp.symbolic.search.plan_shortening import shorten
+from tamp.symbolic.search.successors import State, Successors
+from tamp.system.deadline import Deadline
+
+
+class Reason(Enum):
+    """Why a search ended without a plan."""
+
+    UNSOLVABLE = "proven: no plan exists"
+    LIMIT = "the limit of expanded states was reached"
+    TIME = "the time is up"
+
+
+AUDIT = 500
+"""States after which a search asks whether pairs of facts prove that there is no plan: most plans are found before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Operators that lead from the initial state to the goal, and what they cost with all prices."""
+
+    operators: tuple[Operator, ...]
+    cost: float
+
+
+class Stop(Exception):
+    """Ends a search before it has come to an end by itself."""
+
+    def __init__(self, reason: Reason) -> None:
+        self.reason = reason
+
+
+class Expansion:
+    """A search under way.
+
+    Attributes:
+        best: The cost of the cheapest known way to each state.
+        parents: For each state the one before it on that way, and the operator between them.
+        bound: What no plan costs less than, as far as A* knows.
+    """
+
+    def __init__(
+        self,
+        successors: Successors,
+        heuristics: Sequence[Heuristic],
+        limit: int | None,
+        deadline: Deadline | None,
+        below: float = math.inf,
+        audit: Callable[[], bool] | None = None,
+    ) -> None:
+        self.successors = successors
+        self.heuristics = tuple(heuristics)
+        self.limit = limit
+        self.deadline = deadline
+        self.below = below
+        self.audit = audit
+        self.bound = 0.0
+        self.expanded = 0
+        self.evaluated = 0
+        self.best: dict[State, float] = {successors.initial: 0.0}
+        self.parents: dict[State, tuple[State, int]] = {}
+
+    def count(self) -> None:
+        """Count an expansion; stop at a limit."""
+        if self.limit is not None and self.expanded >= self.limit:
+            raise Stop(Reason.LIMIT)
+        if self.deadline is not None and self.deadline.passed:
+            raise Stop(Reason.TIME)
+        self.expanded += 1
+        if self.expanded == AUDIT and self.audit is not None and self.audit():
+            raise Stop(Reason.UNSOLVABLE)
+
+    def estimate(self, closed: State, parent: State | None) -> tuple[Estimate, ...]:
+        """What the heuristics say of a state, `parent` being the state before it, both with derived facts."""
+        self.evaluated += 1
+        return tuple(heuristic(closed, parent) for heuristic in self.heuristics)
+
+    def plan(self, state: State) -> Plan:
+        """The plan to a state along the parents, without what it does not need."""
+        numbers: list[int] = []
+        while state in self.parents:
+            state, operator = self.parents[state]
+            numbers.append(operator)
+        numbers, cost = shorten(self.successors, numbers[::-1])
+        return Plan(tuple(self.successors.operators[number] for number in numbers), cost)

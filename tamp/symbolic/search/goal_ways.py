@@ -1,0 +1,102 @@
+"""A goal's conjuncts, and for each the conjunctions of fluent literals by which it can hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.operators import Axiom, Grounded
+
+ALTERNATIVES = 512
+"""Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
+
+Literal = tuple[Fact, bool]
+"""A fact, and whether it is to hold."""
+
+Way = frozenset[Literal]
+"""Literals over fluents that together make a goal hold."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the goal: the literal that names it, and all ways in which it can hold."""
+
+    literal: Literal
+    ways: tuple[Way, ...]
+
+
+def goal_parts(grounded: Grounded) -> list[Part]:
+    """The goal's conjuncts, universal ones taken apart, each with its ways to hold."""
+    rules = _by_head(grounded.axioms)
+    literals = [(fact, True) for fact in sorted(grounded.goal.positive)]
+    literals += [(fact, False) for fact in sorted(grounded.goal.negative)]
+    opened: dict[Literal, None] = {}
+    for literal in literals:
+        for part in _opened(literal, rules, grounded.meanings.keys(), ()):
+            opened[part] = None
+    return [Part(literal, tuple(_ways(literal, rules, frozenset()))) for literal in opened]
+
+
+Rules = dict[Fact, list[Axiom]]
+
+
+def _by_head(axioms: Iterable[Axiom]) -> Rules:
+    rules: Rules = {}
+    for axiom in axioms:
+        rules.setdefault(axiom.head, []).append(axiom)
+    return rules
+
+
+def _body(axiom: Axiom) -> list[Literal]:
+    return [*((fact, True) for fact in sorted(axiom.positive)), *((fact, False) for fact in sorted(axiom.negative))]
+
+
+def _opened(literal: Literal, rules: Rules, auxiliary: Iterable[str], above: tuple[Fact, ...]) -> Iterator[Literal]:
+    """The conjuncts that an auxiliary fact stands for; the literal itself where it stands for something else."""
+    fact, wanted = literal
+    made = rules.get(fact, [])
+    if fact[0] in auxiliary and fact not in above:
+        if wanted and len(made) == 1:
+            for part in _body(made[0]):
+                yield from _opened(part, rules, auxiliary, (*above, fact))
+            return
+        if not wanted and made and all(len(_body(axiom)) == 1 for axiom in made):
+            for axiom in made:
+                ((part, sign),) = _body(axiom)
+                yield from _opened((part, not sign), rules, auxiliary, (*above, fact))
+            return
+    yield literal
+
+
+ANY: list[Way] = [frozenset()]
+"""How a literal holds of which nothing is known."""
+
+
+def _ways(literal: Literal, rules: Rules, above: frozenset[Fact]) -> list[Way]:
+    """Conjunctions of fluent literals of which one holds wherever the literal does."""
+    fact, wanted = literal
+    if fact not in rules:
+        return [frozenset((literal,))]
+    if fact in above:
+        return ANY
+    above |= {fact}
+    if wanted:
+        ways: list[Way] = []
+        for axiom in rules[fact]:
+            ways += _product([_ways(part, rules, above) for part in _body(axiom)])
+        return ways if len(ways) <= ALTERNATIVES else ANY
+    return _product(
+        [[way for part, sign in _body(axiom) for way in _ways((part, not sign), rules, above)] for axiom in rules[fact]]
+    )
+
+
+def _product(choices: list[list[Way]]) -> list[Way]:
+    """One of each, joined; without those that contradict themselves. Choices beyond ALTERNATIVES are left open."""
+    ways = ANY
+    for choice in sorted(choices, key=len):
+        if len(ways) * len(choice) > ALTERNATIVES:
+            continue
+        joined = (a | b for a in ways for b in choice)
+        ways = [way for way in joined if not any((fact, not sign) in way for fact, sign in way)]
+    return ways

@@ -1,0 +1,64 @@
+"""The landmark-cut heuristic (Helmert and Domshlak, Landmarks, Critical Paths and Abstractions, 2009): admissible.
+
+Each cut is a set of operators of which every plan of the delete relaxation needs one. It counts with the cost of the
+cheapest, which is taken off the cost of all operators in it. An operator with conditional effects is several relaxed
+operators: all of them get cheaper when one is in a cut, since one application may do all they do.
+"""
+
+from __future__ import annotations
+
+from tamp.symbolic.search.heuristics.relaxation import KEPT, Relaxation, Situation
+from tamp.symbolic.search.successors import State
+
+CUTS = 10
+"""So many cuts an estimate takes for granted, in telling what it will cost."""
+
+
+class LandmarkCut:
+    """The heuristic for the states that share one relaxed task.
+
+    Two facts are added: one that always holds, for operators without preconditions, and one that stands for the goal.
+
+    Args:
+        relaxation: Whose operators they are.
+        situation: The relaxed task.
+    """
+
+    def __init__(self, relaxation: Relaxation, situation: Situation) -> None:
+        self._relaxation = relaxation
+        self.situation = it = situation
+        self._true = true = it.facts
+        self._goal = goal = true + 1
+        loops, last, goals = it.loops, it.operators, relaxation.goals or [true]
+        integers = loops.integers
+        at, what = [*relaxation.free, *[last] * len(goals)], [*[true] * len(relaxation.free), *goals]
+        before = loops.appended(it.before, integers(at), integers(what), last + 1)
+        effects = loops.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
+        self._rows = before, effects, loops.transposed(before, goal + 1), loops.transposed(effects, goal + 1)
+        self._costs = loops.raised(it.costs, integers(()), loops.reals(()), 1)
+
+    def value(self, closed: State) -> float:
+        """The estimate for a state with its derived facts; infinite in a dead end."""
+        loops = self.situation.loops
+        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
+        return loops.landmark_cut(
+            *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
+        )
+
+
+class LandmarkCuts:
+    """`LandmarkCut` for every relaxed task that states ask for."""
+
+    def __init__(self, relaxation: Relaxation) -> None:
+        self._relaxation = relaxation
+        self._known: dict[State, LandmarkCut] = {}
+
+    def value(self, closed: State) -> float:
+        """The estimate for a state with its derived facts."""
+        situation, key = self._relaxation.situation(closed, CUTS), self._relaxation.key(closed)
+        known = self._known.get(key)
+        if known is None or known.situation.loops is not situation.loops:
+            if len(self._known) >= KEPT:
+                self._known.clear()
+            known = self._known[key] = LandmarkCut(self._relaxation, situation)
+        return known.value(closed)

@@ -1,0 +1,103 @@
+"""Facts that hold from the start to the end of every plan, and the operators that they forbid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.instantiation.datalog import Row
+from tamp.symbolic.search.instantiation.lazy_guards import Blocking, LazyGuards
+from tamp.symbolic.search.operators import Axiom, Grounded, Guard, Operator
+
+
+@dataclass(frozen=True)
+class Lasting:
+    """What nothing ever makes false.
+
+    Attributes:
+        facts: Those of the initial state, and what follows from them by rules without negation.
+        operators: Those that no lasting fact forbids.
+        forbidden: The others, each with the lasting facts that it wants not to hold.
+        causes: For a derived fact the facts that it follows from.
+    """
+
+    facts: frozenset[Fact]
+    operators: tuple[Operator, ...]
+    forbidden: tuple[tuple[Operator, frozenset[Fact]], ...]
+    causes: dict[Fact, frozenset[Fact]]
+
+
+def lasting(grounded: Grounded) -> Lasting:
+    """A fixpoint: what is never deleted forbids operators, without which more is never deleted."""
+    alive = list(grounded.operators)
+    forbidden: list[tuple[Operator, frozenset[Fact]]] = []
+    rules = [axiom for axiom in grounded.axioms if not axiom.negative]
+    refused: dict[Blocking, dict[Row, list[Guard]]] = {}
+    while True:
+        facts = set(grounded.initial - _deleted(alive))
+        causes = _derive(facts, rules)
+        kept: list[Operator] = []
+        for operator in alive:
+            against = set(operator.negative & facts)
+            for guard in _final(operator, refused):
+                against |= guard.facts if guard.facts <= facts else set()
+            if against:
+                forbidden.append((operator, frozenset(against)))
+            else:
+                kept.append(operator)
+        if len(kept) == len(alive):
+            return Lasting(frozenset(facts), tuple(alive), tuple(forbidden), causes)
+        alive = kept
+
+
+def forbidden_by(grounded: Grounded, facts: frozenset[Fact]) -> list[tuple[Operator, frozenset[Fact]]]:
+    """The operators that a state forbids whatever streams give, each with the facts that it wants not to hold."""
+    state = set(facts)
+    _derive(state, [axiom for axiom in grounded.axioms if not axiom.negative])
+    refused: dict[Blocking, dict[Row, list[Guard]]] = {}
+    found: list[tuple[Operator, frozenset[Fact]]] = []
+    for operator in grounded.operators:
+        against = set(operator.negative & state)
+        for guard in _final(operator, refused):
+            against |= guard.facts if guard.facts <= state else set()
+        if against:
+            found.append((operator, frozenset(against)))
+    return found
+
+
+def _final(operator: Operator, refused: dict[Blocking, dict[Row, list[Guard]]]) -> Iterator[Guard]:
+    """The guards of an operator that nothing lifts; those that only a price would ask for are not made."""
+    guards = operator.guards
+    if isinstance(guards, LazyGuards):
+        for blocking, row in guards.blocked:
+            if blocking not in refused:
+                rows = refused[blocking] = dict[Row, list[Guard]]()
+                for one, guard in blocking.refused():
+                    rows.setdefault(one, []).append(guard)
+            yield from refused[blocking].get(row, ())
+        guards = guards.made
+    yield from (guard for guard in guards if guard.lifted_by is None)
+
+
+def _deleted(operators: Iterable[Operator]) -> set[Fact]:
+    gone: set[Fact] = set()
+    for operator in operators:
+        gone |= operator.deleted
+        for effect in operator.conditional:
+            gone |= effect.deleted
+    return gone
+
+
+def _derive(facts: set[Fact], rules: list[Axiom]) -> dict[Fact, frozenset[Fact]]:
+    """Add what follows from the facts; why each does."""
+    causes: dict[Fact, frozenset[Fact]] = {}
+    grown = True
+    while grown:
+        grown = False
+        for rule in rules:
+            if rule.head not in facts and rule.positive <= facts:
+                facts.add(rule.head)
+                causes[rule.head] = rule.positive
+                grown = True
+    return causes

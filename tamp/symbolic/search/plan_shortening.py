@@ -1,0 +1,52 @@
+"""Plans without their useless actions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tamp.symbolic.search.successors import State, Successors
+
+
+def shorten(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
+    """Drop operators as long as the rest is a plan that costs no more (action elimination, Nakhost and Mueller 2010).
+
+    Each operator is dropped together with the later ones that no longer apply without it.
+
+    Args:
+        successors: The task.
+        plan: Numbers of operators that lead from the initial state to the goal.
+
+    Returns:
+        The remaining operators and their cost with prices.
+    """
+    s = successors
+    rest = list(plan)
+    left = _run(s, s.initial, rest)[1]
+    kept: list[int] = []
+    state, cost = s.initial, 0.0
+    while rest:
+        shorter, reduced = _run(s, state, rest[1:])
+        if shorter is not None and reduced <= left + 1e-9:
+            rest, left = shorter, reduced
+            continue
+        step = s.step_cost(rest[0], state)
+        kept.append(rest[0])
+        state, cost, left = s.apply(rest[0], state, s.closure(state)), cost + step, left - step
+        rest = rest[1:]
+    return kept, cost
+
+
+def _run(s: Successors, state: State, plan: list[int]) -> tuple[list[int] | None, float]:
+    """The operators of a plan that apply when those that do not are left out, and their cost; None without the goal."""
+    cost = 0.0
+    rest: list[int] = []
+    for operator in plan:
+        closed = s.closure(state)
+        if closed & s.before[operator] == s.before[operator] and not closed & s.absent[operator]:
+            cost += s.step_cost(operator, state)
+            state = s.apply(operator, state, closed)
+            rest.append(operator)
+    if cost == math.inf or not s.holds_goal(s.closure(state)):
+        return None, math.inf
+    return rest, cost

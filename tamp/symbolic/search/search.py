@@ -1,0 +1,119 @@
+"""Forward search over states, by name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tamp.errors import InputError
+from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.eager import astar, best_first
+from tamp.symbolic.search.expansion import Expansion, Stop
+from tamp.symbolic.search.expansion import Plan as Plan
+from tamp.symbolic.search.expansion import Reason as Reason
+from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS
+from tamp.symbolic.search.lazy import lazy
+from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.successors import Price, Successors
+from tamp.system.deadline import Deadline
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a search found.
+
+    Attributes:
+        plan: None when there is none, then `reason` says why.
+        expanded: States whose successors were generated.
+        evaluated: States that the heuristics were asked about.
+        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0 after other searches.
+    """
+
+    plan: Plan | None
+    reason: Reason | None
+    expanded: int
+    evaluated: int
+    bound: float = 0.0
+
+
+SEARCHES: dict[str, Callable[[Expansion, float], Plan | None]] = {
+    "astar": lambda search, weight: astar(search),
+    "wastar": lazy,
+    "greedy": lambda search, weight: lazy(search, math.inf),
+    "eager": lambda search, weight: best_first(search),
+}
+
+
+def split_heuristics(heuristic: str) -> tuple[str, ...]:
+    """The names in "ff+landmarks".
+
+    Raises:
+        InputError: A name of none.
+    """
+    names = tuple(dict.fromkeys(heuristic.split("+")))
+    for name in names:
+        if name not in HEURISTICS:
+            raise InputError(f"unknown heuristic '{name}'", found=name, choices=HEURISTICS)
+    return names
+
+
+def search(
+    grounded: Grounded,
+    *,
+    search: str = "wastar",
+    heuristic: str = "ff",
+    weight: float = 5.0,
+    price: Price | None = None,
+    limit: int | None = None,
+    deadline: Deadline | None = None,
+    below: float = math.inf,
+    audit: Callable[[], bool] | None = None,
+) -> Result:
+    """Search for a plan.
+
+    Args:
+        grounded: The task.
+        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax", "blind") is optimal;
+            "wastar" and "greedy" are lazy and use preferred operators, "eager" is plain greedy best-first search.
+        heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues to each, "astar"
+            takes the maximum, "eager" the sum.
+        weight: Of the estimate in "wastar".
+        price: What the use of a static fact costs (by an operator resting on it, to lift a guard, and in the lazy
+            searches where the goal is derived from it); may be infinite.
+            A mapping of those that cost something is faster than a function. Nothing by default.
+        limit: Most states to expand.
+        deadline: When to give up. It never changes the plan that is found, only whether one is.
+        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
+            greedy searches, which keep to the first way to each state.
+        audit: Asked once, when the search turns out not to be a short one: whether it is proven that there is no plan.
+    """
+    if search not in SEARCHES:
+        raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
+    if below < math.inf and search not in ("wastar", "astar"):
+        raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
+    names = split_heuristics(heuristic)
+    if not grounded.goal.positive <= grounded.reachable | grounded.initial:
+        return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
+    successors = Successors(grounded, price if price is not None else {})
+    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
+    try:
+        plan = SEARCHES[search](run, weight)
+        reason = None if plan else Reason.UNSOLVABLE
+    except Stop as stop:
+        plan, reason = None, stop.reason
+    return Result(plan, reason, run.expanded, run.evaluated, run.bound if ADMISSIBLE.issuperset(names) else 0.0)
+
+
+def unreachable(grounded: Grounded) -> tuple[Fact, ...]:
+    """The goal facts that hold in no state of the delete relaxation, sorted.
+
+    A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that stand for a
+    subformula are explained in `grounded.meanings`.
+    """
+    goal = grounded.goal
+    never = sorted(goal.positive - grounded.reachable - grounded.initial)
+    deleted = {fact for o in grounded.operators for fact in o.deleted}
+    deleted |= {fact for o in grounded.operators for effect in o.conditional for fact in effect.deleted}
+    kept = sorted(("not", *fact) for fact in (goal.negative & grounded.initial) - deleted)
+    return (*never, *kept)

@@ -1,0 +1,86 @@
+"""Compiling kernels with numba: once for an installation, at nobody's expense, and kept wherever one may write.
+
+All kernels get their `njit` from here. A deadline stands still while one is compiled (`tamp.system.deadline`).
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numba
+from numba.core import event
+
+from tamp.system.deadline import STANDSTILL
+
+Told = Callable[[int], None]
+"""Called with the number of functions compiled so far, whenever another one begins."""
+
+NOWHERE = "compiled kernels cannot be kept: {why}. They are compiled anew in each run; NUMBA_CACHE_DIR names a folder"
+
+
+class _Compiling(event.Listener):
+    """Stops the clock, and the search for garbage, which costs compiling a tenth of its time, while numba compiles."""
+
+    def __init__(self) -> None:
+        self.told: Told | None = None
+        self.count = 0
+        self.collects = False
+        self.said = False
+
+    def on_start(self, event: event.Event) -> None:
+        if STANDSTILL.depth == 0:
+            self.collects = gc.isenabled()
+            gc.disable()
+        STANDSTILL.begin()
+        if self.told is not None:
+            self.told(self.count)
+        self.count += 1
+
+    def on_end(self, event: event.Event) -> None:
+        STANDSTILL.end()
+        if STANDSTILL.depth == 0 and self.collects:
+            gc.enable()
+
+
+_COMPILING = _Compiling()
+event.register("numba:compile", _COMPILING)
+
+
+def tell(told: Told | None) -> None:
+    """Have somebody told of the progress of compiling; only one is."""
+    _COMPILING.told = told
+
+
+def njit(signature: Any = None, *, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile in numba's way.
+
+    Args:
+        signature: Compile (or load) now, for these types; None compiles at the first call.
+        cache: Keep it on disk: beside the source, or where that cannot be written in the user's cache
+            (`XDG_CACHE_HOME`). Where neither can be, a warning says so once and it is compiled in each process.
+        options: As for `numba.njit`.
+    """
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        if cache:
+            try:
+                return numba.njit(signature, cache=True, **options)(function)
+            except RuntimeError as error:  # numba found no folder
+                if "cannot cache" not in str(error):
+                    raise
+                _say("no folder for it can be written")
+            except OSError as error:  # the folder's disk is full
+                _say(os.strerror(error.errno) if error.errno else str(error))
+        return numba.njit(signature, **options)(function)
+
+    return compiled
+
+
+def _say(why: str) -> None:
+    if not _COMPILING.said:
+        _COMPILING.said = True
+        warnings.warn(NOWHERE.format(why=why), RuntimeWarning, stacklevel=2)

@@ -1,0 +1,227 @@
+"""What streams certified, worked out again from the geometry."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+
+import numpy as np
+
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.plan.read import Hold, PlanFile
+from tamp.plan.violation import Violation
+from tamp.simulation.physics import World
+from tamp.symbolic.pddl.structs import Domain, Fact
+from tamp.verification.collision_sweep import TOLERANCE, Findings, Sweeper
+from tamp.verification.execution_state import Held
+from tamp.verification.initial_state import apart, base_apart
+from tamp.verification.limits import SLACK
+from tamp.verification.makers_limits import limits_of
+
+CLOSE = 0.001
+"""Metres by which two poses that should be one may differ."""
+ALIKE = math.radians(0.5)
+"""Radians by which they may be turned."""
+PRESSED = 0.002
+"""Metres by which fingers may be in what they hold."""
+LOOSE = 0.003
+"""Metres by which a finger may be off what it holds."""
+PAD = 0.008
+"""Metres from the tool frame's origin to the pads' edges along its x and z."""
+ASIDE = (0.0, -300.0)
+"""Metres x, y: where nothing else is."""
+
+
+class Certified:
+    """Checks facts whose predicates have a geometric meaning that we know.
+
+    Facts about surfaces and cavities are not decided here but in the states in which they matter.
+    """
+
+    def __init__(self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, domain: Domain) -> None:
+        self._plan, self._world, self._robot, self._sweeper, self._domain = plan, world, robot, sweeper, domain
+        self._bodies = {name.lower(): name for name in world.scene.bodies}
+        self._checks: dict[str, tuple[str, Callable[[list[str]], str | None]]] = {
+            "pose": ("op", lambda _: None),
+            "reachable": ("op", lambda _: None),  # advice: what rests on it is checked itself
+            "supported": ("op?", lambda _: None),
+            "contained": ("op?", lambda _: None),
+            "rests-on": ("opo", lambda _: None),
+            "grasp": ("og", self._grasp),
+            "standing": ("b", self._standing),
+            "base-conf": ("b", self._standing),
+            "kin": ("opgbq", self._kinematics),
+            "base-motion": ("bt", self._base_motion),
+            "pick-motion": ("opgbqt", self._kinematics),
+            "place-motion": ("opgbqt", self._kinematics),
+            "approach": ("opg", self._approach),
+            "approach-clear": ("opgop", self._approach_clear),
+            "pose-clear": ("opop", self._pose_clear),
+            "reach-clear": ("opgbqop", self._reach_clear),
+        }
+
+    @property
+    def known(self) -> set[str]:
+        """Predicates that can be checked in this domain."""
+        declared = self._domain.predicates
+        return {
+            name for name, (kinds, _) in self._checks.items()
+            if name in declared and len(declared[name].parameters) == len(kinds)
+        }  # fmt: skip
+
+    def check(self, facts: Iterable[Fact], trusted: Counter[str]) -> Iterator[Violation]:
+        """Violations of facts; those of unknown predicates are counted in `trusted`."""
+        changed = {effect.atom.predicate for action in self._domain.actions for effect in action.effects}
+        changed |= self._domain.derived_predicates
+        known = self.known
+        for fact in sorted(set(facts)):
+            predicate, *terms = fact
+            text = f"({' '.join(fact)})"
+            if predicate in changed:
+                yield Violation("certified", f"{text}: actions and rules decide about {predicate}, streams do not")
+            elif predicate not in known:
+                trusted[predicate] += 1
+            else:
+                kinds, check = self._checks[predicate]
+                why = self._malformed(kinds, terms) or check(terms)
+                if why:
+                    bodies = tuple(term for term in terms if term in self._bodies)
+                    yield Violation("certified", f"{text} does not hold: {why}", bodies=bodies)
+
+    def why_not_held(self, body: str, T_tool_body: Array, opening: float) -> str | None:
+        """Why fingers at an opening do not hold a body that stands so in the tool frame; None when they do."""
+        world, robot = self._world, self._robot
+        if not 0.0 <= opening <= robot.opening + 1e-6:
+            return f"the fingers cannot open to {1000 * opening:.1f} mm"
+        T_world_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *robot.home, opening]))
+        T_before = world.pose(body)
+        world.place(body, T_world_tool @ T_tool_body)
+        try:
+            return self._why_loose(body) or self._why_beside(body, T_world_tool, opening)
+        finally:
+            world.place(body, T_before)
+
+    def _why_loose(self, body: str) -> str | None:
+        """Why the hand as it stands does not touch a body as it should."""
+        hand, *fingers = (self._world.links[link.name] for link in self._robot.links[-3:])
+        for name, link, loosest in (("palm", hand, math.inf), *(("finger", finger, LOOSE) for finger in fingers)):
+            distance = min(self._world.distance(link, solid, 0.05) for solid in self._world.solids[body])
+            if distance < -PRESSED:
+                return f"the {name} is {-1000 * distance:.1f} mm in it"
+            if distance > loosest:
+                far = f"{1000 * distance:.1f} mm" if math.isfinite(distance) else "far"
+                return f"a {name} is {far} off it"
+        return None
+
+    def _why_beside(self, body: str, T_world_tool: Array, opening: float) -> str | None:
+        """A body is between the pads when a line from pad to pad meets it."""
+        reach = max(opening / 2 - 2e-4, 1e-4)
+        at = [(x, z) for x in np.linspace(-PAD, PAD, 5) for z in np.linspace(-PAD, PAD, 5)]
+        ends = []
+        for side in (-reach, reach):
+            points = np.array([(x, side, z) for x, z in at])
+            ends.append(points @ T_world_tool[:3, :3].T + T_world_tool[:3, 3])
+        met = {name for name, _ in self._world.rays(ends[0], ends[1])}
+        return None if body in met else "it is not between the fingers' pads"
+
+    def _malformed(self, kinds: str, terms: list[str]) -> str | None:
+        types = {"p": "pose", "g": "grasp", "b": "base-conf", "q": "reach", "t": "motion"}
+        if len(terms) != len(kinds):
+            return f"it takes {len(kinds)} arguments"
+        for kind, term in zip(kinds, terms, strict=True):
+            if kind == "o" and term not in self._bodies:
+                return f"'{term}' is not a body"
+            if kind in types:
+                value = self._plan.values.get(term)
+                if value is None or value.type != types[kind]:
+                    return f"'{term}' is not a {types[kind]}"
+        return None
+
+    def _grasp(self, terms: list[str]) -> str | None:
+        hold: Hold = self._plan.values[terms[1]].data
+        if hold.body != terms[0]:
+            return f"{terms[1]} is a grasp of {hold.body}"
+        return self.why_not_held(self._bodies[terms[0]], hold.T_tool_body, hold.opening)
+
+    def _standing(self, terms: list[str]) -> str | None:
+        x, y, _ = self._plan.values[terms[0]].data
+        room = self._world.scene.room
+        inside = room.x[0] - 1e-4 <= x <= room.x[1] + 1e-4 and room.y[0] - 1e-4 <= y <= room.y[1] + 1e-4
+        return None if inside else "it is out of the room"
+
+    def _kinematics(self, terms: list[str]) -> str | None:
+        pose, hold, base, (approach, lift) = (self._plan.values[term].data for term in terms[1:5])
+        if self._beyond(approach, lift):
+            return "the path leaves the joints' limits"
+        for joints in (approach[-1], lift[0]):
+            T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
+            moved, turned = apart(T_world_tool @ hold.T_tool_body, pose)
+            if moved > CLOSE or turned > ALIKE:
+                return f"the hand would hold it {1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg from there"
+        return None
+
+    def _beyond(self, *paths: Array) -> bool:
+        """Whether joint angles (n, 7) are out of the limits."""
+        limits = limits_of(self._robot)
+        lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
+        return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
+
+    def _base_motion(self, terms: list[str]) -> str | None:
+        paths = [path for path in self._plan.values[terms[1]].data or () if path[0] == "base"]
+        target = self._plan.values[terms[0]].data
+        if paths and base_apart(paths[-1][1][-1], target) > CLOSE:
+            return "it ends elsewhere"
+        return None
+
+    def _pose_clear(self, terms: list[str]) -> str | None:
+        first, second = self._bodies[terms[0]], self._bodies[terms[2]]
+        if first == second:
+            return None
+        for body, term in ((first, terms[1]), (second, terms[3])):
+            self._world.place(body, self._plan.values[term].data)
+        distance = self._world.body_distance(first, second)
+        return f"they penetrate by {-1000 * distance:.1f} mm" if distance < -TOLERANCE else None
+
+    def _approach(self, terms: list[str]) -> str | None:
+        pose, hold = (self._plan.values[term].data for term in terms[1:3])
+        T_world_tool = pose @ np.linalg.inv(hold.T_tool_body)
+        hits = (self._hand_hits(name, T_world_tool, self._robot.opening) for name in self._world.scene.fixed)
+        return next((hit for hit in hits if hit), None)
+
+    def _approach_clear(self, terms: list[str]) -> str | None:
+        other = self._bodies[terms[3]]
+        if self._bodies[terms[0]] == other:
+            return None
+        pose, hold = (self._plan.values[term].data for term in terms[1:3])
+        self._world.place(other, self._plan.values[terms[4]].data)
+        return self._hand_hits(other, pose @ np.linalg.inv(hold.T_tool_body), self._robot.opening)
+
+    def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
+        """How deep the hand at a tool pose is in a body, which is brought to the hand of a robot that stands aside."""
+        world = self._world
+        T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
+        T_before = world.pose(other)
+        world.place(other, T_aside_tool @ np.linalg.inv(T_world_tool) @ T_before)
+        links = [world.links[name] for name in self._sweeper.hand]
+        depth = max(-world.distance(link, solid) for link in links for solid in world.solids[other])
+        world.place(other, T_before)
+        return f"the hand is {1000 * depth:.1f} mm in {other}" if depth > TOLERANCE else None
+
+    def _reach_clear(self, terms: list[str]) -> str | None:
+        other = self._bodies[terms[5]]
+        if self._bodies[terms[0]] == other:
+            return None
+        hold, base, (approach, lift) = (self._plan.values[term].data for term in terms[2:5])
+        if self._beyond(approach, lift):
+            return "the path leaves the joints' limits"
+        self._world.place(other, self._plan.values[terms[6]].data)
+        findings = Findings()
+        held = Held(self._bodies[terms[0]], hold.T_tool_body)
+        for path, opening, carried in ((approach, self._robot.opening, None), (lift, hold.opening, held)):
+            rows = np.array([[*base, *joints, opening] for joints in path])
+            times = np.arange(len(rows), dtype=float)
+            self._sweeper.sweep(rows, times, carried, findings, against=frozenset({other}))
+        worst = min(findings.worst.values(), key=lambda contact: contact.distance, default=None)
+        return f"{worst.first} is {-1000 * worst.distance:.1f} mm in it" if worst else None

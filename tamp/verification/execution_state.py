@@ -1,0 +1,29 @@
+"""Where a plan has come to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tamp.geometric.scene.pose import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A body in the hand: T_tool_body, shape (4, 4)."""
+
+    body: str
+    T_tool_body: Array
+
+
+@dataclass(eq=False)
+class Course:
+    """The robot's row [x, y, yaw, q1..q7, opening] in metres and radians, what it holds, and the time in seconds."""
+
+    row: Array
+    held: Held | None
+    time: float
+
+    @property
+    def in_hand(self) -> str | None:
+        """The held body's name."""
+        return None if self.held is None else self.held.body

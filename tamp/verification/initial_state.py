@@ -1,0 +1,136 @@
+"""What the problem says holds at the start, worked out from the scene, and compared with what the plan says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Scene
+from tamp.plan.read import PlanFile
+from tamp.plan.violation import Violation
+from tamp.symbolic.pddl.structs import Domain, Fact
+
+FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1}
+"""Fluents whose geometric meaning we know."""
+KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container"})
+"""Types that the scene decides about."""
+EXACT = 1e-6
+"""Metres or radians by which a start in the plan may differ from the problem's."""
+
+
+def meant(domain: Domain, predicate: str) -> bool:
+    """Whether the domain's predicate is the fluent of that name whose meaning we know."""
+    declared = domain.predicates.get(predicate)
+    return declared is not None and len(declared.parameters) == FLUENT_ARITY[predicate]
+
+
+def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Violation]:
+    """Whether the plan's objects are the scene's, and what it says of them is so."""
+    bodies = {name.lower(): body for name, body in scene.bodies.items()}
+    places = {name.lower() for name in (*scene.surfaces, *scene.cavities)}
+    for name, types in plan.objects.items():
+        value = plan.values.get(name)
+        if value is not None and types in ((value.type,), ("object",)):
+            continue
+        if name not in bodies and name not in places and name not in domain.constants:
+            yield Violation("initial", f"the problem has no '{name}'", bodies=(name,))
+            continue
+        truths = kinds_of(scene, name)
+        for type_ in types:
+            if type_ in KINDS_OF_OBJECTS and type_ not in truths:
+                yield Violation("initial", f"'{name}' is not {type_}", bodies=(name,))
+    for name, body in bodies.items():
+        if body.movable and name not in plan.objects:
+            yield Violation("initial", f"the body '{name}' is missing among the objects", bodies=(name,))
+
+
+def check_initial(
+    plan: PlanFile, scene: Scene, domain: Domain, given: frozenset[Fact], static: set[str]
+) -> Iterator[Violation]:
+    """Whether the plan's initial facts are those that the scene and the problem's `init` imply.
+
+    Args:
+        plan: The plan.
+        scene: The problem's.
+        domain: The domain.
+        given: The problem's own initial facts.
+        static: Predicates that are verified as certified facts, and may stand among the initial ones.
+    """
+    facts = set(plan.initial)
+    for fact in sorted(given - facts):
+        yield Violation("initial", f"({' '.join(fact)}) of the problem's init is missing")
+    bodies = {name.lower(): scene.bodies[name] for name in scene.movable}
+    placed: list[str] = []
+    for fact in plan.initial:
+        predicate, *terms = fact
+        text = f"({' '.join(fact)})"
+        known = predicate in FLUENT_ARITY and meant(domain, predicate)
+        if known and len(terms) != FLUENT_ARITY[predicate]:
+            yield Violation("initial", f"{text} has a wrong number of arguments")
+        elif fact in given or (not known and predicate in static) or _is_kind(fact, plan, scene, domain):
+            continue
+        elif known and predicate == "at-pose" and terms[0] in bodies:
+            placed.append(terms[0])
+            value = plan.values.get(terms[1])
+            if value is None or value.type != "pose":
+                yield Violation("initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],))
+            else:
+                moved, turned = apart(value.data, bodies[terms[0]].pose.matrix)
+                if moved > EXACT or turned > 1e-4:
+                    off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+                    message = f"{text}: {terms[0]} starts {off} from there"
+                    yield Violation("initial", message, bodies=(terms[0],), depth=moved)
+        elif known and predicate == "at-base":
+            value = plan.values.get(terms[0])
+            if value is None or value.type != "base-conf":
+                yield Violation("initial", f"{text}: '{terms[0]}' is not a base-conf")
+            elif base_apart(value.data, np.array(scene.robot.base)) > EXACT:
+                yield Violation("initial", f"{text}: the base starts elsewhere")
+        elif not (known and predicate == "hand-empty"):
+            yield Violation("initial", f"the problem does not imply {text}")
+    if meant(domain, "at-pose"):
+        for name in bodies:
+            if placed.count(name) != 1:
+                yield Violation("initial", f"'{name}' has {placed.count(name)} poses at the start", bodies=(name,))
+    for predicate in ("hand-empty", "at-base"):
+        count = sum(fact[0] == predicate for fact in facts)
+        if meant(domain, predicate) and count != 1:
+            yield Violation("initial", f"{predicate} holds {count} times at the start")
+
+
+def kinds_of(scene: Scene, name: str) -> set[str]:
+    """What the scene says that an object is."""
+    kinds: set[str] = set()
+    for body in scene.bodies.values():
+        if body.name.lower() == name:
+            kinds |= {"body", "movable" if body.movable else "fixed"}
+    if name in {surface.lower() for surface in scene.surfaces}:
+        kinds.add("surface")
+    if name in {cavity.lower() for cavity in scene.cavities}:
+        kinds.add("container")
+    return kinds
+
+
+def _is_kind(fact: Fact, plan: PlanFile, scene: Scene, domain: Domain) -> bool:
+    """Whether a fact says of an object only what it is."""
+    if len(fact) != 2:
+        return False
+    declared = fact[0] in domain.types and fact[0] in plan.objects.get(fact[1], ())
+    return declared or fact[0] in kinds_of(scene, fact[1])
+
+
+def apart(T_first: Array, T_second: Array) -> tuple[float, float]:
+    """Metres and radians between two poses of shape (4, 4)."""
+    cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
+    skew = T_first[:3, :3].T @ T_second[:3, :3]
+    sine = np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]]) / 2
+    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(float(sine), float(cosine))
+
+
+def base_apart(first: Array, second: Array) -> float:
+    """The largest difference of two base configurations x, y, yaw; a full turn is none."""
+    turn = (first[2] - second[2] + math.pi) % (2 * math.pi) - math.pi
+    return float(max(np.abs(first[:2] - second[:2]).max(), abs(turn)))

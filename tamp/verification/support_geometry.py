@@ -1,0 +1,183 @@
+"""What bodies stand on: their undersides and what is under them, felt by the physics engine's rays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Cavity, Surface
+from tamp.simulation.physics import World
+from tamp.simulation.shapes import body_points, centre_of_mass
+
+GAP = 0.010
+"""Metres of air below a body that still count as resting: it will drop onto what is there."""
+SINK = 0.001
+"""Metres by which a body may stand in what it rests on."""
+EVEN = 0.0015
+"""Metres by which the gaps of points that carry may differ."""
+LEAN = 0.002
+"""Metres by which the centre of mass may be out of the felt points that carry (they are a grid)."""
+GRID = 30
+ELSEWHERE = 300.0
+"""Metres along x to where nothing is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stand:
+    """How a body stands.
+
+    Attributes:
+        on: Names of the bodies that carry it, "floor" included; empty when nothing is within GAP below it.
+        gap: Metres of air above the nearest, infinite when there is nothing.
+        lean: Metres by which the centre of mass is out of what carries it; negative inside.
+    """
+
+    on: frozenset[str]
+    gap: float
+    lean: float
+
+    @property
+    def stable(self) -> bool:
+        """Whether it stays where it is."""
+        return self.why is None
+
+    @property
+    def why(self) -> str | None:
+        """Why it does not; None when it does."""
+        if not self.on:
+            return f"nothing is within {1000 * GAP:.0f} mm below it"
+        if self.lean > LEAN:
+            return f"its centre of mass is {1000 * self.lean:.1f} mm beyond what carries it"
+        return None
+
+
+class Supports:
+    """Asks a world of bodies how each stands. Bodies in `absent` (the one in the hand) carry nobody."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        bodies = world.scene.bodies
+        self._points = {name: body_points(body.parts) for name, body in bodies.items()}
+        self._centres = {name: centre_of_mass(body.parts) for name, body in bodies.items()}
+        self._sizes = {name: float(np.linalg.norm(points, axis=1).max()) for name, points in self._points.items()}
+        self._stands: dict[tuple[tuple[str, bytes], ...], Stand] = {}
+        self._undersides: dict[tuple[str, bytes], Array] = {}
+
+    def stand(self, body: str, absent: str | None = None) -> Stand:
+        """How a body stands where it is; the robot does not count."""
+        key = self._surroundings(body, absent)
+        if key not in self._stands:
+            self._stands[key] = self._felt(body, absent)
+        return self._stands[key]
+
+    def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
+        """What a body's stand depends on: the poses of itself and of the bodies around."""
+        poses = {name: self._world.pose(name) for name in self._points if name != absent or name == body}
+        centre = poses[body][:3, 3]
+        near = [
+            name for name, T in poses.items()
+            if np.linalg.norm(T[:3, 3] - centre) <= self._sizes[name] + self._sizes[body] + 2 * GAP
+        ]  # fmt: skip
+        return tuple((name, poses[name].tobytes()) for name in (body, *near))
+
+    def _felt(self, body: str, absent: str | None) -> Stand:
+        T_world_body = self._world.pose(body)
+        robot = self._world.robot
+        if robot is not None:
+            self._world.set_robot((ELSEWHERE, ELSEWHERE, 0.0), robot.home, 0.0)
+        T_world_absent = self._world.pose(absent) if absent else None
+        if absent:
+            self._world.place(absent, _shifted(np.eye(4), 2 * ELSEWHERE))
+        underside = self._underside(body, T_world_body[:3, :3]) + T_world_body[:3, 3]
+        try:
+            up, down = np.array([0.0, 0.0, 2 * SINK + EVEN]), np.array([0.0, 0.0, GAP + EVEN])
+            hits = self._world.rays(underside + up, underside - down)
+        finally:
+            self._world.place(body, T_world_body)
+            if absent and T_world_absent is not None:
+                self._world.place(absent, T_world_absent)
+        length = 2 * SINK + 2 * EVEN + GAP
+        gaps = np.array([fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits])
+        # What is met higher up is beside the body and not below it: a ray down its flank begins in a neighbour.
+        gaps[gaps < -SINK - EVEN] = np.inf
+        least = float(gaps.min())
+        if least > GAP:
+            return Stand(frozenset(), np.inf, np.inf)
+        carrying = gaps <= least + EVEN
+        on = frozenset(name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name)
+        centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
+        return Stand(on, least, outside(centre, underside[carrying][:, :2]))
+
+    def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
+        """Why a body that stands so does not stand on a surface; None when it does."""
+        T_surface_world = np.linalg.inv(self._world.pose(surface.body) @ surface.pose.matrix)
+        T_surface_body = T_surface_world @ self._world.pose(body)
+        points = self._points[body] @ T_surface_body[:3, :3].T + T_surface_body[:3, 3]
+        gap = float(points[:, 2].min())
+        if not -SINK - 1e-5 <= gap <= GAP + 1e-5:
+            return f"its lowest point is {1000 * gap:.1f} mm above the surface"
+        centre = T_surface_body[:3, :3] @ self._centres[body] + T_surface_body[:3, 3]
+        beyond = float((np.abs(centre[:2]) - np.array(surface.size) / 2).max())
+        if beyond > 1e-4:
+            return f"its centre of mass is {1000 * beyond:.1f} mm beyond the surface's edge"
+        if surface.body not in stand.on:
+            return "it rests on " + (", ".join(sorted(stand.on)) or "nothing")
+        return stand.why
+
+    def inside(self, body: str, cavity: Cavity, stand: Stand) -> str | None:
+        """Why a body that stands so is not inside a cavity; None when it is."""
+        T_cavity_world = np.linalg.inv(self._world.pose(cavity.body) @ cavity.pose.matrix)
+        T_cavity_body = T_cavity_world @ self._world.pose(body)
+        points = self._points[body] @ T_cavity_body[:3, :3].T + T_cavity_body[:3, 3]
+        half_x, half_y, height = cavity.size[0] / 2, cavity.size[1] / 2, cavity.size[2]
+        low, high = np.array([-half_x, -half_y, 0.0]), np.array([half_x, half_y, height])
+        sticks_out = float(np.maximum(low - points.min(axis=0), points.max(axis=0) - high).max())
+        if sticks_out > SINK:
+            return f"it protrudes by {1000 * sticks_out:.1f} mm"
+        return stand.why
+
+    def _underside(self, body: str, rotation: Array) -> Array:
+        """Points of the body's surface as seen from below, relative to its frame's origin, in the world's directions.
+
+        Leaves the body elsewhere: the caller puts it back.
+        """
+        world = self._world
+        away = np.eye(4)
+        away[:3, :3] = rotation
+        away = _shifted(away, ELSEWHERE)
+        world.place(body, away)
+        key = (body, rotation.round(9).tobytes())
+        if key not in self._undersides:
+            points = self._points[body] @ rotation.T
+            low, high = points.min(axis=0), points.max(axis=0)
+            steps = [np.linspace(low[axis], high[axis], GRID + 2)[1:-1] for axis in (0, 1)]
+            grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
+            middle = (low + high)[:2] / 2
+            shrunk = middle + (points[:, :2] - middle) * 0.995  # rays along an edge may miss it
+            plan = np.unique(np.concatenate([grid, shrunk]).round(6), axis=0)
+            starts = np.column_stack([plan, np.full(len(plan), low[2] - 0.01)]) + away[:3, 3]
+            ends = np.column_stack([plan, np.full(len(plan), high[2] + 0.01)]) + away[:3, 3]
+            hits = world.rays(starts, ends)
+            fractions = np.array([fraction for _, fraction in hits])
+            seen = np.array([name == body for name, _ in hits])
+            felt = starts + fractions[:, None] * (ends - starts) - away[:3, 3]
+            self._undersides[key] = felt[seen]
+        return self._undersides[key]
+
+
+def outside(point: Array, points: Array) -> float:
+    """Metres by which a point (2,) is outside of the convex hull of points (n, 2); not positive inside of it.
+
+    The largest distance by which a line through the hull's edge separates them, over the directions of all degrees.
+    """
+    turn = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
+    directions = np.stack([np.cos(turn), np.sin(turn)])
+    return float((point @ directions - (points @ directions).max(axis=0)).max())
+
+
+def _shifted(T: Array, x: float) -> Array:
+    shifted = T.copy()
+    shifted[:3, 3] = [x, 0.0, 0.0]
+    return shifted

@@ -1,0 +1,158 @@
+"""Where the robot and the bodies are at each moment of a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Scene
+from tamp.plan.read import PlanFile, Segment, TimedAction
+from tamp.symbolic.pddl.structs import Fact
+
+
+@dataclass(frozen=True)
+class Shown:
+    """An action: its name, the scene's objects among its arguments, when it starts and ends (seconds).
+
+    `where` says from where a body is taken, or where it is put, as far as the plan's facts tell.
+    """
+
+    name: str
+    objects: tuple[str, ...]
+    start: float
+    end: float
+    where: str = ""
+
+    @property
+    def text(self) -> str:
+        """In a few words."""
+        return " ".join(word for word in (self.name, *self.objects, self.where) if word)
+
+
+@dataclass(frozen=True, eq=False)
+class Stay:
+    """Where a body is from `since` on: T_world_body, or, while it is held, T_tool_body; shape (4, 4)."""
+
+    since: float
+    held: bool
+    T: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """A plan as motion, or a scene that stands still.
+
+    Attributes:
+        scene: The bodies.
+        robot: Of the scene.
+        actions: In order; none without a plan.
+        times: Seconds, shape (n,), not decreasing.
+        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in between.
+        stays: Where each movable body is, one after the other.
+    """
+
+    scene: Scene
+    robot: Robot
+    actions: tuple[Shown, ...]
+    times: Array
+    rows: Array
+    stays: Mapping[str, tuple[Stay, ...]]
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return float(self.times[-1])
+
+    def row(self, time: float) -> Array:
+        """The robot at a time, shape (11,); before the start and after the end it stands."""
+        return np.array([np.interp(time, self.times, column) for column in self.rows.T])
+
+    def poses(self, time: float, kinematics: Kinematics) -> dict[str, Array]:
+        """T_world_body (4, 4) of all bodies at a time."""
+        poses = {name: np.array(body.pose.matrix) for name, body in self.scene.bodies.items()}
+        for name, stays in self.stays.items():
+            stay = [stay for stay in stays if stay.since <= time or stay is stays[0]][-1]
+            poses[name] = kinematics.tool(self.row(time)[:10]) @ stay.T if stay.held else stay.T
+        return poses
+
+
+def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
+    """Follow a plan from the scene's start; without one nothing moves."""
+    arm = robot.home if scene.robot.arm is None else scene.robot.arm
+    maker = _Maker(scene, robot, np.array([*scene.robot.base, *arm, robot.opening]))
+    places = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
+    facts = () if plan is None else (*plan.initial, *plan.certified)
+    actions: list[Shown] = []
+    for action in () if plan is None else plan.actions:
+        objects = tuple(places[name] for name in action.arguments if name in places)
+        end = action.start + action.duration
+        actions.append(Shown(action.name, objects, action.start, end, _where(action, facts, places, scene)))
+        clock = action.start
+        for segment in action.segments:
+            maker.follow(segment, clock)
+            clock += float(segment.times[-1])
+    times = np.maximum.accumulate(np.array(maker.times))
+    stays = {name: tuple(stays) for name, stays in maker.stays.items()}
+    return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
+
+
+def _where(action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene) -> str:
+    """What a fact such as (supported mug p1 table) says of a body and a pose among the action's arguments."""
+    said = [fact for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments}]
+    firm = [fact for fact in said if fact[0] in ("supported", "contained")]  # others may speak of another place
+    names = {fact[3] for fact in firm or said}
+    place = next((places[name] for name in sorted(names) if name in places and name not in action.arguments), None)
+    if place is None:
+        return ""
+    if any(segment.attach is not None for segment in action.segments):
+        return f"from {place}"
+    return f"in {place}" if place in scene.cavities else f"on {place}"
+
+
+class _Maker:
+    def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
+        self.times: list[float] = [0.0]
+        self.rows: list[Array] = [row]
+        self.stays = {name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))] for name in scene.movable}
+        self._names = {name.lower(): name for name in scene.movable}
+        self._kinematics = Kinematics(robot)
+
+    def follow(self, segment: Segment, clock: float) -> None:
+        """One part moves."""
+        if segment.detach in self._names:
+            body = self._names[segment.detach]
+            tool = self._kinematics.tool(self.rows[-1][:10])
+            self.stays[body].append(Stay(clock, False, tool @ self.stays[body][-1].T))
+        columns = {"base": slice(0, 3), "arm": slice(3, 10), "gripper": slice(10, 11)}[segment.part]
+        positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
+        for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
+            row = self.rows[-1].copy()
+            row[columns] = values
+            row[10] = opening
+            self.times.append(clock + float(time))
+            self.rows.append(row)
+        if segment.attach is not None and segment.attach.body in self._names:
+            held = Stay(self.times[-1], True, segment.attach.T_tool_body)
+            self.stays[self._names[segment.attach.body]].append(held)
+
+
+def tool_path(film: Film, kinematics: Kinematics) -> Array:
+    """The tool's positions at the film's times, shape (n, 3), metres in the world."""
+    return np.array([kinematics.tool(row[:10])[:3, 3] for row in film.rows])
+
+
+def holding(film: Film) -> list[bool]:
+    """Whether something is in the hand between each of the film's times and the next."""
+    spans = [
+        (stay.since, after.since if after else film.duration)
+        for stays in film.stays.values()
+        for stay, after in pairwise([*stays, None])
+        if stay is not None and stay.held
+    ]
+    return [any(start <= a and b <= end for start, end in spans) for a, b in pairwise(film.times)]

@@ -1,0 +1,87 @@
+"""Workers that die lose no run and double none."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tamp.benchmark.log import Log, read_log
+from tamp.benchmark.process_pool import Processes
+from tamp.benchmark.ray_pool import LOCAL, RayCrew
+from tamp.benchmark.scheduler import ATTEMPTS, LOST, lead
+from tamp.benchmark.worker_pool import Crew
+from tamp.errors import InputError
+from tests.benchmark.toys import die, note, nothing, refuse, some
+
+RUNS = 6
+
+
+def ray(work: Callable[..., Any]) -> Crew:
+    return RayCrew(LOCAL, work, nothing, 2)
+
+
+def processes(work: Callable[..., Any]) -> Crew:
+    return Processes(2, work, nothing)
+
+
+@pytest.mark.parametrize("crew", [processes, pytest.param(ray, marks=pytest.mark.slow)])
+@pytest.mark.filterwarnings("default")  # Ray's own
+def test_a_killed_worker_loses_no_run_and_doubles_none(crew: Callable[..., Crew], tmp_path: Path) -> None:
+    traces = tmp_path / "traces"
+    traces.mkdir()
+    left: list[int] = []
+    with Log(tmp_path / "log.jsonl") as log, closing(crew(partial(note, folder=traces))) as workers:
+        lead(some(2)[:1], workers, log, lambda line, _: None)
+        lead(some(RUNS), workers, log, lambda line, count: left.append(count))
+    lines = read_log(tmp_path / "log.jsonl")
+    assert sorted(line["seed"] for line in lines) == list(range(RUNS))
+    assert all(line["solved"] for line in lines)
+    tries = {seed: len(list(traces.glob(f"{seed}.*"))) for seed in range(RUNS)}
+    assert tries == {seed: 2 if seed == 1 else 1 for seed in range(RUNS)}
+    assert left == list(range(RUNS - 2, -1, -1))
+    killed = (traces / "1.0").read_text(encoding="utf-8")
+    assert killed not in {str(line["pid"]) for line in lines if line["seed"] > 1}
+
+
+def test_a_run_that_kills_every_worker_is_written_down_as_lost(tmp_path: Path) -> None:
+    with Log(tmp_path / "log.jsonl") as log, closing(processes(die)) as workers:
+        lead(some(2), workers, log, lambda line, _: None)
+    by_seed = {line["seed"]: line for line in read_log(tmp_path / "log.jsonl")}
+    assert by_seed[0]["outcome"] == LOST and not by_seed[0]["solved"]
+    assert str(ATTEMPTS) in by_seed[0]["explanation"][0]
+    assert by_seed[1]["solved"]
+
+
+def test_workers_that_cannot_start_are_an_error_and_no_results(tmp_path: Path) -> None:
+    with Log(tmp_path / "log.jsonl") as log, closing(Processes(1, die, refuse)) as workers:
+        with pytest.raises(InputError, match="before its first run"):
+            lead(some(2), workers, log, lambda line, _: None)
+        assert log.lines == []
+
+
+def test_without_ray_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(InputError, match=r"pip install 'tamp\[ray\]'"):
+        RayCrew("auto", note, nothing)
+
+
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:1", "ray://127.0.0.1:1", "127.0.0.1:99999", "no.such.host.invalid:6379"]
+)
+def test_nobody_at_an_address_is_an_error_at_once(address: str) -> None:
+    with pytest.raises(InputError, match=f"no Ray cluster at '{address}'"):
+        RayCrew(address, note, nothing)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_no_cluster_at_an_address_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RAY_TMPDIR", str(tmp_path))
+    with pytest.raises(InputError, match="no Ray cluster at 'nonsense'"):
+        RayCrew("nonsense", note, nothing)

@@ -1,0 +1,185 @@
+"""Results on the disk: what is there is not run again, and what is damaged is named."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tamp.benchmark.log import Log, read_log
+from tamp.errors import InputError
+from tests.benchmark.toys import line, some
+
+
+def test_what_is_there_is_not_missing(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "log.jsonl"
+    runs = some(3)
+    with Log(path) as log:
+        assert log.missing([*runs, runs[0]]) == runs
+        log.add(line(runs[1], broken=float("inf")))
+    with Log(path) as log:
+        assert log.missing(runs) == [runs[0], runs[2]]
+    assert [found["broken"] for found in read_log(path)] == [None]
+
+
+@pytest.mark.parametrize("rest", ["", '{"config": {"prob', '{"half": "ü'])
+def test_a_half_written_last_line_is_repaired(rest: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    whole = json.dumps(line(some(1)[0])) + "\n"
+    path.write_bytes(whole.encode() + rest.encode()[:-1] + b"\xc3" * bool(rest))
+    assert len(read_log(path)) == 1
+    with Log(path) as log:
+        assert [case.seed for case in log.missing(some(2))] == [1]
+        log.add(line(some(2)[1]))
+    assert [found["seed"] for found in read_log(path)] == [0, 1]
+
+
+def test_a_first_line_that_is_half_written_leaves_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    path.write_text('{"config"', encoding="utf-8")
+    with Log(path) as log:
+        assert log.lines == []
+    assert path.read_bytes() == b""
+
+
+@pytest.mark.parametrize(
+    "damage",
+    ["", "nonsense", "[]", "{}", '{"config": {}}', json.dumps({**line(some(1)[0]), "planning_s": "soon"})],
+)
+def test_a_damaged_line_is_named(damage: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    good = json.dumps(line(some(1)[0]))
+    path.write_text(f"{good}\n{damage}\n{good}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"log\.jsonl:2: no result of tamp-bench"):
+        Log(path)
+    with pytest.raises(InputError, match=r"log\.jsonl:2: "):
+        read_log(path)
+    assert damage in path.read_text(encoding="utf-8")  # nothing of the user's is touched
+
+
+def test_other_settings_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    with Log(path) as log:
+        log.add(line(some(1)[0]))
+        log.check(30.0, "adaptive")
+        with pytest.raises(InputError, match=r"log\.jsonl:1: a run of 30 s with 'adaptive' among those of 10 s"):
+            log.check(10.0, "adaptive")
+        with pytest.raises(InputError, match="'incremental'"):
+            log.check(30.0, "incremental")
+    with path.open("a", encoding="utf-8") as stream:
+        stream.write(json.dumps(line(some(1, time=5.0)[0])) + "\n")
+    with pytest.raises(InputError, match=r"log\.jsonl:2: a run of 5 s"):
+        read_log(path)
+
+
+def test_two_cannot_add_to_the_same_results(tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    with Log(path), pytest.raises(InputError, match="another process"):
+        Log(path)
+    with Log(path):
+        pass
+
+
+def test_what_cannot_be_read_or_written_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be written"):
+        Log(tmp_path)
+    with pytest.raises(InputError, match="no such file"):
+        read_log(tmp_path / "none.jsonl")
+    (tmp_path / "empty.jsonl").touch()
+    with pytest.raises(InputError, match="no results yet"):
+        read_log(tmp_path / "empty.jsonl")
+
+
+WRONG = [
+    ("config", None, "'config' is None, not an object"),
+    ("config.problem", 5, "'config.problem' is 5, not a name"),
+    ("config.problem", "", "'config.problem' is ''"),
+    ("config.problem", "a\x1b[2J", "'config.problem' is 'a"),
+    ("config.sampler", None, "'config.sampler' is None"),
+    ("config.sampler", ["a"], "'config.sampler' is ['a']"),
+    ("config.seed", -1, "'config.seed' is -1, not a seed"),
+    ("config.seed", 1.5, "'config.seed' is 1.5"),
+    ("config.seed", True, "'config.seed' is True"),
+    ("config.time", 0, "'config.time' is 0, not a time"),
+    ("config.time", "30", "'config.time' is '30'"),
+    ("config.algorithm", {}, "'config.algorithm' is {}"),
+    ("config.samplers", [], "'config.samplers' is []"),
+    ("seed", "0", "'seed' is '0'"),
+    ("outcome", 3, "'outcome' is 3"),
+    ("solved", 1, "'solved' is 1, not true or false"),
+    ("verified", 0, "'verified' is 0"),
+    ("planning_s", -1.0, "'planning_s' is -1.0"),
+    ("planning_s", None, "'planning_s' is None"),
+    ("planning_s", 10**400, "an integer of 401 digits"),
+    ("planning_s", float("nan"), "NaN"),
+    ("cpu_s", "x", "'cpu_s' is 'x'"),
+    ("load", [], "'load' is []"),
+    ("parts_s", -1, "'parts_s' is -1, not seconds by part"),
+    ("parts_s", {"ik": "x"}, "'parts_s' is {'ik': 'x'}"),
+    ("machine", None, "'machine' is None, not a machine"),
+    ("machine", {"cpu": 1}, "'machine' is"),
+    ("commit", {"a": None}, "'commit' is"),
+    ("explanation", "text", "'explanation' is 'text'"),
+    ("warnings", [1], "'warnings' is [1]"),
+    ("streams", [], "'streams' is []"),
+    ("samplers", {"on": 1}, "'samplers' is"),
+    ("actions", 1.5, "'actions' is 1.5"),
+    ("cost", "free", "'cost' is 'free'"),
+    ("outcome", "TIMEOUT", "of a run that is solved"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "message"), WRONG, ids=range(len(WRONG)))
+def test_a_field_that_is_wrong_is_named(name: str, value: object, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    good = line(some(1)[0], explanation=[], parts_s={"ik": 1.0}, machine={"cpu": "x", "cores": 2}, commit="abc")
+    bad = json.loads(json.dumps(good))
+    *inside, last = name.split(".")
+    (bad[inside[0]] if inside else bad)[last] = value
+    path.write_text(f"{json.dumps(good)}\n{json.dumps(bad)}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_log(path)
+    assert str(caught.value).startswith(f"{path}:2: no result of tamp-bench: ")
+    assert message in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("name", ["config", "seed", "outcome", "solved", "verified", "planning_s"])
+def test_a_field_that_is_missing_is_named(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    path.write_text(json.dumps({n: v for n, v in line(some(1)[0]).items() if n != name}) + "\n", encoding="utf-8")
+    with pytest.raises(InputError, match=rf"log\.jsonl:1: no result of tamp-bench: '{name}' is missing"):
+        read_log(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"[" * 300_000 + b"\n", "nested too deeply"),
+        (b'{"config": "' + b"x" * 3_000_000 + b'"}\n', "'seed' is missing"),
+        ('{"\u00e9": 1}\n'.encode("latin-1"), "not UTF-8"),
+        (b'{"a": 1, "a": 2}\n', "given twice"),
+        (b'{"planning_s": 1e999}\n', "is missing"),
+    ],
+)
+def test_a_hostile_line_is_one_error(content: bytes, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "log.jsonl"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        read_log(path)
+    assert message in str(caught.value)
+    assert len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "/dev/null", "."])
+def test_no_device_is_read(name: str) -> None:
+    with pytest.raises(InputError):
+        read_log(Path(name))
+
+
+def test_the_logs_that_ship_are_read(root: Path) -> None:
+    logs = sorted((root / "benchmarks/results").glob("bench_*.jsonl"))
+    assert logs
+    for log in logs:
+        assert len(read_log(log)) > 10

@@ -1,0 +1,238 @@
+"""Problems in PDDL from the command line: no scene, no robot, a plan that the judge accepts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from tamp.commands.solve import BAD_INPUT, NO_PLAN, SOLVED, run
+from tamp.commands.verify import main as judge
+from tamp.errors import InputError
+from tamp.planner.pddl_only.parallel import portfolio
+from tamp.verification.verify import verify
+
+DOMAIN = """\
+(define (domain errands)
+  (:requirements :adl :derived-predicates :action-costs)
+  (:types place thing - object car truck - thing)
+  (:constants home - place)
+  (:predicates (at ?t - thing ?p - place) (road ?a ?b - place) (broken ?t - thing) (served ?p - place)
+    (linked ?a ?b - place) (unused ?t - thing))
+  (:functions (total-cost) - number (length ?a ?b - place) - number)
+  (:derived (linked ?a ?b - place) (or (road ?a ?b) (exists (?c - place) (and (road ?a ?c) (linked ?c ?b)))))
+  (:action drive
+    :parameters (?t - thing ?a ?b - place)
+    :precondition (and (at ?t ?a) (road ?a ?b) (not (broken ?t)) (imply (= ?b home) (served ?a)))
+    :effect (and (at ?t ?b) (not (at ?t ?a)) (when (not (linked ?b home)) (broken ?t))
+                 (forall (?p - place) (when (= ?p ?b) (served ?p))) (increase (total-cost) (length ?a ?b))))
+  (:action tow
+    :parameters (?t - (either car truck)) :precondition (broken ?t)
+    :effect (and (not (broken ?t)) (increase (total-cost) 10))))
+"""
+
+PROBLEM = """\
+(define (problem round)
+  (:domain errands)
+  (:objects a b c - place van - truck)
+  (:init (at van home) (road home a) (road a home) (road a b) (road b c) (road home b) (road b home)
+         (= (length home a) 3) (= (length a home) 3) (= (length a b) 1) (= (length b c) 1)
+         (= (length home b) 5) (= (length b home) 2) (= (total-cost) 0))
+  (:goal (and (exists (?p - place) (and (served ?p) (not (linked ?p home)))) (not (broken van))))
+  (:metric minimize (total-cost)))
+"""
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "d.pddl").write_text(DOMAIN, encoding="utf-8")
+    (tmp_path / "p.pddl").write_text(PROBLEM, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_an_optimal_plan_is_found_shown_written_and_judged(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--search", "astar", "--verify"]) == SOLVED
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "round: 2 goals, 5 objects, domain errands"
+    assert lines[1] == "warning: d.pddl:6:28: predicate 'unused' is never used"
+    assert lines[2].endswith("4 actions, cost 15 (optimal)")
+    shown = [line.split("  ")[-1] for line in lines[4:8]]
+    assert shown == ["(drive van home a)", "(drive van a b)", "(drive van b c)", "(tow van)"]
+    assert lines[-3].startswith("the plan holds: 4 actions")
+    plan = json.loads((files / "plan.json").read_text(encoding="utf-8"))
+    assert [action["cost"] for action in plan["actions"]] == [3, 1, 1, 10]
+    assert plan["cost"] == 15
+    assert judge(["plan.json"]) == 0
+
+
+@pytest.mark.parametrize("search", ["greedy", "eager", "wastar", "astar"])
+def test_every_search_is_a_choice(search: str, files: Path) -> None:
+    assert run(["d.pddl", "p.pddl", "--search", search, "--heuristic", "landmarks", "--quiet"]) == SOLVED
+    assert verify("plan.json").holds
+
+
+def test_the_plan_file_conforms_to_its_schema(files: Path, root: Path) -> None:
+    run(["d.pddl", "p.pddl", "--quiet"])
+    schema = json.loads((root / "tamp/plan/symbolic-plan.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(json.loads(Path("plan.json").read_text(encoding="utf-8")), schema)
+
+
+def test_json(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--json", "--verify"]) == SOLVED
+    shown = json.loads(capsys.readouterr().out)
+    assert shown["outcome"] == "solved"
+    assert shown["plan"] == "plan.json"
+    assert shown["verification"]["holds"]
+    assert shown["statistics"]["search"] == "greedy"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("(served ?p)", "(unused van)", "(unused van): no action"),  # nothing makes it true
+        ("(:goal (and", "(:goal (and (at van a) (broken van)", "(broken van) and (not (broken van)) cannot both"),
+    ],
+)
+def test_no_plan_is_proven(old: str, new: str, words: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    goal = PROBLEM.index("(:goal")
+    (files / "p.pddl").write_text(PROBLEM[:goal] + PROBLEM[goal:].replace(old, new), encoding="utf-8")
+    assert run(["d.pddl", "p.pddl"]) == NO_PLAN
+    shown = capsys.readouterr().out
+    assert "No plan: infeasible" in shown
+    assert words in shown
+    assert not (files / "plan.json").exists()
+
+
+def test_time_is_kept(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Forty places in a grid and blind search: more states than half a second has room for."""
+    cars = " ".join(f"car{i}" for i in range(9))
+    text = PROBLEM.replace("van - truck", f"van - truck {cars} - car")
+    text = text.replace("(at van home)", "(at van home)" + "".join(f" (at car{i} home)" for i in range(9)))
+    text = text.replace("(not (broken van))", "(at car0 c) (at car8 c) (at car5 c) (at car4 c)")
+    (files / "p.pddl").write_text(text, encoding="utf-8")
+    assert run(["d.pddl", "p.pddl", "--search", "astar", "--heuristic", "blind", "--time", "0.5"]) == NO_PLAN
+    assert "No plan in 0." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["p.pddl"], "a problem in PDDL needs its domain before it"),
+        (["p.pddl", "d.pddl"], "p.pddl:1:9: expected (domain NAME)"),
+        (["d.pddl", "q.pddl"], "q.pddl: no such file"),
+        (["d.pddl", "p.pddl", "--search", "astr"], "unknown search 'astr'. Choices: astar"),
+        (["d.pddl", "p.pddl", "--heuristic", "lmct"], "Did you mean 'lmcut'?"),
+        (["one_object", "--search", "astar"], "are for problems in PDDL"),
+    ],
+)
+def test_wrong_commands(arguments: list[str], words: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(arguments) == BAD_INPUT
+    assert words in capsys.readouterr().err
+
+
+def test_a_typo_is_placed_and_corrected(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (files / "p.pddl").write_text(PROBLEM.replace("(served ?p)", "(servd ?p)"), encoding="utf-8")
+    assert run(["d.pddl", "p.pddl"]) == BAD_INPUT
+    error = capsys.readouterr().err
+    assert "p.pddl:7:42: unknown predicate 'servd'" in error
+    assert "Did you mean 'served'?" in error
+
+
+def plan_of(files: Path) -> dict[str, Any]:
+    run(["d.pddl", "p.pddl", "--quiet", "--search", "astar"])
+    return json.loads((files / "plan.json").read_text(encoding="utf-8"))
+
+
+def test_the_judge_finds_what_is_wrong(files: Path) -> None:
+    plan = plan_of(files)
+    del plan["actions"][1]
+    found = {(violation.kind, violation.index) for violation in verify(plan).violations}
+    assert found == {("precondition", 1), ("cost", None)}
+    plan = plan_of(files)
+    del plan["actions"][-1]
+    plan["cost"] = 5
+    assert [str(v) for v in verify(plan).violations] == ["goal         (not (broken van)) does not hold"]
+    plan = plan_of(files)
+    plan["actions"][0]["cost"] = 2
+    assert [(v.kind, v.message) for v in verify(plan).violations] == [("cost", "it costs 3, not 2")]
+    plan = plan_of(files)
+    (files / "d.pddl").write_text(DOMAIN + "; changed", encoding="utf-8")
+    assert [v.kind for v in verify(plan).violations] == ["hash"]
+
+
+def test_the_judge_refuses_what_it_cannot_read(files: Path) -> None:
+    plan = plan_of(files)
+    plan["actions"][0]["name"] = "drife"
+    with pytest.raises(InputError, match=r"unknown action 'drife'.*Did you mean 'drive'"):
+        verify(plan)
+    plan["actions"][0] |= {"name": "drive", "arguments": ["van", "home"]}
+    with pytest.raises(InputError, match="'drive' takes 3 arguments, not 2"):
+        verify(plan)
+    plan["actions"][0]["arguments"] = ["van", "home", "nowhere"]
+    with pytest.raises(InputError, match="unknown object 'nowhere'"):
+        verify(plan)
+    plan = plan_of(files)
+    (files / "p.pddl").rename(files / "elsewhere.pddl")
+    with pytest.raises(InputError, match=r"the plan's problem .* is missing"):
+        verify(plan)
+    assert verify(plan, problem="elsewhere.pddl").holds
+
+
+def test_several_searches_at_a_time_give_the_plan_of_one(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--jobs", "3", "--json", "--verify"]) == SOLVED
+    document = json.loads(capsys.readouterr().out)
+    named = document["statistics"]
+    assert (named["search"], named["heuristic"]) in portfolio(None, None, 3)
+    again = ["d.pddl", "p.pddl", "--search", named["search"], "--heuristic", named["heuristic"], "--json"]
+    assert run(again) == SOLVED
+    assert json.loads(capsys.readouterr().out)["actions"] == document["actions"]
+
+
+def test_searches_beside_an_optimal_one_are_optimal(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pairs = portfolio("astar", None, 9)
+    assert pairs[0] == ("astar", "lmcut") and len(pairs) > 2 and all(search == "astar" for search, _ in pairs)
+    assert run(["d.pddl", "p.pddl", "--jobs", "2", "--search", "astar"]) == SOLVED
+    assert "(optimal)" in capsys.readouterr().out
+
+
+def test_a_number_of_jobs_is_positive(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["d.pddl", "p.pddl", "--jobs", "0"]) == BAD_INPUT
+    assert "--jobs: between 1 and" in capsys.readouterr().err
+
+
+SHOP = """\
+(define (domain shop)
+  (:requirements :strips :typing :action-costs)
+  (:types item)
+  (:predicates (have ?i - item) (ticket))
+  (:functions (total-cost) - number)
+  (:action buy-ticket :effect (and (ticket) (increase (total-cost) 5)))
+  (:action get :parameters (?i - item) :precondition (ticket) :effect (and (have ?i) (increase (total-cost) 1)))
+  (:action take :parameters (?i - item) :effect (and (have ?i) (increase (total-cost) 3))))
+"""
+
+SHOPPING = """\
+(define (problem shopping) (:domain shop) (:objects a b c d - item) (:init (= (total-cost) 0))
+  (:goal (and (have a) (have b) (have c) (have d))) (:metric minimize (total-cost)))
+"""
+
+
+def test_cheaper_plans_are_looked_for_until_one_is_the_cheapest(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (files / "shop.pddl").write_text(SHOP, encoding="utf-8")
+    (files / "shopping.pddl").write_text(SHOPPING, encoding="utf-8")
+    assert run(["shop.pddl", "shopping.pddl", "--optimize", "--json"]) == SOLVED
+    document = json.loads(capsys.readouterr().out)
+    steps = document["optimization"]
+    assert document["optimal"] and document["cost"] == steps["bound"] == 9.0 and steps["gap"] == 0.0
+    costs = [step["cost"] for step in steps["improvements"]]
+    assert costs[-1] == 9.0 and costs == sorted(set(costs), reverse=True)
+    assert run(["shop.pddl", "shopping.pddl", "--optimize"]) == SOLVED
+    lines = capsys.readouterr().out.splitlines()
+    assert any("no plan below" in line and "gap" in line for line in lines)
+    assert any("cost 9 (optimal)" in line for line in lines)

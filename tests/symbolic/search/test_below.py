@@ -1,0 +1,37 @@
+"""Searches for a plan that costs less than what is known, and what A* proves on the way."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tamp.errors import InputError
+from tamp.symbolic.pddl.parser import parse_domain, parse_task
+from tamp.symbolic.search.instantiation.instantiator import instantiate
+from tamp.symbolic.search.search import Reason, search
+from tests.planner.pddl_only.test_command import SHOP, SHOPPING
+
+TASK = instantiate(parse_task(SHOPPING, parse_domain(SHOP)))
+CHEAPEST = 9.0
+
+
+@pytest.mark.parametrize(("name", "heuristic"), [("wastar", "ff"), ("wastar", "ff+landmarks"), ("astar", "lmcut")])
+def test_only_plans_below_the_limit_are_found(name: str, heuristic: str) -> None:
+    found = search(TASK, search=name, heuristic=heuristic, below=12.0)
+    assert found.plan is not None and found.plan.cost < 12.0
+    none = search(TASK, search=name, heuristic=heuristic, below=CHEAPEST)
+    assert none.plan is None and none.reason is Reason.UNSOLVABLE
+
+
+def test_greedy_searches_know_one_way_to_a_state_and_take_no_limit() -> None:
+    with pytest.raises(InputError, match="a limit of the cost"):
+        search(TASK, search="greedy", below=12.0)
+
+
+def test_astar_says_what_no_plan_costs_less_than() -> None:
+    assert search(TASK, search="astar", heuristic="lmcut").bound == CHEAPEST
+    assert 0.0 < search(TASK, search="astar", heuristic="lmcut", limit=1).bound <= CHEAPEST
+    assert search(TASK, search="astar", heuristic="lmcut", below=CHEAPEST).bound == CHEAPEST
+    assert search(TASK, search="astar", heuristic="ff").bound == 0.0  # it may say too much
+    assert math.isfinite(search(TASK, search="astar", heuristic="blind").bound)
