@@ -17,7 +17,7 @@ from tamp.geometric.robot.robot import panda_urdf
 from tamp.geometric.robot.urdf import read_collision_vertices
 from tamp.geometric.scene.pose import Array
 
-ASSET = Path(__file__).parents[1] / "tamp" / "world" / "assets" / "panda_mobile.npz"
+ASSET = Path(__file__).parents[1] / "tamp" / "geometric" / "robot" / "assets" / "panda_mobile.npz"
 
 
 def hull(points: Array) -> tuple[Array, np.ndarray]:

@@ -19,6 +19,7 @@ from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
+from tamp.system.distribution import install_command
 from tamp.system.outputs import check_outputs, check_writable
 from tamp.system.progress import Progress
 from tamp.system.terminal import spoken
@@ -246,7 +247,7 @@ def _encoder_file(relation: str) -> Path:
 
 
 def _missing(error: ImportError) -> InputError:
-    return InputError(f"training needs {error.name}", remedy="pip install tamp[learn]")
+    return InputError(f"training needs {error.name}", remedy=install_command("learn"))
 
 
 def _commit() -> str:

@@ -13,6 +13,8 @@ from pathlib import Path
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from tamp.system.distribution import DISTRIBUTION
+
 ROOT = Path(__file__).resolve().parent.parent
 ALLOWED = re.compile(
     r"\b(MIT|BSD|0BSD|Apache|PSF|Python Software Foundation|ISC|Zlib|BSL-1\.0|MPL|Mozilla|CC0|Unlicense|HPND)\b", re.I
@@ -58,7 +60,7 @@ def licence(package: Distribution) -> str:
 
 def page() -> str:
     """docs/licences.md."""
-    runtime, everything = closure("tamp", frozenset()), closure("tamp", frozenset({"dev"}))
+    runtime, everything = closure(DISTRIBUTION, frozenset()), closure(DISTRIBUTION, frozenset({"dev"}))
     lines = [
         "# Licences of what tamp installs",
         "",
@@ -76,7 +78,7 @@ def page() -> str:
 
 
 def test_no_package_has_a_licence_that_binds_ours() -> None:
-    licences = {name: licence(package) for name, package in closure("tamp", frozenset({"dev"})).items()}
+    licences = {name: licence(package) for name, package in closure(DISTRIBUTION, frozenset({"dev"})).items()}
     assert len(licences) > 30
     assert {
         name: words for name, words in licences.items() if FORBIDDEN.search(words) or not ALLOWED.search(words)
@@ -93,7 +95,7 @@ def test_constraints_pin_exactly_what_is_installed() -> None:
         canonicalize_name(name): version
         for name, _, version in (line.partition("==") for line in lines if "==" in line)
     }
-    packages = closure("tamp", frozenset({"dev"}))
+    packages = closure(DISTRIBUTION, frozenset({"dev"}))
     installed = {name: package.version.partition("+")[0] for name, package in packages.items()}  # torch 2.13.0+cpu
     assert installed == pins
 

@@ -63,7 +63,7 @@ def test_installed_package_solves_by_name_from_another_directory(
 
 def test_wheel_holds_the_data_and_nothing_foreign(built: dict[str, Path]) -> None:
     names = zipfile.ZipFile(built["wheel"]).namelist()
-    assert {name.partition("/")[0].partition("-")[0] for name in names} == {"tamp", "grounding"}
+    assert {name.partition("/")[0].partition("-")[0] for name in names} == {"tamp", "tamp_planner", "grounding"}
     shipped = {name.removeprefix("tamp/_data/") for name in names if name.startswith("tamp/_data/")}
     here = [path for folder in ("domains", "problems") for path in (ROOT / folder).rglob("*") if path.is_file()]
     assert shipped == {str(path.relative_to(ROOT)) for path in here}

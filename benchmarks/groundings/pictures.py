@@ -12,6 +12,7 @@ from benchmarks.groundings.summary import JUDGES, Share, failures, feasible, gro
 from grounding.registry import VARIANTS
 from tamp.benchmark.picture import COLOURS, STYLES
 from tamp.errors import InputError
+from tamp.system.distribution import install_command
 
 Line = Mapping[str, Any]
 
@@ -45,7 +46,7 @@ def draw(figure: str, lines: Sequence[Line], folder: Path) -> Path:
     try:
         import matplotlib
     except ImportError:
-        raise InputError("pictures need matplotlib", remedy="pip install 'tamp[bench]'") from None
+        raise InputError("pictures need matplotlib", remedy=install_command("bench")) from None
     matplotlib.use("Agg")
     from matplotlib.figure import Figure
 

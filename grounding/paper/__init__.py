@@ -1,0 +1,1 @@
+"""Models of the paper: networks over point clouds and boxes, and trees."""

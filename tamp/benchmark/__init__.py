@@ -1,0 +1,1 @@
+"""Run problems x samplers x seeds for `tamp-bench`: from one case to tables and pictures."""

@@ -1,4 +1,4 @@
-"""Pictures of results: the only place that draws, with matplotlib (`pip install tamp[bench]`)."""
+"""Pictures of results: the only place that draws, with matplotlib (`pip install 'tamp-planner[bench]'`)."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 from tamp.benchmark.summary import Summary, summaries, times
 from tamp.benchmark.table import short
 from tamp.errors import InputError
+from tamp.system.distribution import install_command
 from tamp.system.outputs import write_whole
 
 COLOURS = (
@@ -43,7 +44,7 @@ def draw(lines: Sequence[Mapping[str, Any]], folder: Path) -> list[Path]:
     try:
         import matplotlib
     except ImportError:
-        raise InputError("pictures need matplotlib", remedy="pip install 'tamp[bench]'") from None
+        raise InputError("pictures need matplotlib", remedy=install_command("bench")) from None
     matplotlib.use("Agg")
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import os
 import platform
 import socket
@@ -10,6 +9,8 @@ import subprocess
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from tamp.system.distribution import distribution_version
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -23,9 +24,9 @@ def origin() -> dict[str, Any]:
     return {
         "commit": (commit or "unknown") + ("+changes" if changed else ""),
         "machine": {"cpu": _cpu(), "cores": os.cpu_count(), "host": socket.gethostname()},
-        "tamp": importlib.metadata.version("tamp"),
+        "tamp": distribution_version(),
         "python": platform.python_version(),
-        "numpy": importlib.metadata.version("numpy"),
+        "numpy": distribution_version("numpy"),
     }
 
 

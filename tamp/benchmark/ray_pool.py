@@ -1,4 +1,7 @@
-"""Runs on a Ray cluster (`pip install tamp[ray]`). Every machine of it needs this environment, tamp installed."""
+"""Runs on a Ray cluster (`pip install 'tamp-planner[ray]'`).
+
+Every machine of it needs this environment, tamp installed.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,7 @@ from tamp.benchmark.case import Case
 from tamp.benchmark.worker_pool import GRACE, Ended, Work
 from tamp.errors import InputError
 from tamp.system import guard
+from tamp.system.distribution import install_command
 
 LOCAL = "local"
 """The address that starts a Ray of this machine's own."""
@@ -46,7 +50,7 @@ class RayCrew:
         try:
             import ray
         except ImportError:
-            raise InputError("--ray needs Ray, which is not installed", remedy="pip install 'tamp[ray]'") from None
+            raise InputError("--ray needs Ray, which is not installed", remedy=install_command("ray")) from None
         self._ray: Any = ray
         quiet = {"log_to_driver": False, "logging_level": "error"}
         try:

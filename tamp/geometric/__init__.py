@@ -1,0 +1,1 @@
+"""Geometric wing: bodies, robot, collisions, motions, streams; it knows no search."""

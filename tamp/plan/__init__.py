@@ -1,0 +1,1 @@
+"""Plan files: write, read and open them, find their sources; the schemas lie here."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.metadata
 import json
 import platform
 import re
@@ -17,6 +16,7 @@ from tamp.geometric.values import Path as Polyline
 from tamp.planner.recorder import Sample
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
+from tamp.system.distribution import distribution_version
 from tamp.system.outputs import write_whole
 
 PACKAGES = ("numpy", "numba", "ompl", "python-fcl", "pin", "EAIK", "toppra")
@@ -43,9 +43,9 @@ def plan_document(solution: Solution) -> dict[str, Any]:
         "seed": solution.seed,
         "options": {"algorithm": solution.algorithm, "samplers": dict(sorted(problem.samplers.items()))},
         "versions": {
-            "tamp": _version("tamp"),
+            "tamp": distribution_version(),
             "python": platform.python_version(),
-            **{name: _version(name) for name in PACKAGES},
+            **{name: distribution_version(name) for name in PACKAGES},
         },
         "robot": problem.scene.robot.model,
         "objects": {name: list(types) for name, types in sorted(task.objects.items())},
@@ -277,13 +277,6 @@ def _file(path: Path) -> dict[str, str]:
         return {"path": str(path), "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
     except OSError as error:
         raise InputError(f"it cannot be read any more: {error.strerror}", file=path) from error
-
-
-def _version(package: str) -> str:
-    try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
-        return "unknown"
 
 
 def _compact(text: str) -> str:

@@ -1,0 +1,1 @@
+"""Plan as a library: files to a problem, a problem to a timed solution."""

@@ -1,0 +1,1 @@
+"""Symbolic wing: PDDL, heuristic search, algorithms over streams; it knows no geometry."""

@@ -1,0 +1,1 @@
+"""Serve the program itself: deadlines, signals, processes, files, progress, the terminal."""

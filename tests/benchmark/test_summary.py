@@ -76,5 +76,5 @@ def test_pictures_without_matplotlib_or_a_folder_are_an_error(tmp_path: Path, mo
     with pytest.raises(InputError, match="cannot be written"):
         draw(results(), tmp_path / "file")
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match=r"pip install 'tamp\[bench\]'"):
+    with pytest.raises(InputError, match=r"pip install 'tamp-planner\[bench\]'"):
         draw(results(), tmp_path)

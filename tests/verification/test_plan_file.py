@@ -51,7 +51,7 @@ MALFORMED: dict[str, tuple[Callable[[Plan], Any], str, bool]] = {
 
 def schema_errors(root: Path, document: Any) -> list[Any]:
     jsonschema = pytest.importorskip("jsonschema")
-    schema = json.loads((root / "tamp" / "plan.schema.json").read_text())
+    schema = json.loads((root / "tamp" / "plan" / "plan.schema.json").read_text())
     jsonschema.Draft202012Validator.check_schema(schema)
     return list(jsonschema.Draft202012Validator(schema).iter_errors(document))
 

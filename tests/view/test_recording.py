@@ -40,7 +40,7 @@ def test_the_plan_is_the_same_and_holds(recorded: Solution, root: Path) -> None:
     assert "record" not in plain
     assert document | {"timing": 0} == plain | {"timing": 0}
     document["record"] = json.loads(json.dumps(record))
-    schema = json.loads((root / "tamp" / "plan.schema.json").read_text(encoding="utf-8"))
+    schema = json.loads((root / "tamp" / "plan" / "plan.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(document, schema)
     assert verify(document).holds
 

@@ -1,0 +1,1 @@
+"""Motion planning: straight lines, RRT-Connect, shortcuts, and the timing of a path."""

@@ -1,0 +1,1 @@
+"""Robots as data: kinematics, inverse kinematics, reachability, sphere covers."""

@@ -1,0 +1,1 @@
+"""Scenes as frozen data: poses, shapes, bodies, surfaces, the room."""

@@ -1,0 +1,1 @@
+"""Stability: convex hulls, centres of mass, and the stable poses of a body."""

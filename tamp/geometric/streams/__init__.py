@@ -1,0 +1,1 @@
+"""Streams of the cupboard's domain: grasps, placements, IK, motions, collision tests."""

@@ -1,0 +1,1 @@
+"""Plan PDDL problems without scene and robot: classical planning with derived predicates."""

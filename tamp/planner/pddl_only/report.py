@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.metadata
 import json
 import platform
 from pathlib import Path
@@ -14,6 +13,7 @@ from tamp.planner.pddl_only.problem import SymbolicProblem
 from tamp.planner.pddl_only.solve import SymbolicSolution
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.pddl.structs import And
+from tamp.system.distribution import distribution_version
 from tamp.system.outputs import write_whole
 
 
@@ -90,7 +90,7 @@ def plan_text(solution: SymbolicSolution) -> str:
         "version": 1,
         "inputs": {"problem": _file(problem.problem), "domain": _file(problem.domain)},
         "options": {"search": solution.search, "heuristic": solution.heuristic},
-        "versions": {"tamp": importlib.metadata.version("tamp"), "python": platform.python_version()},
+        "versions": {"tamp": distribution_version(), "python": platform.python_version()},
         **_plan(solution),
     }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,1 @@
+"""Suggest changes that would make an unsolvable problem solvable (`--why`)."""

@@ -1,0 +1,1 @@
+"""Algorithms of task and motion planning over streams: adaptive, incremental, anytime."""

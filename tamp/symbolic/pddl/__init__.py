@@ -1,0 +1,1 @@
+"""Parse and check PDDL and PDDLStream files into frozen formulas, actions, rules, streams."""

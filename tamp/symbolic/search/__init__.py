@@ -1,0 +1,1 @@
+"""Heuristic forward search over instantiated tasks: A*, weighted A*, greedy; mutex proofs."""

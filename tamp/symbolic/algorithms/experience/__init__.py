@@ -1,0 +1,1 @@
+"""Learn from stream calls: success statistics, prices of what fails, failure counts."""

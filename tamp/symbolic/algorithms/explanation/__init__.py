@@ -1,0 +1,1 @@
+"""Explain why there is no plan: unachievable facts, conflicting goals, what failed."""

@@ -1,0 +1,1 @@
+"""Instantiate streams optimistically: placeholders for their outputs, the task over them."""

@@ -1,0 +1,1 @@
+"""Heuristics of the search: delete relaxation (FF, hadd, hmax), landmarks, LM-cut."""

@@ -1,0 +1,1 @@
+"""Instantiate lifted tasks: normal form, datalog joins, axioms, lazy guards."""

@@ -21,7 +21,7 @@ from tamp.planner.solve import solve
 from tamp.stream import Call, Rejection
 from tamp.symbolic.algorithms.result import Outcome
 from tests.clock import unhindered, waited
-from tests.test_cli import ENCLOSED, SOLVE
+from tests.commands.test_solve import ENCLOSED, SOLVE
 
 BUDGET = 1.0
 LATE = 1.0  # half of it is promised on an idle machine; the tests share theirs

@@ -67,7 +67,7 @@ def test_workers_that_cannot_start_are_an_error_and_no_results(tmp_path: Path) -
 
 def test_without_ray_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ray", None)
-    with pytest.raises(InputError, match=r"pip install 'tamp\[ray\]'"):
+    with pytest.raises(InputError, match=r"pip install 'tamp-planner\[ray\]'"):
         RayCrew("auto", note, nothing)
 
 

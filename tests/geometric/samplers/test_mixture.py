@@ -19,7 +19,7 @@ from tamp.plan.write import plan_text
 from tamp.planner.report import summary
 from tamp.planner.solution import Solution
 from tamp.verification.verify import verify
-from tests.geometric.streams.hostile import REPORTED, UNREPORTED, Hostile, a_room_away, raising
+from tests.geometric.samplers.hostile import REPORTED, UNREPORTED, Hostile, a_room_away, raising
 
 PROBLEM = "four_objects"
 CALM = 1.2

@@ -23,7 +23,7 @@ goal: (on can table)
 bodies:
   table: {furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: 90 deg}
 """
-PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.yaml"))
+PROBLEMS = sorted((Path(__file__).parents[3] / "problems").glob("*.yaml"))
 
 
 def load(folder: Path, bodies: str, head: str = HEAD) -> LoadedProblem:

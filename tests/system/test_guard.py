@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.test_portfolio import gone
+from tests.system.test_race import gone
 
 INT, TERM = signal.SIGINT, signal.SIGTERM
 

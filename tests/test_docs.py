@@ -1,0 +1,94 @@
+"""The documents name what there is: every folder of the code is in the map, every path and name in them exists."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = sorted([*ROOT.glob("docs/*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
+MAP = ROOT / "docs" / "how-it-works.md"
+PATHS = re.compile(
+    r"(?<![\w/.-])((?:tamp|grounding|tests|benchmarks|examples|domains|problems|docs)/[\w./-]*\w/?)(?![\w*<>{}])"
+)
+
+
+def rows(heading: str) -> list[tuple[str, str, str]]:
+    """The rows of the first table under a heading of the map."""
+    text = MAP.read_text(encoding="utf-8").partition(f"{heading}\n")[2]
+    parts = (part.strip() for part in text.split("\n\n"))
+    table = next(part for part in parts if part.startswith("| "))
+    cells = [line.strip("| ").split(" | ") for line in table.splitlines()[2:]]
+    return [(row[0], row[1], row[2]) for row in cells]
+
+
+def named(cell: str) -> list[str]:
+    return re.findall(r"`([^`]+)`", cell)
+
+
+FOLDERS = [(named(folder)[0], named(files)) for _, folder, files in rows("## The map")]
+DECISIONS = [(question, named(file)[0], named(name)[0]) for question, file, name in rows("### Where is it decided?")]
+
+
+def test_every_module_is_in_a_folder_that_the_map_names() -> None:
+    modules = [path for path in (ROOT / "tamp").rglob("*.py") if path.name != "__init__.py"]
+    assert len(modules) > 200
+
+    folders = {folder for folder, _ in FOLDERS}
+    lost = {str(path.relative_to(ROOT)) for path in modules if str(path.parent.relative_to(ROOT)) not in folders}
+    assert lost == set()
+
+
+@pytest.mark.parametrize(("folder", "files"), FOLDERS, ids=[folder for folder, _ in FOLDERS])
+def test_the_map_names_folders_and_first_files_that_exist(folder: str, files: list[str]) -> None:
+    assert files
+    assert [file for file in files if not (ROOT / folder / file).is_file()] == []
+
+
+@pytest.mark.parametrize("folder", [folder for folder, _ in FOLDERS])
+def test_every_folder_says_in_one_line_what_it_is_for(folder: str) -> None:
+    said = ast.get_docstring(ast.parse((ROOT / folder / "__init__.py").read_text(encoding="utf-8")))
+    assert said and len(said.splitlines()[0]) > 20
+
+
+@pytest.mark.parametrize(("question", "file", "name"), DECISIONS, ids=[name for _, _, name in DECISIONS])
+def test_what_decides_is_where_the_map_says(question: str, file: str, name: str) -> None:
+    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    defined = {
+        node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+    }
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        defined |= {target.id for target in targets if isinstance(target, ast.Name)}
+    assert name in defined, f"{question}: {file} defines no {name}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_paths_that_a_page_names_exist(page: Path) -> None:
+    text = re.sub(r"\]\([^)]*\)", "]", page.read_text(encoding="utf-8"))  # links: test_readme follows them
+    missing = {path for path in PATHS.findall(text) if not (ROOT / path).exists()}
+    assert missing == set()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_modules_that_a_page_names_exist(page: Path) -> None:
+    """`tamp.system.reading`, `python -m benchmarks.search`, `grounding.collect`: the longest part that is a module."""
+    for dotted in re.findall(r"\b((?:tamp|grounding|benchmarks)(?:\.[a-z_0-9]+)+)\b", page.read_text(encoding="utf-8")):
+        words = dotted.split(".")
+        if words[-1] in {"py", "md", "json", "jsonl", "toml", "pddl", "yaml"}:
+            continue
+        module = ROOT.joinpath(*words)
+        parent = ROOT.joinpath(*words[:-1])
+        found = [path for path in (module, parent) if path.is_dir() or path.with_suffix(".py").is_file()]
+        assert found, f"{dotted} is no module"
+        if found[0] == parent:
+            source = parent / "__init__.py" if parent.is_dir() else parent.with_suffix(".py")
+            assert words[-1] in source.read_text(encoding="utf-8"), f"{dotted}: {source} has no {words[-1]}"
+
+
+def test_readme_and_contributing_lead_to_the_map() -> None:
+    for page in ("README.md", "CONTRIBUTING.md"):
+        assert "docs/how-it-works.md#the-map" in (ROOT / page).read_text(encoding="utf-8")
