@@ -156,15 +156,23 @@ def parsed(arguments: list[str]) -> Arguments:
     """
     command = arguments[0] if arguments else ""
     if command not in (*COMMANDS, "-h", "--help"):
-        raise InputError(f"unknown command '{command}'" if command else "no command", found=command, choices=COMMANDS)
+        raise InputError(
+            f"unknown command '{command}'" if command else "no command",
+            found=command,
+            choices=COMMANDS,
+        )
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
-            chosen = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="tamp-learn", args=arguments)
+            chosen = tyro.extras.subcommand_cli_from_dict(
+                COMMANDS, prog="tamp-learn", args=arguments
+            )
     except SystemExit as end:
         if not end.code:  # --help
             raise
-        raise InputError(sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help") from None
+        raise InputError(
+            sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help"
+        ) from None
     except BrokenPipeError:
         raise unread() from None
     _check(chosen)
@@ -172,7 +180,10 @@ def parsed(arguments: list[str]) -> Arguments:
 
 
 def _check(chosen: Arguments) -> None:
-    if isinstance(chosen, Generate | Explore | Encoder | Train) and chosen.relation not in RELATIONS:
+    if (
+        isinstance(chosen, Generate | Explore | Encoder | Train)
+        and chosen.relation not in RELATIONS
+    ):
         _check_own(chosen)
     for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
         number = vars(chosen).get(name)
@@ -194,10 +205,14 @@ def _check(chosen: Arguments) -> None:
 def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
     """A relation of one's own has data of one's own."""
     relation = chosen.relation
-    if isinstance(chosen, Encoder | Train) and (chosen.data is not None or data_file(relation, "train").is_file()):
+    if isinstance(chosen, Encoder | Train) and (
+        chosen.data is not None or data_file(relation, "train").is_file()
+    ):
         return
     remedy = f"Of one's own: tamp-learn collect {relation} FILES makes its data"
-    raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS, remedy=remedy)
+    raise InputError(
+        f"unknown relation '{relation}'", found=relation, choices=RELATIONS, remedy=remedy
+    )
 
 
 def data_file(relation: str, split: str) -> Path:

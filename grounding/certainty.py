@@ -28,7 +28,9 @@ def cannot_tell(card: Mapping[str, Any]) -> str | None:
     """Why weights have no classifier yet, by their card; None when they have one."""
     if card.get("classifies", True):
         return None
-    return str(card.get(REASON) or f"it was trained on {card.get('samples', 'few')} labels; {_needed()}")
+    return str(
+        card.get(REASON) or f"it was trained on {card.get('samples', 'few')} labels; {_needed()}"
+    )
 
 
 def too_few(holds: Labels) -> str | None:
@@ -43,7 +45,9 @@ def too_few(holds: Labels) -> str | None:
     return f"{said}; {_needed()}"
 
 
-def no_better_than_chance(holds: Labels, fit: Callable[[NDArray[np.intp], NDArray[np.intp]], Labels]) -> str | None:
+def no_better_than_chance(
+    holds: Labels, fit: Callable[[NDArray[np.intp], NDArray[np.intp]], Labels]
+) -> str | None:
     """Why a classifier knows no more than chance does, by two-fold cross-validation; None when it knows more.
 
     The mean of both kinds' recall has to be two standard errors of guessing above a half.

@@ -131,7 +131,11 @@ def _size(job: Job, number: int) -> int:
 
 def _claim(parts: Path, name: str) -> None:
     mark = parts / "job.json"
-    if parts.is_dir() and not mark.is_file() and any(UNFINISHED.match(one.name) is None for one in parts.iterdir()):
+    if (
+        parts.is_dir()
+        and not mark.is_file()
+        and any(UNFINISHED.match(one.name) is None for one in parts.iterdir())
+    ):
         what = "this folder is in the way, and tamp-learn has not made it"
         raise InputError(what, file=parts, remedy="Move it, or choose another --out")
     if parts.is_dir() and (not mark.is_file() or mark.read_text() != name):
@@ -142,7 +146,9 @@ def _claim(parts: Path, name: str) -> None:
 def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
     count = min(workers or os.cpu_count() or 1, len(waiting))
     if count <= 1:
-        yield from ((number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting)
+        yield from (
+            (number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting
+        )
         return
     from concurrent.futures import ProcessPoolExecutor
     from concurrent.futures import wait as wait_for
@@ -150,11 +156,14 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 
     resource_tracker.ensure_running()  # which would let signals through while it starts
     before = active_children()
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent)
+    pool = ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent
+    )
     try:
         with guard.Held():
             futures = {
-                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number for number in waiting
+                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number
+                for number in waiting
             }
         while futures:
             if guard.asked():  # what it raised was dropped
@@ -173,14 +182,18 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 def _packed(job: Job, number: int, start: int, size: int) -> bytes:
     """The scenes of one chunk, as the bytes of an npz."""
     tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
-    names = {name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])}
+    names = {
+        name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])
+    }
     arrays: dict[str, Any] = _arrays(job.chunk(number, start, size), names, job.kinds)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()
 
 
-def _arrays(made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+def _arrays(
+    made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]
+) -> dict[str, NDArray[Any]]:
     count = len(made)
     arrays: dict[str, NDArray[Any]] = {
         "holds": np.array([one.holds for one in made]),

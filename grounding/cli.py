@@ -10,7 +10,16 @@ from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
 
-from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
+from grounding.arguments import (
+    Collect,
+    Encoder,
+    Evaluate,
+    Explore,
+    Generate,
+    Train,
+    data_file,
+    parsed,
+)
 from grounding.certainty import cannot_tell
 from grounding.dataset import FORMAT as DATA
 from grounding.dataset import Dataset, read_dataset, write_dataset
@@ -75,7 +84,9 @@ def _generate(chosen: Generate) -> None:
     out = chosen.out or data_file(chosen.relation, chosen.split)
     _check_out(out, DATA, _mesh_files(chosen))
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
-    data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
+    data = generate(
+        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+    )
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
@@ -86,16 +97,22 @@ def _explore(chosen: Explore) -> None:
     out = chosen.out or data_file(chosen.relation, "explored")
     _check_out(out, DATA, [*_mesh_files(chosen), *_with_card(chosen.model)])
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
-    data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
+    data = explore(
+        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+    )
     _show("", last=True)
-    print(f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}")
+    print(
+        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}"
+    )
 
 
 def _collect(chosen: Collect) -> None:
     from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
-    _check_out(out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))])
+    _check_out(
+        out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))]
+    )
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
     for text in (*unsteady(data), *monotony(data)):
         print(f"warning: {text}", file=sys.stderr)
@@ -112,7 +129,9 @@ def _encoder(chosen: Encoder) -> None:
     except ImportError as error:
         raise _missing(error) from None
     args = Args(seed=chosen.seed)
-    args = replace(args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points)
+    args = replace(
+        args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
+    )
     arrays, score = train_encoder(data, chosen.kind, chosen.scaling, args, _show)
     _show("", last=True)
     card = {
@@ -134,7 +153,11 @@ def _train(chosen: Train) -> None:
 
     out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
     encoder = chosen.encoder
-    if encoder is None and chosen.model in OPTIONS["encoder"] and _encoder_file(chosen.relation).is_file():
+    if (
+        encoder is None
+        and chosen.model in OPTIONS["encoder"]
+        and _encoder_file(chosen.relation).is_file()
+    ):
         encoder = _encoder_file(chosen.relation)
     args = TrainArgs(
         samples=chosen.samples,
@@ -181,9 +204,19 @@ def _evaluate(chosen: Evaluate) -> None:
         model = load_model(Path(chosen.weights), chosen.model)
         relation = str(read_weights(Path(chosen.weights)).card.get("relation"))
     data = _data(chosen.data, relation, "test")
-    found = evaluate(model, data, chosen.scenes, chosen.seed, lambda done, total: _show(f"{done} of {total} scenes"))
+    found = evaluate(
+        model,
+        data,
+        chosen.scenes,
+        chosen.seed,
+        lambda done, total: _show(f"{done} of {total} scenes"),
+    )
     _show("", last=True)
-    for name, share in (("settled", found.settled), ("MCA", found.mca), ("feasible", found.feasible)):
+    for name, share in (
+        ("settled", found.settled),
+        ("MCA", found.mca),
+        ("feasible", found.feasible),
+    ):
         low, high = wilson(share, found.scenes)
         print(f"{name:9} {share:.4f}  [{low:.4f}, {high:.4f}]")
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
@@ -219,7 +252,11 @@ def _below(folder: Path, pattern: str) -> list[Path]:
 
 
 def _mesh_files(chosen: Generate | Explore) -> list[Path]:
-    return [] if chosen.meshes is None else [file for file in _below(chosen.meshes, "*") if os.path.isfile(file)]
+    return (
+        []
+        if chosen.meshes is None
+        else [file for file in _below(chosen.meshes, "*") if os.path.isfile(file)]
+    )
 
 
 def _check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:
@@ -254,7 +291,11 @@ def _commit() -> str:
     folder = Path(__file__).resolve().parent
     try:
         said = subprocess.run(
-            ["git", "rev-parse", "--short", "HEAD"], cwd=folder, capture_output=True, text=True, check=False
+            ["git", "rev-parse", "--short", "HEAD"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
         )
     except OSError:
         return ""

@@ -78,7 +78,13 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
         raise InputError(f"no demonstrations of '{relation}'")
     arrays = _arrays(rows)
     by_type = {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(KINDS)}
-    card = {"relation": relation, "split": "train", "count": len(rows), "by type": by_type, "feasible": 1.0}
+    card = {
+        "relation": relation,
+        "split": "train",
+        "count": len(rows),
+        "by type": by_type,
+        "feasible": 1.0,
+    }
     data = Dataset(arrays, {name: parts for parts, name in templates.items()}, KINDS, card)
     data.sources = tuple(sources)
     for first, second in contradictions(data):
@@ -136,7 +142,9 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
         for form in read(goal.text, path, line_offset=goal.line - 1, column_offset=goal.column - 1):
             for group, holds in _facts(form, relation.lower()):
                 where = f"{path}:{group.place.line}:{group.place.column}"
-                demonstration = Demonstration(loaded.scene, _names(group, loaded.scene), holds, where)
+                demonstration = Demonstration(
+                    loaded.scene, _names(group, loaded.scene), holds, where
+                )
                 try:
                     _bodies(demonstration)
                 except InputError as found:
@@ -144,7 +152,9 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
                 said.append(demonstration)
         if not said:
             remedy = f"goal: ({relation} BODY PLACE), or goal: (not ({relation} BODY PLACE))"
-            raise InputError(f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy)
+            raise InputError(
+                f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy
+            )
         yield from said
 
 
@@ -177,7 +187,9 @@ def _names(group: Group, scene: Scene) -> tuple[str, str]:
         raise error(group.place, "a demonstration names a body, and a surface or container")
     for word in words:
         if word.text not in known:
-            raise error(word, f"unknown object '{word.written}'", found=word.written, choices=known.values())
+            raise error(
+                word, f"unknown object '{word.written}'", found=word.written, choices=known.values()
+            )
     return known[words[0].text], known[words[1].text]
 
 
@@ -189,18 +201,25 @@ def _bodies(one: Demonstration) -> tuple[list[str], Region]:
     place = scene.surfaces.get(place_name) or scene.cavities.get(place_name)
     if place is None:
         choices = (*scene.surfaces, *scene.cavities)
-        raise InputError(f"'{place_name}' is no surface or container", found=place_name, choices=choices)
+        raise InputError(
+            f"'{place_name}' is no surface or container", found=place_name, choices=choices
+        )
     if place.body == name:
         raise InputError(f"'{place_name}' is a part of '{name}' itself")
     others = [other for other in scene.bodies if other not in (name, place.body)]
     return [place.body, name, *others], region_of(scene.bodies[place.body], place)
 
 
-def _arrays(rows: Sequence[tuple[bool, Region, list[tuple[int, Array]]]]) -> dict[str, NDArray[Any]]:
+def _arrays(
+    rows: Sequence[tuple[bool, Region, list[tuple[int, Array]]]],
+) -> dict[str, NDArray[Any]]:
     count, most = len(rows), max(len(placed) for _, _, placed in rows)
     arrays: dict[str, NDArray[Any]] = {
         "holds": np.array([holds for holds, _, _ in rows]),
-        "kind": np.array([KINDS.index("holds" if holds else "does not hold") for holds, _, _ in rows], dtype=np.int8),
+        "kind": np.array(
+            [KINDS.index("holds" if holds else "does not hold") for holds, _, _ in rows],
+            dtype=np.int8,
+        ),
         "feasible": np.ones(count, dtype=bool),
         "body": np.full((count, most), -1, dtype=np.int16),
         "scale": np.ones((count, most)),

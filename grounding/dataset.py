@@ -71,7 +71,12 @@ class Dataset:
         kinds: Sequence[str],
         card: Mapping[str, Any],
     ) -> None:
-        self.arrays, self.templates, self.kinds, self.card = dict(examples), dict(templates), tuple(kinds), dict(card)
+        self.arrays, self.templates, self.kinds, self.card = (
+            dict(examples),
+            dict(templates),
+            tuple(kinds),
+            dict(card),
+        )
         self.sources: tuple[str, ...] = ()
         self._names = tuple(templates)
         self._forms: dict[str, Form] = {}
@@ -101,7 +106,9 @@ class Dataset:
             Placed(self._form(name, scale), a["pose"][index, row])
             for name, scale, row in zip(names, scales, rows, strict=True)
         ]
-        region = Region(bool(a["hollow"][index]), a["region"][index], a["size"][index], a["box"][index])
+        region = Region(
+            bool(a["hollow"][index]), a["region"][index], a["size"][index], a["box"][index]
+        )
         return Example(
             near(placed[0], region, placed[1], placed[2:]),
             bool(self.holds[index]),
@@ -113,11 +120,15 @@ class Dataset:
     def take(self, indices: NDArray[np.intp] | Sequence[int]) -> Dataset:
         """The examples at these indices."""
         chosen = np.asarray(indices)
-        return Dataset({k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card)
+        return Dataset(
+            {k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card
+        )
 
     def form(self, row: int, body: int) -> Form:
         """The geometry of a scene's body: 0 for what the place is of, 1 for the relation's body, then the others."""
-        return self._form(self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body]))
+        return self._form(
+            self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body])
+        )
 
     def _form(self, name: str, scale: float) -> Form:
         if name not in self._forms:
@@ -131,7 +142,12 @@ def write_dataset(path: Path, data: Dataset) -> None:
     Raises:
         OSError: The folder cannot be made or written.
     """
-    card = {"format": FORMAT, **data.card, "kinds": list(data.kinds), "templates": list(data.templates)}
+    card = {
+        "format": FORMAT,
+        **data.card,
+        "kinds": list(data.kinds),
+        "templates": list(data.templates),
+    }
     arrays = {**data.arrays, **_packed(tuple(data.templates.values()))}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -164,7 +180,9 @@ def read_dataset(path: Path) -> Dataset:
         geometry = _unpacked({name: arrays.pop(name) for name in _GEOMETRY})
         templates = dict(zip(card.pop("templates"), geometry, strict=True))
     except InputError as error:
-        raise InputError(f"the data set is damaged: {error.message}", file=path, remedy=remedy) from None
+        raise InputError(
+            f"the data set is damaged: {error.message}", file=path, remedy=remedy
+        ) from None
     except (ValueError, ArithmeticError) as error:  # a hull that is none
         raise InputError(f"the data set is damaged: {error}", file=path, remedy=remedy) from None
     if pair.stranger is not None:
@@ -206,7 +224,9 @@ def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
             pose = (*part.pose.position, *part.pose.quaternion)
             rows.append((number, _SHAPES.index(type(shape)), size, pose, *counts))
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return dict(zip(_GEOMETRY, [*columns, np.concatenate(vertices), np.concatenate(faces)], strict=True))
+    return dict(
+        zip(_GEOMETRY, [*columns, np.concatenate(vertices), np.concatenate(faces)], strict=True)
+    )
 
 
 def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
@@ -224,7 +244,10 @@ def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
         elif kind is Sphere:
             shape = Sphere(a)
         else:
-            shape = Hull(arrays["vertices"][vertex : vertex + count], arrays["faces"][face : face + triangles])
+            shape = Hull(
+                arrays["vertices"][vertex : vertex + count],
+                arrays["faces"][face : face + triangles],
+            )
         vertex, face = vertex + count, face + triangles
         qx, qy, qz, qw = quaternion
         templates[number].append(Part(shape, Pose((x, y, z), (qx, qy, qz, qw))))

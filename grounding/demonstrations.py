@@ -47,7 +47,9 @@ class Maker:
         folder: Of one's own meshes.
     """
 
-    def __init__(self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None) -> None:
+    def __init__(
+        self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None
+    ) -> None:
         self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
 
     def make(self, kind: str, rng: Random) -> Made:
@@ -59,13 +61,20 @@ class Maker:
 
     def _try(self, kind: str, rng: Random) -> Made | None:
         scene = self._scenes.draw(rng, crowded=kind != "alone")
-        pose = self._positive(scene, rng) if kind in POSITIVE else _NEGATIVES[kind](self, scene, rng)
+        pose = (
+            self._positive(scene, rng) if kind in POSITIVE else _NEGATIVES[kind](self, scene, rng)
+        )
         if pose is None:
             return None
-        holds = settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0] is Verdict.HOLDS
+        holds = (
+            settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0]
+            is Verdict.HOLDS
+        )
         if holds != (kind in POSITIVE):
             return None
-        return scene.made(pose, kind, holds, holds or self._split == "train" or self._feasible(scene, rng))
+        return scene.made(
+            pose, kind, holds, holds or self._split == "train" or self._feasible(scene, rng)
+        )
 
     # The argument
 
@@ -132,7 +141,10 @@ class Maker:
         if tall and rng.random() < 0.5:
             face = tall[int(rng.integers(len(tall)))]
             x, y = rng.uniform(-0.5, 0.5, 2) * region.size[:2] * 0.6
-            return scene.T_world_region @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
+            return (
+                scene.T_world_region
+                @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
+            )
         pose = random_rest(body, (*region.size[:2], math.inf), True, rng)
         if pose is None:
             return None

@@ -115,12 +115,18 @@ def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int =
 def _failures(verdicts: Counter[str]) -> dict[str, float]:
     """Shares of all."""
     count = verdicts.total()
-    return {name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS}
+    return {
+        name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS
+    }
 
 
 def wilson(share: float, count: int) -> tuple[float, float]:
     """The 95 % interval of a share of `count` (Wilson 1927)."""
     z = 1.96
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    half = (
+        z
+        / (1 + z * z / count)
+        * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    )
     return max(0.0, middle - half), min(1.0, middle + half)

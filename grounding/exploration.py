@@ -88,7 +88,9 @@ class Exploration:
     def key(self) -> str:
         """All but the count; of the weights what they are, not where."""
         digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
-        return json.dumps(["explored", self.relation, self.seed, self.folder and self.folder.key, digest])
+        return json.dumps(
+            ["explored", self.relation, self.seed, self.folder and self.folder.key, digest]
+        )
 
     def chunk(self, number: int, start: int, size: int) -> list[Made]:
         """The first `size` scenes of chunk `number`."""
@@ -103,7 +105,10 @@ class Exploration:
 
 
 def explore(
-    job: Exploration, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+    job: Exploration,
+    out: Path,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
 ) -> Dataset:
     """Make a data set by exploration and write it, see `make_dataset`.
 
@@ -114,7 +119,9 @@ def explore(
         load_model(job.weights)
         relation = read_weights(job.weights).card.get("relation")
         if relation != job.relation:
-            raise InputError(f"these are weights for '{relation}', not '{job.relation}'", file=job.weights)
+            raise InputError(
+                f"these are weights for '{relation}', not '{job.relation}'", file=job.weights
+            )
     return make_dataset(job, out, workers, progress)
 
 
@@ -137,7 +144,11 @@ class Explorer:
             scene = self._scenes.draw(rng, crowded=rng.random() < CROWDED)
             tried, count = self.explore(scene, rng)
             trials += count
-            kept = [one for one in tried if (one[0] in (STAYED, RESTED)) == holds and (one[2] or not near)]
+            kept = [
+                one
+                for one in tried
+                if (one[0] in (STAYED, RESTED)) == holds and (one[2] or not near)
+            ]
             kinds = sorted({one[0] for one in kept})
             if kinds and not holds:  # a rare way to fail is kept as often as a frequent one
                 kind = kinds[int(rng.integers(len(kinds)))]
@@ -161,7 +172,9 @@ class Explorer:
         trials = len(drawn)
         if found:
             chosen = found[int(rng.integers(len(found)))]
-            poses = [moved(chosen, rng) for _ in range(MOVED)] + [slid(scene, chosen, rng) for _ in range(SLID)]
+            poses = [moved(chosen, rng) for _ in range(MOVED)] + [
+                slid(scene, chosen, rng) for _ in range(SLID)
+            ]
             tried += [(kind, pose, True) for kind, pose in self._try(scene, np.stack(poses))]
             trials += len(poses)
         return tried, trials
@@ -175,13 +188,22 @@ class Explorer:
         verdicts = settled(situation, poses, self._drops, items)
         tried = [(verdict.value, pose) for verdict, pose in zip(verdicts, poses, strict=True)]
         # what is lower than the region, or in another body, cannot come to rest in it
-        falling = (Verdict.HOLDS, Verdict.TOO_HIGH, Verdict.OUTSIDE, Verdict.OVERLAPPING, Verdict.TIPS)
+        falling = (
+            Verdict.HOLDS,
+            Verdict.TOO_HIGH,
+            Verdict.OUTSIDE,
+            Verdict.OVERLAPPING,
+            Verdict.TIPS,
+        )
         rests, stayed = [], []
         self._drops.set_up(
-            items(scene.body), [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)]
+            items(scene.body),
+            [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)],
         )
         for verdict, pose in zip(verdicts, poses, strict=True):
-            if verdict in falling and all(one.distance > -0.0005 for one in self._drops.contacts(pose)):
+            if verdict in falling and all(
+                one.distance > -0.0005 for one in self._drops.contacts(pose)
+            ):
                 rests.append(self._drops.drop(pose, SECONDS))
                 stayed.append(verdict is Verdict.HOLDS)
         found: list[tuple[str, Array]] = []

@@ -82,7 +82,9 @@ class Form:
     def radius(self) -> float:
         """Of the sphere about the frame's origin that contains it, metres."""
         return (
-            float(np.linalg.norm(self.vertices, axis=1).max()) if self._unit is self else self._unit.radius * self.scale
+            float(np.linalg.norm(self.vertices, axis=1).max())
+            if self._unit is self
+            else self._unit.radius * self.scale
         )
 
     @cached_property
@@ -95,7 +97,11 @@ class Form:
     @cached_property
     def centre_of_mass(self) -> Array:
         """Of uniform density, shape (3,)."""
-        return self._unit.centre_of_mass * self.scale if self._unit is not self else centre_of_mass(self._body)
+        return (
+            self._unit.centre_of_mass * self.scale
+            if self._unit is not self
+            else centre_of_mass(self._body)
+        )
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:

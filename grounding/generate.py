@@ -52,7 +52,9 @@ class Job:
         """The first `size` scenes of chunk `number`."""
         maker = _maker(self.relation, self.split, self.folder)
         kinds = kinds_of(self.relation, start + size)[start:]
-        rng = np.random.default_rng([self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number])
+        rng = np.random.default_rng(
+            [self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number]
+        )
         return [maker.make(kind, rng) for kind in kinds]
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
@@ -60,7 +62,9 @@ class Job:
         return {}
 
 
-def generate(job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None) -> Dataset:
+def generate(
+    job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+) -> Dataset:
     """Make a data set of demonstrations and write it, see `make_dataset`."""
     return make_dataset(job, out, workers, progress)
 
@@ -68,7 +72,9 @@ def generate(job: Job, out: Path, workers: int | None = None, progress: Progress
 def kinds_of(relation: str, count: int) -> list[str]:
     """The type of each of `count` scenes: their shares hold in every run of 40, positives and negatives in turn."""
     shares = KINDS[relation]
-    sides = [[kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)]
+    sides = [
+        [kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)
+    ]
     owed = dict.fromkeys(shares, 0.0)
     chosen: list[str] = []
     for number in range(count):

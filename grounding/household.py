@@ -54,7 +54,10 @@ def mug(rng: Random) -> tuple[Part, ...]:
     radius, height = float(rng.uniform(0.03, 0.045)), float(rng.uniform(0.06, 0.11))
     handle = 0.6 * height
     bar = Part(Box((0.01, 0.012, handle)), Pose((radius + 0.025, 0.0, height / 2)))
-    arms = [Part(Box((0.03, 0.012, 0.01)), Pose((radius + 0.01, 0.0, height / 2 + s * handle / 2))) for s in (-1, 1)]
+    arms = [
+        Part(Box((0.03, 0.012, 0.01)), Pose((radius + 0.01, 0.0, height / 2 + s * handle / 2)))
+        for s in (-1, 1)
+    ]
     return (*_wall(radius, radius, height), bar, *arms)
 
 
@@ -69,14 +72,19 @@ def bracket(rng: Random) -> tuple[Part, ...]:
     width, length, height = (float(v) for v in rng.uniform([0.04, 0.08, 0.06], [0.08, 0.14, 0.14]))
     board = 0.02
     foot = Part(Box((width, length, board)), _up(board / 2))
-    return foot, Part(Box((width, board, height)), Pose((0.0, (board - length) / 2, board + height / 2)))
+    return foot, Part(
+        Box((width, board, height)), Pose((0.0, (board - length) / 2, board + height / 2))
+    )
 
 
 def dumbbell(rng: Random) -> tuple[Part, ...]:
     """Two discs joined by a rod."""
     radius, length = float(rng.uniform(0.025, 0.04)), float(rng.uniform(0.1, 0.18))
     turned = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0)).quaternion
-    ends = [Part(Cylinder(radius, 0.03), Pose((s * (length - 0.03) / 2, 0.0, 0.0), turned)) for s in (-1, 1)]
+    ends = [
+        Part(Cylinder(radius, 0.03), Pose((s * (length - 0.03) / 2, 0.0, 0.0), turned))
+        for s in (-1, 1)
+    ]
     return (*ends, Part(Cylinder(0.35 * radius, length - 0.04), Pose((0.0, 0.0, 0.0), turned)))
 
 
@@ -91,7 +99,11 @@ def wedge(rng: Random) -> tuple[Part, ...]:
 def tapered(rng: Random) -> tuple[Part, ...]:
     """A cup without a handle, wider at the top, filled."""
     top = float(rng.uniform(0.03, 0.05))
-    return (Part(_ring_hull(float(rng.uniform(0.6, 0.9)) * top, top, 0.0, float(rng.uniform(0.06, 0.14)))),)
+    return (
+        Part(
+            _ring_hull(float(rng.uniform(0.6, 0.9)) * top, top, 0.0, float(rng.uniform(0.06, 0.14)))
+        ),
+    )
 
 
 SHAPES: Mapping[str, Callable[[Random], tuple[Part, ...]]] = {

@@ -65,7 +65,11 @@ def read_folder(folder: MeshFolder) -> Loaded:
     files = _files(folder.path)
     if not files:
         what = "no meshes in this folder" if folder.path.is_dir() else "no such folder"
-        remedy = f"One of {', '.join(SUFFIXES)} in a subfolder for each object" if folder.path.is_dir() else ""
+        remedy = (
+            f"One of {', '.join(SUFFIXES)} in a subfolder for each object"
+            if folder.path.is_dir()
+            else ""
+        )
         raise InputError(what, file=folder.path, remedy=remedy)
     found: dict[str, tuple[Part, ...]] = {}
     warnings: list[str] = []
@@ -109,4 +113,10 @@ def _files(folder: Path) -> dict[str, Path]:
 def _with_option(error: InputError, file: Path) -> InputError:
     """A mistake of units is mended by an option here, where a problem file has a key."""
     remedy = error.remedy.replace("say scale: ", "say --mesh-scale ")
-    return InputError(error.message, file=error.file or file, line=error.line, choices=error.choices, remedy=remedy)
+    return InputError(
+        error.message,
+        file=error.file or file,
+        line=error.line,
+        choices=error.choices,
+        remedy=remedy,
+    )

@@ -21,7 +21,12 @@ HOUSEHOLD = {"train": 7, "test": 3}
 RANDOM = {"train": range(0, 60), "test": range(500, 520)}
 """Which of pybullet's random shapes."""
 MESHES: Mapping[str, Mapping[str, float]] = {
-    "train": {"duck_vhacd.urdf": 1.0, "lego/lego.urdf": 1.5, "jenga/jenga.urdf": 1.0, "domino/domino.urdf": 1.0},
+    "train": {
+        "duck_vhacd.urdf": 1.0,
+        "lego/lego.urdf": 1.5,
+        "jenga/jenga.urdf": 1.0,
+        "domino/domino.urdf": 1.0,
+    },
     "test": {"objects/mug.urdf": 0.85, "teddy_vhacd.urdf": 1.0},
 }
 """Meshes of pybullet_data and the factors that make them a hand's size."""
@@ -29,7 +34,9 @@ _SEED = 20261125
 
 
 @lru_cache(maxsize=4)
-def object_templates(split: str, folder: MeshFolder | None = None) -> Mapping[str, tuple[Part, ...]]:
+def object_templates(
+    split: str, folder: MeshFolder | None = None
+) -> Mapping[str, tuple[Part, ...]]:
     """The objects of a split by name, parts in metres; deterministic.
 
     Args:
@@ -46,8 +53,14 @@ def object_templates(split: str, folder: MeshFolder | None = None) -> Mapping[st
             found[f"{name}_{split}_{number}"] = make(rng)
     if split == "test":
         found |= YCB
-    paths = {f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf" for number in RANDOM[split]}
-    found |= {name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts for name, path in paths.items()}
+    paths = {
+        f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf"
+        for number in RANDOM[split]
+    }
+    found |= {
+        name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts
+        for name, path in paths.items()
+    }
     for path, scale in MESHES[split].items():
         mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
         found[Path(path).stem] = mesh.parts

@@ -53,7 +53,9 @@ def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
     `inside`: the box around the body, along the container's axes, in the container's box up to SLACK. Both: no
     collision with the surrounding bodies, for which the paper asks a simulator and we their convex hulls.
     """
-    return np.array([verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool)
+    return np.array(
+        [verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool
+    )
 
 
 def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
@@ -66,9 +68,16 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
     points = form.vertices @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
     low, high = points.min(axis=1), points.max(axis=1)
     if region.hollow:
-        floor, top, least, most = region.box[0, 2], region.box[1, 2], region.box[0, :2], region.box[1, :2]
+        floor, top, least, most = (
+            region.box[0, 2],
+            region.box[1, 2],
+            region.box[0, :2],
+            region.box[1, :2],
+        )
         too_low, too_high = low[:, 2] < floor - SLACK, high[:, 2] > top + SLACK
-        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(axis=1)
+        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(
+            axis=1
+        )
     else:
         least, most = -region.size[:2] / 2, region.size[:2] / 2
         too_low, too_high = low[:, 2] < -NEAR, low[:, 2] > NEAR
@@ -82,7 +91,10 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
         Verdict.OUTSIDE: ~within,
         Verdict.COLLIDES: ~free,
     }
-    return [next((name for name, true in failed.items() if true[row]), Verdict.HOLDS) for row in range(len(poses))]
+    return [
+        next((name for name, true in failed.items() if true[row]), Verdict.HOLDS)
+        for row in range(len(poses))
+    ]
 
 
 def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
@@ -90,7 +102,9 @@ def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> 
     if not len(poses):
         return []
     boxes = [Placed(situation.body.form, pose).box for pose in poses if np.isfinite(pose).all()]
-    others = [other for other in situation.others if any(gap(other.box, box) < REACH for box in boxes)]
+    others = [
+        other for other in situation.others if any(gap(other.box, box) < REACH for box in boxes)
+    ]
     bodies = [situation.support, *others]
     drops.set_up(items(situation.body.form), [(items(body.form), body.matrix) for body in bodies])
     return [_judge(situation, pose, drops) for pose in poses]
@@ -138,7 +152,9 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
     place = place_verdict(region, form, T_region_world @ pose)
     if place is not Verdict.HOLDS:
         return place
-    deep = [contact.obstacle for contact in drops.contacts(pose, 0.001) if contact.distance < -DEPTH]
+    deep = [
+        contact.obstacle for contact in drops.contacts(pose, 0.001) if contact.distance < -DEPTH
+    ]
     if deep:
         return Verdict.PENETRATES if 0 in deep or -1 in deep else Verdict.COLLIDES
     after = drops.drop(pose, SECONDS)
@@ -151,7 +167,9 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
 def moved(form: Form, before: Array, after: Array) -> float:
     """How far the centre of mass went, metres."""
     centre = form.centre_of_mass
-    return float(np.linalg.norm((after[:3, :3] - before[:3, :3]) @ centre + after[:3, 3] - before[:3, 3]))
+    return float(
+        np.linalg.norm((after[:3, :3] - before[:3, :3]) @ centre + after[:3, 3] - before[:3, 3])
+    )
 
 
 def turned(before: Array, after: Array) -> float:

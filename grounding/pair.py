@@ -47,7 +47,9 @@ def write_pair(path: Path, content: bytes, card: Mapping[str, Any]) -> None:
         raise
     waiting.replace(beside)
 
-    for left in beside.parent.glob(f".{glob.escape(beside.name)}.{'[0-9a-f]' * 16}"):  # of runs that were killed
+    for left in beside.parent.glob(
+        f".{glob.escape(beside.name)}.{'[0-9a-f]' * 16}"
+    ):  # of runs that were killed
         with contextlib.suppress(OSError):
             left.unlink()
 
@@ -103,10 +105,18 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
 def _card(file: Path, form: str, remedy: str) -> dict[str, Any]:
     try:
         text = read_text(file, MOST_CARD_BYTES, kind="card")
-        found = parse_json(text.replace(": Infinity", ": null"), file, kind="card")  # of earlier versions
+        found = parse_json(
+            text.replace(": Infinity", ": null"), file, kind="card"
+        )  # of earlier versions
     except InputError as error:
-        message = error.message if error.message.startswith("this is") else f"the card is damaged: {error.message}"
-        raise InputError(message, file=file, line=error.line, column=error.column, remedy=remedy) from None
+        message = (
+            error.message
+            if error.message.startswith("this is")
+            else f"the card is damaged: {error.message}"
+        )
+        raise InputError(
+            message, file=file, line=error.line, column=error.column, remedy=remedy
+        ) from None
     if not isinstance(found, dict) or found.get("format") != form:
         raise InputError(f"not a card of '{form}'", file=file, remedy=remedy)
     _refuse_infinite(found, file, remedy)
@@ -119,7 +129,9 @@ def _refuse_infinite(value: Any, file: Path, remedy: str) -> None:
     while waiting:
         one = waiting.pop()
         if isinstance(one, float) and not math.isfinite(one):
-            raise InputError("the card is damaged: a number is not finite", file=file, remedy=remedy)
+            raise InputError(
+                "the card is damaged: a number is not finite", file=file, remedy=remedy
+            )
         waiting += one.values() if isinstance(one, dict) else one if isinstance(one, list) else ()
 
 

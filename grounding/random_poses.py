@@ -15,7 +15,9 @@ from tamp.geometric.scene.scene import CONTACT_GAP
 from tamp.geometric.stability.stable_poses import resting_pose
 
 
-def random_rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random) -> Array | None:
+def random_rest(
+    form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random
+) -> Array | None:
     """T_region_body at rest: whole above the rectangle, or only its centre of mass, 2 cm inside, with `overhang`."""
     faces = [face for face in form.faces if face.extent + 2 * CONTACT_GAP <= size[2]]
     if not faces:
@@ -53,7 +55,9 @@ def afloat(stand: Placed, rng: Random) -> Array:
     """Anywhere around and above a support, turned in any way."""
     low, high = stand.box
     pose = random_turn(rng)
-    pose[:3, 3] = rng.uniform([low[0] - 0.5, low[1] - 0.5, 0.15], [high[0] + 0.5, high[1] + 0.5, high[2] + 0.5])
+    pose[:3, 3] = rng.uniform(
+        [low[0] - 0.5, low[1] - 0.5, 0.15], [high[0] + 0.5, high[1] + 0.5, high[2] + 0.5]
+    )
     return pose
 
 
@@ -66,7 +70,9 @@ def random_turn(rng: Random) -> Array:
 
 def upright(at: Array, rng: Random) -> Array:
     """Upright on the ground above `at` (2,), any yaw."""
-    return Pose.from_xyz_yaw(float(at[0]), float(at[1]), 0.0, rng.uniform(-math.pi, math.pi)).matrix.copy()
+    return Pose.from_xyz_yaw(
+        float(at[0]), float(at[1]), 0.0, rng.uniform(-math.pi, math.pi)
+    ).matrix.copy()
 
 
 def solids(stand: Placed) -> list[Placed]:

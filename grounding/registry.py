@@ -67,7 +67,9 @@ BORROWED: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
 """Model name to the one whose weights it uses, of which it takes the classifier."""
 
 VARIANTS: Mapping[str, str] = {
-    f"{model}-{scheme}": model for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "classifier")
+    f"{model}-{scheme}": model
+    for model in ("mlp-bb", "gnn-bb")
+    for scheme in ("discriminator", "classifier")
 }
 """Name of what ships of another training scheme than "both" to the model that it is."""
 
@@ -92,12 +94,19 @@ def load_model(path: Path, model: str | None = None) -> Model:
     trained = str(weights.card.get("model"))
     if trained not in MODELS or trained in BORROWED:
         choices = [name for name in MODELS if name not in BORROWED]
-        raise InputError(f"unknown model '{trained}'", file=path.with_suffix(".json"), found=trained, choices=choices)
+        raise InputError(
+            f"unknown model '{trained}'",
+            file=path.with_suffix(".json"),
+            found=trained,
+            choices=choices,
+        )
     name = model or trained
     if name not in MODELS and name not in UNTRAINED:
         raise InputError(f"unknown model '{name}'", found=name, choices=MODELS)
     if BORROWED.get(name, name) != trained:
-        raise InputError(f"these are weights of '{trained}'; '{name}' is not made of them", file=path)
+        raise InputError(
+            f"these are weights of '{trained}'; '{name}' is not made of them", file=path
+        )
     try:
         return MODELS[name](weights)
     except InputError as error:
@@ -117,7 +126,9 @@ def shipped_model(relation: str, name: str) -> Model:
     if name in UNTRAINED:
         return UNTRAINED[name]()
     if name not in MODELS and name not in VARIANTS:
-        raise InputError(f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED])
+        raise InputError(
+            f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED]
+        )
     path = shipped_weights(relation, name)
     model = VARIANTS.get(name, name)
     if not path.is_file():

@@ -23,7 +23,9 @@ class Grounding:
     def __init__(self, model: Model) -> None:
         self.model = model
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """At most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the best first."""
         poses = self.model.propose(situation_of(scene, arguments), count, rng)
         return [Pose.from_matrix(pose) for pose in poses]
@@ -31,7 +33,9 @@ class Grounding:
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
         """The probability that the relation holds where the body is."""
         situation = situation_of(scene, arguments)
-        return float(np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0))
+        return float(
+            np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0)
+        )
 
 
 class Proposer:
@@ -45,6 +49,8 @@ class Proposer:
     def __init__(self, grounding: Grounding, cannot_tell: str) -> None:
         self._grounding, self.cannot_tell = grounding, cannot_tell
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """As the grounding's."""
         return self._grounding.propose(scene, arguments, count, rng)

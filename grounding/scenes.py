@@ -13,7 +13,15 @@ from grounding.form import Form
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
 from grounding.oracles import REACH, ItemOf
-from grounding.random_poses import afloat, on_ground, pick, random_rest, random_scale, solids, upright
+from grounding.random_poses import (
+    afloat,
+    on_ground,
+    pick,
+    random_rest,
+    random_scale,
+    solids,
+    upright,
+)
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, Situation, gap, near
 from grounding.supports import Support, scaled_region, support_templates
@@ -83,7 +91,12 @@ class Drawn:
         return near(self.stand, self.support.region, Placed(self.body, pose), self.placed)
 
     def made(
-        self, pose: Array, kind: str, holds: bool, feasible: bool, columns: Mapping[str, int] | None = None
+        self,
+        pose: Array,
+        kind: str,
+        holds: bool,
+        feasible: bool,
+        columns: Mapping[str, int] | None = None,
     ) -> Made:
         """This scene, labelled, with the body at T_world_body, shape (4, 4)."""
         names = [*self.names, *(name for name, _, _ in self.others)]
@@ -103,10 +116,14 @@ class Scenes:
 
     def __init__(self, relation: str, split: str, folder: MeshFolder | None = None) -> None:
         self.split, self.items = split, ItemOf()
-        self._objects = {name: Form(parts) for name, parts in object_templates(split, folder).items()}
+        self._objects = {
+            name: Form(parts) for name, parts in object_templates(split, folder).items()
+        }
         self._supports = dict(support_templates(relation, split))
         self._tables = dict(support_templates("on", split))
-        self._forms = {name: Form(support.parts) for name, support in (self._supports | self._tables).items()}
+        self._forms = {
+            name: Form(support.parts) for name, support in (self._supports | self._tables).items()
+        }
         self._scaled: dict[tuple[str, float], Form] = {}
 
     def draw(self, rng: Random, *, crowded: bool = True) -> Drawn:
@@ -115,7 +132,10 @@ class Scenes:
         support = self._supports[name]
         support = replace(support, region=scaled_region(support.region, scale))
         stand = Placed(self._form(name, scale), upright(rng.uniform(-1.5, 1.5, 2), rng))
-        body_name, body_scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
+        body_name, body_scale = (
+            pick(self._objects, rng),
+            random_scale(OBJECT_SCALES[self.split], rng),
+        )
         others = [self._other_support(stand, rng)]
         for number in range(int(rng.integers(OTHERS[self.split][0], OTHERS[self.split][1] + 1))):
             found = self._distractor(crowded, number, stand, support, others, rng)
@@ -201,7 +221,8 @@ def resting(scene: Drawn, rng: Random) -> Array:
     poses = [
         scene.T_world_region @ pose
         for pose in (
-            random_rest(scene.body, region.size, not region.hollow and rng.random() < 0.3, rng) for _ in range(TRIES)
+            random_rest(scene.body, region.size, not region.hollow and rng.random() < 0.3, rng)
+            for _ in range(TRIES)
         )
         if pose is not None
     ]

@@ -68,7 +68,14 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     if not obstacles.count:
         return np.zeros((count, 0))
     out = np.empty((count, obstacles.count))
-    placed = (obstacles.points, obstacles.sizes, obstacles.axes, obstacles.spans, obstacles.low, obstacles.high)
+    placed = (
+        obstacles.points,
+        obstacles.sizes,
+        obstacles.axes,
+        obstacles.spans,
+        obstacles.low,
+        obstacles.high,
+    )
     _separate(form.outer, form.outer_box, np.ascontiguousarray(poses, dtype=float), *placed, out)
     return out
 
@@ -86,7 +93,12 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
         least, most = np.full(3, np.inf), np.full(3, -np.inf)
         for v in range(len(own)):
             for k in range(3):
-                at = pose[k, 0] * own[v, 0] + pose[k, 1] * own[v, 1] + pose[k, 2] * own[v, 2] + pose[k, 3]
+                at = (
+                    pose[k, 0] * own[v, 0]
+                    + pose[k, 1] * own[v, 1]
+                    + pose[k, 2] * own[v, 2]
+                    + pose[k, 3]
+                )
                 points[v, k] = at
                 least[k], most[k] = min(least[k], at), max(most[k], at)
         for m in range(len(sizes)):

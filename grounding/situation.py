@@ -32,7 +32,10 @@ class Placed:
         if len(self.form.vertices) > 8:
             points = self.form.vertices @ self.matrix[:3, :3].T
             return np.stack([points.min(axis=0), points.max(axis=0)]) + self.matrix[:3, 3]
-        middle, reach = self.matrix[:3, :3] @ centre + self.matrix[:3, 3], np.abs(self.matrix[:3, :3]) @ half
+        middle, reach = (
+            self.matrix[:3, :3] @ centre + self.matrix[:3, 3],
+            np.abs(self.matrix[:3, :3]) @ half,
+        )
         return np.stack([middle - reach, middle + reach])
 
 
@@ -91,10 +94,14 @@ def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None
     place = scene.surfaces.get(arguments[1]) or scene.cavities.get(arguments[1])
     if body is None or place is None:
         said = ", ".join(arguments)
-        raise InputError(f"a learned grounding takes a body, and a surface or container: not ({said})")
+        raise InputError(
+            f"a learned grounding takes a body, and a surface or container: not ({said})"
+        )
     support = scene.bodies[place.body]
     others = [
-        _placed(item.parts, item.pose) for item in scene.bodies.values() if item is not body and item is not support
+        _placed(item.parts, item.pose)
+        for item in scene.bodies.values()
+        if item is not body and item is not support
     ]
     seen = _placed(body.parts, body.pose) if at is None else Placed(form_of(body.parts), at)
     return near(_placed(support.parts, support.pose), region_of(support, place), seen, others)
@@ -109,7 +116,9 @@ def _placed(parts: tuple[Part, ...], pose: Pose) -> Placed:
 def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
     """The situation, with those of `others` that are surroundings."""
     around = tuple(
-        other for other in others if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
+        other
+        for other in others
+        if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
     )
     return Situation(support, region, body, around)
 
@@ -121,14 +130,20 @@ def region_of(support: Body, place: Surface | Cavity) -> Region:
 
 @lru_cache(maxsize=512)
 def _region(parts: tuple[Part, ...], alone: bool, place: Surface | Cavity) -> Region:
-    low, high = bounds(parts, place.pose.inverse())  # T_region_support: the box along the region's axes
+    low, high = bounds(
+        parts, place.pose.inverse()
+    )  # T_region_support: the box along the region's axes
     half = np.array(place.size[:2]) / 2
     if isinstance(place, Surface):
         corners = np.array([[-half[0], -half[1], min(float(low[2]), 0.0)], [half[0], half[1], 0.0]])
         height = place.clearance
     else:
         height = place.size[2]
-        corners = np.stack([low, high]) if alone else np.array([[-half[0], -half[1], 0.0], [*half, height]])
+        corners = (
+            np.stack([low, high])
+            if alone
+            else np.array([[-half[0], -half[1], 0.0], [*half, height]])
+        )
     return Region(
         isinstance(place, Cavity),
         place.pose.matrix,

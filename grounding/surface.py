@@ -26,7 +26,9 @@ class SurfaceModel:
         are not looked at. None when no stable face fits under the ceiling.
         """
         region = situation.region
-        faces = [face for face in _faces(situation) if face.extent + 2 * CONTACT_GAP <= region.size[2]]
+        faces = [
+            face for face in _faces(situation) if face.extent + 2 * CONTACT_GAP <= region.size[2]
+        ]
         if not faces or count < 1:
             return np.zeros((0, 4, 4))
         poses: list[Array] = []
@@ -49,7 +51,9 @@ class SurfaceModel:
         if region.hollow:
             above = (low[:, :2] >= -half - SLACK) & (high[:, :2] <= half + SLACK)
         else:
-            above = np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
+            above = (
+                np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
+            )
         downs = np.array([-face.rotation[2] for face in form.faces]).reshape(-1, 3)
         upright = (-inner[:, 2, :3] @ downs.T > math.cos(SNAP_TILT)).any(axis=1)
         free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
@@ -60,4 +64,7 @@ class SurfaceModel:
 def _faces(situation: Situation) -> list[Face]:
     """The stable faces, the one that is down where the body is first, then the steadiest."""
     down = -situation.body.matrix[2, :3]
-    return sorted(situation.body.form.faces, key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT))
+    return sorted(
+        situation.body.form.faces,
+        key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT),
+    )

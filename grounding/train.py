@@ -69,7 +69,9 @@ class TrainArgs:
     commit: str = ""
 
 
-def train(data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None) -> Weights:
+def train(
+    data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None
+) -> Weights:
     """Train a grounding.
 
     Args:
@@ -96,7 +98,10 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
     """
     if model in BORROWED:
         remedy = f"Train that: tamp-learn train {relation} --model {BORROWED[model]}"
-        raise InputError(f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'", remedy=remedy)
+        raise InputError(
+            f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'",
+            remedy=remedy,
+        )
     if model in UNTRAINED:
         raise InputError(f"'{model}' needs no training")
     if model not in TRAINERS:
@@ -106,7 +111,8 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
             raise InputError(f"model '{model}' has no {option}; these have: {', '.join(models)}")
     if model in OPTIONS["encoder"] and args.encoder is None:
         raise InputError(
-            f"model '{model}' needs an encoder of clouds", remedy=f"Train one: tamp-learn encoder {relation}"
+            f"model '{model}' needs an encoder of clouds",
+            remedy=f"Train one: tamp-learn encoder {relation}",
         )
 
 
@@ -137,7 +143,9 @@ def train_relational(
             lambda step, steps, loss: progress(f"flow {step}/{steps}, loss {loss:.4f}"),
         )
     else:
-        proposals = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
+        proposals = Transfer.of(
+            chart, [chart.encode(one) for one in positive[: args.demonstrations]]
+        )
     rank, score = {}, None
     ranks = count >= RANKS_FROM and not holds.all()
     if ranks:
@@ -147,7 +155,9 @@ def train_relational(
             [one for one, good in zip(measured, usable, strict=True) if good],
             holds[usable],
             Args(seed=args.seed),
-            lambda step, steps, score: progress(f"ranker {step}/{steps}, validation accuracy {score:.4f}"),
+            lambda step, steps, score: progress(
+                f"ranker {step}/{steps}, validation accuracy {score:.4f}"
+            ),
         )
     card = {
         "relation": data.relation,
@@ -164,7 +174,12 @@ def train_relational(
 
 
 def _certainty(
-    measured: list[Measures], holds: Labels, usable: Labels, ranks: bool, score: float | None, seed: int
+    measured: list[Measures],
+    holds: Labels,
+    usable: Labels,
+    ranks: bool,
+    score: float | None,
+    seed: int,
 ) -> dict[str, object]:
     """Whether the ranker may judge, for the card, and else why not."""
     why = too_few(holds)
@@ -175,9 +190,13 @@ def _certainty(
         labels = holds[usable]
 
         def fit(train_rows: NDArray[np.intp], test_rows: NDArray[np.intp]) -> Labels:
-            rank, _ = train_ranker([seen[row] for row in train_rows], labels[train_rows], Args(seed=seed))
+            rank, _ = train_ranker(
+                [seen[row] for row in train_rows], labels[train_rows], Args(seed=seed)
+            )
             ranker = Ranker(rank)
-            return np.array([float(ranker.logits(seen[row])[0]) > 0.0 for row in test_rows], dtype=bool)
+            return np.array(
+                [float(ranker.logits(seen[row])[0]) > 0.0 for row in test_rows], dtype=bool
+            )
 
         if len(labels) < MANY:
             why = no_better_than_chance(labels, fit)
@@ -215,7 +234,12 @@ def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> 
     from grounding.paper import tree_training
 
     weights = tree_training.train_tree(
-        data, model, samples=args.samples or len(data), seed=args.seed, encoder=_encoder(args), progress=progress
+        data,
+        model,
+        samples=args.samples or len(data),
+        seed=args.seed,
+        encoder=_encoder(args),
+        progress=progress,
     )
     return _signed(_checked(weights, data, args), args)
 
@@ -230,7 +254,11 @@ def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
         bodies = [(one.situation, one.situation.body.matrix[None]) for one in examples]
         said = np.array([float(model.classify(*body)[0]) > 0.5 for body in bodies], dtype=bool)
         why = chance(data.holds[: len(said)], said)
-    return Weights(weights.arrays, {**weights.card, "classifies": False, REASON: why}) if why else weights
+    return (
+        Weights(weights.arrays, {**weights.card, "classifies": False, REASON: why})
+        if why
+        else weights
+    )
 
 
 def _encoder(args: TrainArgs) -> Weights | None:
@@ -238,7 +266,11 @@ def _encoder(args: TrainArgs) -> Weights | None:
         return None
     weights = read_weights(args.encoder)
     if (weights.card.get("model"), weights.card.get("kind")) != ("encoder", "conv"):
-        raise InputError("no encoder of kind 'conv'", file=args.encoder, remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            "no encoder of kind 'conv'",
+            file=args.encoder,
+            remedy="Train one: tamp-learn encoder --help",
+        )
     return weights
 
 

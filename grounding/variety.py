@@ -35,7 +35,9 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
     holds = data.holds[:used]
     rows = np.flatnonzero(holds)
     if not len(rows):
-        return [f"'{data.relation}' holds in none of the {used:,} scenes: there is nothing to learn from"]
+        return [
+            f"'{data.relation}' holds in none of the {used:,} scenes: there is nothing to learn from"
+        ]
 
     found: list[str] = []
     if holds.all():
@@ -44,7 +46,10 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
             f"Say it in some: goal: (not ({data.relation} BODY PLACE))"
         )
     if len(rows) == 1:
-        return [*found, f"'{data.relation}' holds in one scene only (row {rows[0]}): nothing varies in it"]
+        return [
+            *found,
+            f"'{data.relation}' holds in one scene only (row {rows[0]}): nothing varies in it",
+        ]
     for name, measure in _MEASURES.items():
         values = measure(data, rows)
         if values is not None:
@@ -75,7 +80,10 @@ def _key(data: Dataset, row: int) -> bytes:
         f"{names[a['body'][row, index]]} {_rounded(a['scale'][row, index])} {_rounded(a['pose'][row, index])}"
         for index in there
     ]
-    place = [bool(a["hollow"][row]), *(_rounded(a[name][row]) for name in ("region", "size", "box"))]
+    place = [
+        bool(a["hollow"][row]),
+        *(_rounded(a[name][row]) for name in ("region", "size", "box")),
+    ]
     return repr((bodies[:2], sorted(bodies[2:]), place)).encode()
 
 
@@ -97,7 +105,11 @@ def _yaw(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
     turned = np.linalg.inv(regions) @ data.arrays["pose"][rows, 1]
     axis = int(np.argmax(np.abs(turned[0, :2, :3]).max(axis=0)))
     yaws = np.arctan2(turned[:, 1, axis], turned[:, 0, axis])
-    return yaws[:1] if float(np.abs(np.angle(np.exp(1j * (yaws - yaws[0])))).max()) < SAME_ANGLE else None
+    return (
+        yaws[:1]
+        if float(np.abs(np.angle(np.exp(1j * (yaws - yaws[0])))).max()) < SAME_ANGLE
+        else None
+    )
 
 
 def _size(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:

@@ -69,11 +69,23 @@ def read_weights(path: Path) -> Weights:
     for name in ("relation", "model"):
         if name in card and not (isinstance(card[name], str) and card[name].isprintable()):
             card_file = path.with_suffix(".json")
-            raise InputError(f"'{name}' of the card is {card[name]!r:.60}, not a name", file=card_file, remedy=_REMEDY)
+            raise InputError(
+                f"'{name}' of the card is {card[name]!r:.60}, not a name",
+                file=card_file,
+                remedy=_REMEDY,
+            )
     try:
         _check_header(content)
         arrays = load(content)
-    except (SafetensorError, InputError, ValueError, KeyError, TypeError, OSError, MemoryError) as error:
+    except (
+        SafetensorError,
+        InputError,
+        ValueError,
+        KeyError,
+        TypeError,
+        OSError,
+        MemoryError,
+    ) as error:
         what = error.message if isinstance(error, InputError) else str(error)
         raise InputError(f"the weights are damaged: {what}", file=path, remedy=_REMEDY) from None
     for name, array in arrays.items():

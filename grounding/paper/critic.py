@@ -14,7 +14,9 @@ from grounding.paper.networks import Ensemble
 
 
 @torch.no_grad()
-def critic_gradient(critic: Ensemble, real: Tensor, fake: Tensor, mix: Tensor, penalty: float) -> None:
+def critic_gradient(
+    critic: Ensemble, real: Tensor, fake: Tensor, mix: Tensor, penalty: float
+) -> None:
     """Add the gradient of the mean loss to the critic's.
 
     With h the activations, m the masks, u the derivative of each score with respect to a layer's output: the loss of

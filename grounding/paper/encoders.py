@@ -78,9 +78,15 @@ class PointNet(nn.Module):
         places, features = points, points[..., :0]
         for count, layers in zip(self.CENTRES, (self.first, self.second), strict=True):
             centres = places[:, : min(count, places.shape[1])]
-            near = torch.cdist(centres, places).topk(min(self.NEAREST, places.shape[1]), largest=False).indices
+            near = (
+                torch.cdist(centres, places)
+                .topk(min(self.NEAREST, places.shape[1]), largest=False)
+                .indices
+            )
             batch = torch.arange(len(points), device=points.device)[:, None, None]
-            around = torch.cat([places[batch, near] - centres[:, :, None], features[batch, near]], dim=-1)
+            around = torch.cat(
+                [places[batch, near] - centres[:, :, None], features[batch, near]], dim=-1
+            )
             places, features = centres, run_layers(layers, around).amax(dim=2)
         return run_layers(self.last, torch.cat([places, features], dim=-1)).amax(dim=1)
 
@@ -97,7 +103,11 @@ class Dense(nn.Module):
         return run_layers(self.layers, points.flatten(1))
 
 
-ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {"conv": Conv, "pointnet++": PointNet, "dense": Dense}
+ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {
+    "conv": Conv,
+    "pointnet++": PointNet,
+    "dense": Dense,
+}
 """By name; the models on clouds use `conv`, the paper's choice."""
 
 
@@ -128,7 +138,10 @@ def train_encoder(
     factor = 0.5 / clouds.radius if scaling == "one" else 0.0
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
-        encoder, decoder = ENCODERS[kind](args.points), dense_layers([CODE, 256, 512, 3 * args.points])
+        encoder, decoder = (
+            ENCODERS[kind](args.points),
+            dense_layers([CODE, 256, 512, 3 * args.points]),
+        )
     encoder, decoder = encoder.to(args.device), decoder.to(args.device)
     optimizer = torch.optim.Adam([*encoder.parameters(), *decoder.parameters()], lr=args.rate)
     random = torch.Generator().manual_seed(args.seed)
@@ -148,10 +161,14 @@ def train_encoder(
         optimizer.step()
         if step % args.validate_every == 0 or step == args.iterations:
             with torch.no_grad():
-                score = float(np.mean([float(distance(rows).mean()) for rows in apart.split(args.batch)]))
+                score = float(
+                    np.mean([float(distance(rows).mean()) for rows in apart.split(args.batch)])
+                )
             if score < best:
                 best, kept = score, _arrays(encoder)
-            progress(f"{kind}, scaling {scaling}: {step} of {args.iterations}, Chamfer distance {score:.3e}")
+            progress(
+                f"{kind}, scaling {scaling}: {step} of {args.iterations}, Chamfer distance {score:.3e}"
+            )
     kept["scale"], kept["points"] = np.array(factor, np.float32), np.array(args.points, np.float32)
     return kept, best
 
@@ -214,7 +231,11 @@ def scaled(points: Tensor, factor: float) -> Tensor:
 
 def chamfer(first: Tensor, second: Tensor) -> Tensor:
     """Mean squared distance to the nearest point, both ways, of clouds (n, points, 3); shape (n,)."""
-    squares = (first**2).sum(-1)[:, :, None] + (second**2).sum(-1)[:, None] - 2 * first @ second.transpose(1, 2)
+    squares = (
+        (first**2).sum(-1)[:, :, None]
+        + (second**2).sum(-1)[:, None]
+        - 2 * first @ second.transpose(1, 2)
+    )
     squares = squares.clamp(min=0.0)
     return squares.amin(dim=2).mean(dim=1) + squares.amin(dim=1).mean(dim=1)
 

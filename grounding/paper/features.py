@@ -75,17 +75,23 @@ class BoxFeatures:
         """See Features."""
         support, body = situation.support, situation.body
         others = situation.others if surroundings else ()
-        corners = np.array([situation.region.box, body.form.corners, *(other.form.corners for other in others)])
+        corners = np.array(
+            [situation.region.box, body.form.corners, *(other.form.corners for other in others)]
+        )
         matrices = np.array([support.matrix, body.matrix, *(other.matrix for other in others)])
         centres = _moved(matrices, (corners[:, 0] + corners[:, 1]) / 2)
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
-        return Observation(features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2)
+        return Observation(
+            features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2
+        )
 
     def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
         """See Features."""
         corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
-        return box_features(_moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners)
+        return box_features(
+            _moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners
+        )
 
 
 class CloudFeatures:
@@ -132,7 +138,9 @@ class CloudFeatures:
         points = cloud(item.form)
         centroid, rotation = points.mean(axis=0), item.matrix[:3, :3]
         code = self._encode((points - centroid) @ rotation.T)
-        return np.concatenate([rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code])
+        return np.concatenate(
+            [rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code]
+        )
 
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
@@ -149,7 +157,9 @@ def completed(seen: Observation, positions: Array, turns: Array) -> Array:
     """
     argument = seen.arguments[1]
     if len(argument) == BB:
-        return box_features(positions, turns, np.broadcast_to(argument[13:].reshape(2, 3), (len(positions), 2, 3)))
+        return box_features(
+            positions, turns, np.broadcast_to(argument[13:].reshape(2, 3), (len(positions), 2, 3))
+        )
     code = np.broadcast_to(argument[7:], (len(positions), CODE))
     return np.concatenate([positions, turns, code], axis=1, dtype=positions.dtype)
 

@@ -27,7 +27,9 @@ class Moving(Grounding):
     nothing about orientation, theirs is tens of degrees off: it is read as which of the stable faces is meant.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """`count` world poses of body `arguments[0]` on or in `arguments[1]`, in no order."""
         support = situation_of(scene, arguments).support
         poses: list[Pose] = []
@@ -54,10 +56,14 @@ def laid(form: Form, pose: Array) -> Array:
     before = pose[2, :3]
     axis, cosine = np.cross(up, before), float(up @ before)
     cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    turn = np.eye(3) + cross + cross @ cross / max(1.0 + cosine, 1e-9)  # Rodrigues: turn @ up = before
+    turn = (
+        np.eye(3) + cross + cross @ cross / max(1.0 + cosine, 1e-9)
+    )  # Rodrigues: turn @ up = before
     result = pose.copy()
     result[:3, :3] = pose[:3, :3] @ turn
     middle = form.corners.mean(axis=0)
     result[:3, 3] = pose[:3, :3] @ middle + pose[:3, 3] - result[:3, :3] @ middle
-    result[2, 3] += (form.vertices @ pose[2, :3]).min() + pose[2, 3] - (form.vertices @ up).min() - result[2, 3]
+    result[2, 3] += (
+        (form.vertices @ pose[2, :3]).min() + pose[2, 3] - (form.vertices @ up).min() - result[2, 3]
+    )
     return result

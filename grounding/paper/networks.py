@@ -49,7 +49,10 @@ def critic_shapes(features: int) -> dict[str, tuple[int, int]]:
 
 def generator_shapes(features: int, scene: bool) -> dict[str, tuple[int, int]]:
     """From args (+ scene) + noise through 12-12 to position and quaternion."""
-    return {**_scene(features, scene), **_chain("main", (2 * features + SCENE * scene + NOISE, 12, 12, 7))}
+    return {
+        **_scene(features, scene),
+        **_chain("main", (2 * features + SCENE * scene + NOISE, 12, 12, 7)),
+    }
 
 
 class Ensemble:
@@ -62,16 +65,24 @@ class Ensemble:
         randoms: One source of randomness a model, for its initial weights.
     """
 
-    def __init__(self, shapes: Mapping[str, tuple[int, int]], randoms: Sequence[torch.Generator]) -> None:
+    def __init__(
+        self, shapes: Mapping[str, tuple[int, int]], randoms: Sequence[torch.Generator]
+    ) -> None:
         count = len(randoms)
         size = count * sum((inputs + 1) * outputs for inputs, outputs in shapes.values())
-        self.flat, self.gradient, self.square = torch.zeros(size), torch.zeros(size), torch.zeros(size)
+        self.flat, self.gradient, self.square = (
+            torch.zeros(size),
+            torch.zeros(size),
+            torch.zeros(size),
+        )
         self.weights: dict[str, Tensor] = {}
         self._layout = [
             (count, rows, outputs) for inputs, outputs in shapes.values() for rows in (inputs, 1)
         ]  # a matrix and a bias each
         keys = [f"{name}.{key}" for name in shapes for key in ("weight", "bias")]
-        for key, tensor, gradient in zip(keys, self.parts(self.flat), self.parts(self.gradient), strict=True):
+        for key, tensor, gradient in zip(
+            keys, self.parts(self.flat), self.parts(self.gradient), strict=True
+        ):
             if key.endswith("weight"):
                 bound = (12 / sum(tensor.shape[1:])) ** 0.5  # Xavier's, with the gain of a ReLU
                 for model, random in enumerate(randoms):
@@ -95,7 +106,9 @@ class Ensemble:
     def model(self, index: int) -> dict[str, NDArray[np.float32]]:
         """The weights of one of the networks: matrices (inputs, outputs) and biases (outputs,)."""
         return {
-            name: (tensor.detach()[index] if name.endswith("weight") else tensor.detach()[index, 0]).numpy().copy()
+            name: (tensor.detach()[index] if name.endswith("weight") else tensor.detach()[index, 0])
+            .numpy()
+            .copy()
             for name, tensor in self.weights.items()
         }
 
@@ -128,7 +141,9 @@ def completed(arguments: Tensor, positions: Tensor, turns: Tensor) -> Tensor:
     own = arguments[..., -6:]
     extents = (own[..., 3:] - own[..., :3]) * 0.5
     reach = (rotation.abs().unflatten(-1, (3, 3)) * extents.unsqueeze(-2)).sum(-1)
-    return torch.cat([arguments[..., :BB], positions, positions - reach, positions + reach, turns, own], dim=-1)
+    return torch.cat(
+        [arguments[..., :BB], positions, positions - reach, positions + reach, turns, own], dim=-1
+    )
 
 
 def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
@@ -144,7 +159,9 @@ def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
     hidden = (each.view(models, scenes, others, -1) + arguments.unsqueeze(2)).relu_().flatten(1, 2)
     hidden = torch.baddbmm(weights["scene.1.bias"], hidden, weights["scene.1.weight"]).relu_()
     pooled = torch.bmm(batch.share.view(-1, 1, others), hidden.view(models * scenes, others, -1))
-    return torch.baddbmm(weights["scene.2.bias"], pooled.view(models, scenes, -1), weights["scene.2.weight"])
+    return torch.baddbmm(
+        weights["scene.2.bias"], pooled.view(models, scenes, -1), weights["scene.2.weight"]
+    )
 
 
 def _layers(weights: Mapping[str, Tensor], name: str, x: Tensor) -> Tensor:

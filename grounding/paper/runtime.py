@@ -9,7 +9,16 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.paper.features import BB, CODE, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.paper.features import (
+    BB,
+    CODE,
+    PC,
+    BoxFeatures,
+    CloudFeatures,
+    Features,
+    Observation,
+    poses_of,
+)
 from grounding.paper.kernels import normalize
 from grounding.situation import Situation
 from grounding.weights import Weights
@@ -37,7 +46,10 @@ class PaperModel:
 
     def __init__(self, weights: Weights) -> None:
         arrays = weights.arrays
-        self.classifier, self.generator = Network(arrays, "classifier"), Network(arrays, "generator")
+        self.classifier, self.generator = (
+            Network(arrays, "classifier"),
+            Network(arrays, "generator"),
+        )
         self._features = features_in(arrays, self.classifier)
         _check_generator(self.generator, self._features.size)
         self._sees = bool(self.classifier.scene or self.generator.scene)
@@ -112,8 +124,16 @@ class NumpyEncoder:
 
     def __init__(self, arrays: Arrays) -> None:
         self.layers = _chain(arrays, "")
-        if not self.layers or "scale" not in arrays or "points" not in arrays or self.layers[-1][0].shape[1] != CODE:
-            raise InputError("the weights have no encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        if (
+            not self.layers
+            or "scale" not in arrays
+            or "points" not in arrays
+            or self.layers[-1][0].shape[1] != CODE
+        ):
+            raise InputError(
+                "the weights have no encoder of clouds",
+                remedy="Train one: tamp-learn encoder --help",
+            )
         self.scale, self.points = float(arrays["scale"]), int(arrays["points"])
 
     def __call__(self, points: Array) -> Floats:
@@ -138,17 +158,27 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
     Raises:
         InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
     """
-    inputs = classifier.main[0][0].shape[0] - (classifier.scene[-1][1].shape[0] if classifier.scene else 0)
+    inputs = classifier.main[0][0].shape[0] - (
+        classifier.scene[-1][1].shape[0] if classifier.scene else 0
+    )
     outputs = classifier.main[-1][1].shape[0]
     if outputs != 1:
-        raise InputError(f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY)
+        raise InputError(
+            f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY
+        )
     _check_scene(classifier, inputs // 2)
     if inputs == 2 * BB:
         return BoxFeatures()
     if inputs == 2 * PC:
-        encoder = {name.removeprefix("encoder."): array for name, array in arrays.items() if "encoder." in name}
+        encoder = {
+            name.removeprefix("encoder."): array
+            for name, array in arrays.items()
+            if "encoder." in name
+        }
         return CloudFeatures(NumpyEncoder(encoder))
-    raise InputError(f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)")
+    raise InputError(
+        f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)"
+    )
 
 
 def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Floats, Floats]:
@@ -164,7 +194,9 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
     return pose[:, :3], pose[:, 3:]
 
 
-def classified(network: Network, features: Features, seen: Observation, situation: Situation, poses: Array) -> Array:
+def classified(
+    network: Network, features: Features, seen: Observation, situation: Situation, poses: Array
+) -> Array:
     """Probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4, 4)."""
     return judged(network, seen, features.at(seen, situation, poses))
 
@@ -174,7 +206,9 @@ def judged(network: Network, seen: Observation, argument: Array) -> Array:
     size = argument.shape[1]
     arguments = np.empty((len(argument), 2 * size), np.float32)
     arguments[:, :size], arguments[:, size:] = seen.arguments[0], argument
-    inputs = np.concatenate([arguments, network.context(arguments, seen.others.astype(np.float32))], axis=1)
+    inputs = np.concatenate(
+        [arguments, network.context(arguments, seen.others.astype(np.float32))], axis=1
+    )
     return 1 / (1 + np.exp(-np.clip(network(inputs)[:, 0].astype(np.float64), -60, 60)))
 
 
@@ -208,7 +242,10 @@ def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
     dot = f"{prefix}." if prefix else ""
     layers: list[tuple[Floats, Floats]] = []
     while f"{dot}{len(layers)}.weight" in arrays and f"{dot}{len(layers)}.bias" in arrays:
-        weight, bias = (np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32) for key in ("weight", "bias"))
+        weight, bias = (
+            np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32)
+            for key in ("weight", "bias")
+        )
         fits = not layers or layers[-1][0].shape[1] == weight.shape[0]
         if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
             raise InputError(

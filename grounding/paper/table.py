@@ -38,7 +38,10 @@ class Table:
 
 
 def table_of(
-    data: Dataset, features: Features, progress: Callable[[str], None] = lambda _: None, count: int | None = None
+    data: Dataset,
+    features: Features,
+    progress: Callable[[str], None] = lambda _: None,
+    count: int | None = None,
 ) -> Table:
     """The features of the first `count` scenes of `order`, or of all."""
     indices = order(data.holds)[:count]

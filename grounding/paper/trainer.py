@@ -93,7 +93,9 @@ class Trainer:
         self._others = torch.from_numpy(self.table.others)
         self._share = torch.from_numpy(self.table.share)
         self._labels = torch.from_numpy(self.table.holds.astype(np.float32))
-        start = [_random(size, seed, 0, 0) for size, seed in zip(self.sizes, self.seeds, strict=True)]
+        start = [
+            _random(size, seed, 0, 0) for size, seed in zip(self.sizes, self.seeds, strict=True)
+        ]
         self.classifier = Ensemble(networks.classifier_shapes(features, self.scene), start)
         self.critic = Ensemble(networks.critic_shapes(features), start)
         self.generator = Ensemble(networks.generator_shapes(features, self.scene), start)
@@ -101,12 +103,18 @@ class Trainer:
         self._least = torch.full((len(self.sizes),), torch.inf)
         self._done = torch.zeros(2, dtype=torch.int64)  # iterations of classifier and generator
         spared = [min(size // 10, VALIDATION) if size >= 100 else 0 for size in self.sizes]
-        self._seen = [torch.arange(size - some) for size, some in zip(self.sizes, spared, strict=True)]
-        self._spared = [torch.arange(size - some, size) for size, some in zip(self.sizes, spared, strict=True)]
+        self._seen = [
+            torch.arange(size - some) for size, some in zip(self.sizes, spared, strict=True)
+        ]
+        self._spared = [
+            torch.arange(size - some, size) for size, some in zip(self.sizes, spared, strict=True)
+        ]
         self._all = [torch.arange(size) for size in self.sizes]
         self._positive = [rows[self._labels[rows] > 0] for rows in self._all]
 
-    def run(self, state: Path | None = None, progress: Callable[[str], None] = lambda _: None) -> None:
+    def run(
+        self, state: Path | None = None, progress: Callable[[str], None] = lambda _: None
+    ) -> None:
         """Train to the end, from where `state` left off.
 
         Raises:
@@ -118,7 +126,9 @@ class Trainer:
             if state is not None and state.is_file():
                 self._load(state)
                 progress(f"going on after {int(self._done[0])} + {int(self._done[1])} iterations")
-            for stage, (name, block) in enumerate((("classifier", self._classify), ("generator", self._generate))):
+            for stage, (name, block) in enumerate(
+                (("classifier", self._classify), ("generator", self._generate))
+            ):
                 self._stage(stage, name, block, state, progress)
         finally:
             torch.set_num_threads(threads)
@@ -147,7 +157,9 @@ class Trainer:
             self._done[stage] = end
             if end % self.args.save_every == 0 or end == self.args.iterations:
                 speed = (end - first) / (time.perf_counter() - start)
-                progress(f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, loss {loss:.3f}")
+                progress(
+                    f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, loss {loss:.3f}"
+                )
                 if state is not None:
                     self._save(state)
         if stage == 0:
@@ -159,7 +171,9 @@ class Trainer:
         total = torch.zeros(())
         for step, rows in enumerate(batches.unbind(1), start + 1):
             loss = binary_cross_entropy_with_logits(
-                score(self.classifier.weights, self._batch(rows)), self._labels[rows], reduction="sum"
+                score(self.classifier.weights, self._batch(rows)),
+                self._labels[rows],
+                reduction="sum",
             )
             loss.backward()
             self.classifier.update(self.args.rate)
@@ -174,18 +188,25 @@ class Trainer:
         for model, rows in enumerate(self._spared):
             loss = torch.tensor(-torch.inf)
             if len(rows):
-                alone = {name: tensor[model : model + 1] for name, tensor in self.classifier.fixed.items()}
+                alone = {
+                    name: tensor[model : model + 1]
+                    for name, tensor in self.classifier.fixed.items()
+                }
                 scores = score(alone, self._batch(rows[None]))[0]
                 loss = binary_cross_entropy_with_logits(scores, self._labels[rows])
             if loss <= self._least[model]:
                 self._least[model] = loss
-                for best, now in zip(self.classifier.parts(self._best), self.classifier.weights.values(), strict=True):
+                for best, now in zip(
+                    self.classifier.parts(self._best), self.classifier.weights.values(), strict=True
+                ):
                     best[model] = now[model]
 
     def _generate(self, start: int, end: int) -> float:
         """Equations 2 to 4, from one iteration of the generator to another; returns the last mean loss."""
         steps = [self._critic_steps(step) for step in range(start + 1, end + 1)]
-        randoms = [_random(size, seed, 2, start) for size, seed in zip(self.sizes, self.seeds, strict=True)]
+        randoms = [
+            _random(size, seed, 2, start) for size, seed in zip(self.sizes, self.seeds, strict=True)
+        ]
         scenes = self._draw(self._all, 3, start, sum(steps) + end - start)
         positive = self._draw(self._positive, 4, start, sum(steps))
         done, loss, batch = 0, torch.zeros(()), self.args.batch
@@ -196,7 +217,9 @@ class Trainer:
                 noise = _stack(randoms, torch.randn, (rows.shape[1], NOISE))
                 mixes = _stack(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
                 fakes = generate(self.generator.fixed, self._batch(rows), noise).split(batch, dim=1)
-                real = self._arguments[positive[:, first : first + some].flatten(1)].split(batch, dim=1)
+                real = self._arguments[positive[:, first : first + some].flatten(1)].split(
+                    batch, dim=1
+                )
                 for one, other, mix in zip(real, fakes, mixes, strict=True):
                     critic_gradient(self.critic, one, other, mix, self.args.penalty)
                     self.critic.update(self.args.rate)
@@ -237,16 +260,27 @@ class Trainer:
     def _batch(self, rows: Tensor) -> Batch:
         """The scenes of these rows, shape (M, B)."""
         arguments = self._arguments[rows]
-        return Batch(arguments, self._others[rows], self._share[rows]) if self.scene else Batch(arguments, _NONE, _NONE)
+        return (
+            Batch(arguments, self._others[rows], self._share[rows])
+            if self.scene
+            else Batch(arguments, _NONE, _NONE)
+        )
 
     def _tensors(self) -> dict[str, Tensor]:
         parts = {"classifier": self.classifier, "critic": self.critic, "generator": self.generator}
-        tensors = {f"{name}.{key}": getattr(part, key) for name, part in parts.items() for key in ("flat", "square")}
+        tensors = {
+            f"{name}.{key}": getattr(part, key)
+            for name, part in parts.items()
+            for key in ("flat", "square")
+        }
         return {**tensors, "best": self._best, "least": self._least, "done": self._done}
 
     def _save(self, path: Path) -> None:
         tensors = self._tensors()
-        write_whole(path, save({name: tensor.detach() for name, tensor in tensors.items()}, {"run": self._run()}))
+        write_whole(
+            path,
+            save({name: tensor.detach() for name, tensor in tensors.items()}, {"run": self._run()}),
+        )
 
     def _load(self, path: Path) -> None:
         remedy = f"Train from the beginning: delete {path}"
@@ -260,7 +294,9 @@ class Trainer:
             raise InputError("the state of another training", file=path, remedy=remedy)
         wanted = {name: (tensor.shape, tensor.dtype) for name, tensor in self._tensors().items()}
         if wanted != {name: (tensor.shape, tensor.dtype) for name, tensor in tensors.items()}:
-            raise InputError("the state is damaged: its arrays are others", file=path, remedy=remedy)
+            raise InputError(
+                "the state is damaged: its arrays are others", file=path, remedy=remedy
+            )
         for name, tensor in self._tensors().items():
             tensor.copy_(tensors[name])
 
@@ -281,6 +317,8 @@ def _random(size: int, seed: int, stage: int, block: int) -> torch.Generator:
     return torch.Generator().manual_seed(int(mixed[0]))
 
 
-def _stack(randoms: Sequence[torch.Generator], draw: Callable[..., Tensor], shape: tuple[int, ...]) -> Tensor:
+def _stack(
+    randoms: Sequence[torch.Generator], draw: Callable[..., Tensor], shape: tuple[int, ...]
+) -> Tensor:
     """One draw a model, shape (M, *shape)."""
     return torch.stack([draw(shape, generator=random) for random in randoms])

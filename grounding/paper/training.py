@@ -50,9 +50,15 @@ def train(
     """
     _check(data, model, scheme, sizes, seeds, encoder)
     table = table or features_of(data, model, encoder, progress, max(sizes))
-    trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations))
+    trainer = Trainer(
+        table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations)
+    )
     trainer.run(state, progress)
-    extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if _clouds(model) and encoder else {}
+    extra = (
+        {f"encoder.{name}": array for name, array in encoder.arrays.items()}
+        if _clouds(model) and encoder
+        else {}
+    )
     return [
         Weights(
             {**arrays, **extra},
@@ -63,7 +69,11 @@ def train(
                 "samples": size,
                 "seed": seed,
                 "iterations": iterations,
-                "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
+                "data": {
+                    key: data.card[key]
+                    for key in ("split", "seed", "count", "commit")
+                    if key in data.card
+                },
                 "architecture": {name: list(array.shape) for name, array in arrays.items()},
             },
         )
@@ -72,12 +82,18 @@ def train(
 
 
 def features_of(
-    data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None], count: int | None = None
+    data: Dataset,
+    model: str,
+    encoder: Weights | None,
+    progress: Callable[[str], None],
+    count: int | None = None,
 ) -> Table:
     """The features that a model is trained on, of the first `count` scenes or of all."""
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
-        return coded_table(data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around)
+        return coded_table(
+            data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around
+        )
     return table_of(data, BoxFeatures(), progress, count)
 
 
@@ -86,7 +102,12 @@ def _clouds(model: str) -> bool:
 
 
 def _check(
-    data: Dataset, model: str, scheme: str, sizes: Sequence[int], seeds: Sequence[int], encoder: Weights | None
+    data: Dataset,
+    model: str,
+    scheme: str,
+    sizes: Sequence[int],
+    seeds: Sequence[int],
+    encoder: Weights | None,
 ) -> None:
     if model not in MODELS:
         raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
@@ -95,8 +116,16 @@ def _check(
     if len(sizes) != len(seeds) or not sizes:
         raise InputError(f"{len(sizes)} sizes for {len(seeds)} seeds; each model has one of each")
     if min(sizes) < 2 or max(sizes) > len(data):
-        raise InputError(f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible")
+        raise InputError(
+            f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible"
+        )
     if not 0 < int(data.holds.sum()) < len(data):
-        raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
+        raise InputError(
+            "the demonstrations are all positive or all negative",
+            remedy="Add some of the other kind.",
+        )
     if _clouds(model) and encoder is None:
-        raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            f"model '{model}' needs an encoder of clouds",
+            remedy="Train one: tamp-learn encoder --help",
+        )

@@ -46,9 +46,15 @@ def train_tree(
     if not 2 <= samples <= len(data):
         raise InputError(f"a training set of {samples} examples; 2 to {len(data)} are possible")
     if model == "tree-pc" and encoder is None:
-        raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            f"model '{model}' needs an encoder of clouds",
+            remedy="Train one: tamp-learn encoder --help",
+        )
     if not 0 < int(data.holds.sum()) < len(data):
-        raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
+        raise InputError(
+            "the demonstrations are all positive or all negative",
+            remedy="Add some of the other kind.",
+        )
     table = features_of(data, model, encoder, progress, samples)
     progress(f"a tree of {samples} scenes")
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if encoder else {}
@@ -61,7 +67,11 @@ def train_tree(
             "model": model,
             "samples": samples,
             "seed": seed,
-            "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
+            "data": {
+                key: data.card[key]
+                for key in ("split", "seed", "count", "commit")
+                if key in data.card
+            },
             "architecture": {"nodes": len(arrays["tree.feature"]), "features": table.features},
             **({"classifies": False, REASON: why} if why else {}),
         },

@@ -8,7 +8,15 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.paper.features import BB, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.paper.features import (
+    BB,
+    PC,
+    BoxFeatures,
+    CloudFeatures,
+    Features,
+    Observation,
+    poses_of,
+)
 from grounding.paper.runtime import Arrays, NumpyEncoder, unit
 from grounding.paper.turns import rotations
 from grounding.situation import Situation
@@ -83,10 +91,19 @@ class Tree:
         if missing:
             raise _refused(f"no '{missing[0]}'")
         columns = [arrays[f"tree.{name}"] for name in NODES]
-        if len({column.shape for column in columns}) > 1 or columns[0].ndim != 1 or not len(columns[0]):
+        if (
+            len({column.shape for column in columns}) > 1
+            or columns[0].ndim != 1
+            or not len(columns[0])
+        ):
             raise _refused("nodes that do not fit each other")
-        self._feature, self._left, self._right = (columns[index].astype(np.intp) for index in (0, 2, 3))
-        self._threshold, self.positive = columns[1].astype(np.float64), columns[4].astype(np.float64)
+        self._feature, self._left, self._right = (
+            columns[index].astype(np.intp) for index in (0, 2, 3)
+        )
+        self._threshold, self.positive = (
+            columns[1].astype(np.float64),
+            columns[4].astype(np.float64),
+        )
         inner = self._feature != LEAF
         children = np.stack([self._left, self._right])[:, inner]
         if (children <= np.flatnonzero(inner)).any() or (children >= len(inner)).any():
@@ -132,7 +149,9 @@ class Tree:
         return low, high
 
 
-def position_limits(low: Array, high: Array, turns: Array, seen: Observation) -> tuple[Array, Array]:
+def position_limits(
+    low: Array, high: Array, turns: Array, seen: Observation
+) -> tuple[Array, Array]:
     """Limits of argument 1's position, each shape (n, 3), that limits of its features, shape (n, f), amount to.
 
     Of boxes also those of the box along the world's axes, which reaches as far as the rotations, quaternions (n, 4),
@@ -161,10 +180,17 @@ def _features(arrays: Arrays) -> Features:
     if size == BB:
         return BoxFeatures()
     if size == PC:
-        encoder = {name.removeprefix("encoder."): array for name, array in arrays.items() if "encoder." in name}
+        encoder = {
+            name.removeprefix("encoder."): array
+            for name, array in arrays.items()
+            if "encoder." in name
+        }
         return CloudFeatures(NumpyEncoder(encoder))
     raise _refused(f"a range of {size} features; known: {BB} (boxes), {PC} (clouds)")
 
 
 def _refused(what: str) -> InputError:
-    return InputError(f"the weights have no decision tree: {what}", remedy="Train it again: tamp-learn train --help")
+    return InputError(
+        f"the weights have no decision tree: {what}",
+        remedy="Train it again: tamp-learn train --help",
+    )

@@ -56,7 +56,12 @@ def _turn(matrices, turns):
             if r[k, k] >= most:
                 most, i = r[k, k], k
         if i == 3:
-            q[0], q[1], q[2], q[3] = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], 1 + trace
+            q[0], q[1], q[2], q[3] = (
+                r[2, 1] - r[1, 2],
+                r[0, 2] - r[2, 0],
+                r[1, 0] - r[0, 1],
+                1 + trace,
+            )
         else:
             j, k = (i + 1) % 3, (i + 2) % 3
             q[i], q[3] = 1 - trace + 2 * r[i, i], r[k, j] - r[j, k]

@@ -49,13 +49,17 @@ class UniformModel:
         """What the classifier says, shape (n,); not a number where there is none."""
         if self.classifier is None:
             return np.full(len(poses), np.nan)
-        return classified(self.classifier, self._features, self._features.observe(situation), situation, poses)
+        return classified(
+            self.classifier, self._features, self._features.observe(situation), situation, poses
+        )
 
 
 def _box_classifier(weights: Weights) -> Network:
     network = Network(weights.arrays, "classifier")
     if features_in(weights.arrays, network).size != BB:
-        raise InputError("this sampler needs a classifier of boxes, and the weights' is one of clouds")
+        raise InputError(
+            "this sampler needs a classifier of boxes, and the weights' is one of clouds"
+        )
     return network
 
 

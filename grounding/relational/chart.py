@@ -79,7 +79,9 @@ class Chart:
     @classmethod
     def fit(cls, measured: Sequence[Measures]) -> Chart:
         """From positive examples, each of one pose."""
-        heights = np.array([_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured])  # (n, 3, 4)
+        heights = np.array(
+            [_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured]
+        )  # (n, 3, 4)
         finite = np.isfinite(heights).all(axis=0)
         middle = np.median(np.where(finite, heights, 0.0), axis=0)
         spread = np.where(finite, np.median(np.abs(heights - middle), axis=0), np.inf)
@@ -133,7 +135,10 @@ class Chart:
 
     def encode(self, measured: Measures) -> Demonstration:
         """One pose in these coordinates."""
-        height = float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor]) - self.offset
+        height = (
+            float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor])
+            - self.offset
+        )
         share = self._share(measured)[0]
         yaw, tilt = float(measured.yaw[0]), measured.tilt[0]
         height = 0.0 if abs(height) < LEVEL else height
@@ -159,17 +164,33 @@ class Chart:
             middle = (still.low + still.high)[:, :2] / 2
             room = view.region.size[:2] / 2 - (still.high - still.low)[:, :2] / 2
         else:
-            middle, room = still.centre[:, :2], np.broadcast_to(view.region.size[:2] / 2, (len(face), 2))
+            middle, room = (
+                still.centre[:, :2],
+                np.broadcast_to(view.region.size[:2] / 2, (len(face), 2)),
+            )
         positions = np.empty((len(face), 3))
-        positions[:, :2] = np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle
-        positions[:, 2] = _anchors(view)[self.anchor] + self.offset + coordinates[:, 2] - _levels(still)[:, self.level]
+        positions[:, :2] = (
+            np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle
+        )
+        positions[:, 2] = (
+            _anchors(view)[self.anchor]
+            + self.offset
+            + coordinates[:, 2]
+            - _levels(still)[:, self.level]
+        )
         return still.moved(positions)
 
     def shortfall(self, measured: Measures) -> Array:
         """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""
         missing = np.empty(len(measured.poses))
         bounds = (self.sides, self.balance, self.ceiling, self.apart)
-        sizes = (measured.low, measured.high, measured.centre, measured.nearest, measured.view.region.size)
+        sizes = (
+            measured.low,
+            measured.high,
+            measured.centre,
+            measured.nearest,
+            measured.view.region.size,
+        )
         fall_short(*sizes, bounds, SLACK, missing)
         return missing
 

@@ -42,13 +42,17 @@ class Flow:
             )
         self._face = layers_of(arrays, "face", CONDITION, 1)
         self._pair = layers_of(arrays, "pair", PAIR, POOLED)
-        self._velocity = layers_of(arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES)
+        self._velocity = layers_of(
+            arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES
+        )
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
         """`count` poses, measured."""
         conditions = condition(view)
         logits = dense(self._face, conditions)[:, 0].astype(float)
-        logits = np.where(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3)
+        logits = np.where(
+            view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3
+        )
         face = np.argmax(logits + rng.gumbel(size=(count, len(logits))), axis=1)
         known, around = conditions[face], surroundings(view)
         half = (view.region.size[:2] / 2).astype(np.float32) * self._scale[:2]

@@ -59,13 +59,19 @@ class FlowNet(nn.Module):
         super().__init__()
         self.face = dense_layers([CONDITION, 32, 1])
         self.pair = dense_layers([PAIR, 32, POOLED])
-        self.velocity = dense_layers([COORDINATES + 1 + CONDITION + POOLED, hidden, hidden, COORDINATES])
+        self.velocity = dense_layers(
+            [COORDINATES + 1 + CONDITION + POOLED, hidden, hidden, COORDINATES]
+        )
 
     def forward(self, x: Tensor, time: Tensor, scenes: Scenes) -> Tensor:
         """Velocities (n, 7) of samples (n, 7) at times (n, 1)."""
         places = x[:, :2] * scenes.half
         pairs = torch.cat(pair_features(places, scenes.known, scenes.around), dim=2)
-        pooled = run_layers(self.pair, pairs).masked_fill(scenes.missing[..., None], -torch.inf).amax(dim=1)
+        pooled = (
+            run_layers(self.pair, pairs)
+            .masked_fill(scenes.missing[..., None], -torch.inf)
+            .amax(dim=1)
+        )
         pooled = torch.where(scenes.missing.all(dim=1, keepdim=True), 0.0, pooled)
         return run_layers(self.velocity, torch.cat([x, time, scenes.known, pooled], dim=1))
 
@@ -116,7 +122,9 @@ def train_flow(
     average = {name: value.detach().clone() for name, value in net.named_parameters()}
     steps = min(args.iterations, max(1000, 4 * len(positive)))
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, args.rate, total_steps=steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, args.rate, total_steps=steps, pct_start=0.1
+    )
     total = 0.0
     for step in range(1, steps + 1):
         rows = torch.randint(len(data), (min(args.batch, len(data)),), generator=random)
@@ -143,7 +151,10 @@ def train_flow(
 
 
 def _scenes(
-    positive: Sequence[Measures], conditions: Sequence[NDArray[np.float32]], face: Tensor, scale: NDArray[np.float32]
+    positive: Sequence[Measures],
+    conditions: Sequence[NDArray[np.float32]],
+    face: Tensor,
+    scale: NDArray[np.float32],
 ) -> Scenes:
     known = np.stack([rows[row] for rows, row in zip(conditions, face.tolist(), strict=True)])
     around, missing = _padded([surroundings(one.view) for one in positive], AROUND)
@@ -154,7 +165,10 @@ def _scenes(
 def _padded(rows: Sequence[NDArray[Any]], width: int) -> tuple[Tensor, Tensor]:
     """Shape (n, m, width), zero where there are fewer than m, and where that is, (n, m)."""
     most = max(1, max(len(row) for row in rows))
-    padded, missing = np.zeros((len(rows), most, width), np.float32), np.ones((len(rows), most), bool)
+    padded, missing = (
+        np.zeros((len(rows), most, width), np.float32),
+        np.ones((len(rows), most), bool),
+    )
     for index, row in enumerate(rows):
         padded[index, : len(row)], missing[index, : len(row)] = row, False
     return torch.tensor(padded), torch.tensor(missing)

@@ -65,6 +65,11 @@ def fall_short(low, high, centre, nearest, size, bounds, slack, missing):
             balance = min(balance, size[k] / 2 - abs(centre[n, k]))
         ceiling = min(size[2] - high[n, 2], 1.0)
         total = 0.0
-        for value, bound in ((sides, bounds[0]), (balance, bounds[1]), (ceiling, bounds[2]), (nearest[n], bounds[3])):
+        for value, bound in (
+            (sides, bounds[0]),
+            (balance, bounds[1]),
+            (ceiling, bounds[2]),
+            (nearest[n], bounds[3]),
+        ):
             total += max(bound - value - slack, 0.0)
         missing[n] = total

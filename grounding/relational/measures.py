@@ -36,7 +36,9 @@ class View:
         self.faces = resting(self.form.unit)
         half, height = self.region.size[:2] / 2, min(float(self.region.size[2]), 1.0)
         self._room = np.array([[-half[0], -half[1], 0.0], [half[0], half[1], height]])
-        self.obstacles = Obstacles([*self._near(situation.others), *_walls(situation.support.form, situation.region)])
+        self.obstacles = Obstacles(
+            [*self._near(situation.others), *_walls(situation.support.form, situation.region)]
+        )
 
     @cached_property
     def size(self) -> Array:
@@ -67,7 +69,9 @@ class View:
         reach = REACH + np.array([other.form.radius for other in others])
         near = (away * away).sum(axis=1) < reach * reach
         return [
-            Placed(other.form, matrix) for other, matrix, is_near in zip(others, matrices, near, strict=True) if is_near
+            Placed(other.form, matrix)
+            for other, matrix, is_near in zip(others, matrices, near, strict=True)
+            if is_near
         ]
 
 
@@ -76,7 +80,11 @@ def _walls(support: Form, region: Region) -> tuple[Placed, ...]:
     """The support's parts that rise above the region's plane, in the region's frame."""
     matrix = inverse(region.matrix)
     boxes = support.piece_boxes
-    tops = boxes.mean(axis=1) @ matrix[2, :3] + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2 + matrix[2, 3]
+    tops = (
+        boxes.mean(axis=1) @ matrix[2, :3]
+        + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2
+        + matrix[2, 3]
+    )
     return tuple(Placed(support.pieces[index], matrix) for index in np.flatnonzero(tops > WALL))
 
 
@@ -100,7 +108,9 @@ class Measures:
     def turned(self) -> tuple[Array, Array, Array]:
         """Least and largest coordinates and centre of mass of the body turned about its origin, each (n, 3)."""
         rotations, form = self.poses[:, :3, :3], self.view.form
-        points = (form.vertices @ rotations.reshape(-1, 3).T).reshape(-1, len(rotations), 3)  # (v, n, 3)
+        points = (form.vertices @ rotations.reshape(-1, 3).T).reshape(
+            -1, len(rotations), 3
+        )  # (v, n, 3)
         return points.min(axis=0), points.max(axis=0), rotations @ form.centre_of_mass
 
     @cached_property
@@ -214,7 +224,12 @@ def resting(form: Form) -> Resting:
         np.stack([face.rotation for face in form.faces]),
         angle,
         np.stack(
-            [angle, angle - angle.max(), np.log(extent / extent.min()), np.log(extent / np.maximum(width, 1e-3))],
+            [
+                angle,
+                angle - angle.max(),
+                np.log(extent / extent.min()),
+                np.log(extent / np.maximum(width, 1e-3)),
+            ],
             axis=1,
         ),
     )

@@ -45,7 +45,9 @@ class RelationalModel:
         self.chart = Chart.from_card(weights.card["chart"])
         flow, ranks = _named(arrays, "flow."), _named(arrays, "rank.")
         self.proposals: Transfer | Flow = (
-            Flow(self.chart, flow) if flow else Transfer(self.chart, *(arrays[name] for name in DEMONSTRATIONS))
+            Flow(self.chart, flow)
+            if flow
+            else Transfer(self.chart, *(arrays[name] for name in DEMONSTRATIONS))
         )
         self.ranker = Ranker(ranks) if ranks else None
         self._ranks, self._classifies = bool(self.card["ranks"]), bool(self.card["classifies"])
@@ -107,8 +109,15 @@ def relational_weights(
         arrays = {name: np.asarray(getattr(proposals, name), np.float32) for name in DEMONSTRATIONS}
     else:
         arrays = {f"flow.{name}": array for name, array in proposals.items()}
-    return Weights({**arrays, **{f"rank.{name}": array for name, array in rank.items()}}, {**card, "chart": chart.card})
+    return Weights(
+        {**arrays, **{f"rank.{name}": array for name, array in rank.items()}},
+        {**card, "chart": chart.card},
+    )
 
 
 def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+    return {
+        name.removeprefix(prefix): array
+        for name, array in arrays.items()
+        if name.startswith(prefix)
+    }

@@ -48,7 +48,9 @@ class Transfer:
     @classmethod
     def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
         """From encoded demonstrations."""
-        columns = zip(*((one.coordinates, one.face, one.size) for one in demonstrations), strict=True)
+        columns = zip(
+            *((one.coordinates, one.face, one.size) for one in demonstrations), strict=True
+        )
         return cls(chart, *(np.stack(column) for column in columns))
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
@@ -61,12 +63,16 @@ class Transfer:
         weights = _weights(self, tuple(view.size.tolist()))
         chosen = np.searchsorted(weights, rng.random(count) * weights[-1], side="right")
         chosen = np.minimum(chosen, len(weights) - 1)
-        steady = np.flatnonzero(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()))
+        steady = np.flatnonzero(
+            view.steadiness >= min(self.chart.steadiness, view.steadiness.max())
+        )
         apart = self.faces[chosen][:, None] - view.faces.descriptors[steady]  # (n, f, 4)
         likely = -ALIKE * np.einsum("nfk,nfk->nf", apart, apart)
         faces = steady[np.argmax(likely + rng.gumbel(size=likely.shape), axis=1)]
         coordinates = self.coordinates[chosen]
-        share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(size=(count, 2))
+        share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(
+            size=(count, 2)
+        )
         coordinates[:, :2] = 1.0 - np.abs(np.mod(share - 1.0, 4.0) - 2.0)  # reflected into [-1, 1]
         yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5]) + rng.normal(scale=0.5, size=count)
         coordinates[:, 5], coordinates[:, 6] = np.cos(yaw), np.sin(yaw)

@@ -46,7 +46,9 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     if not around.count:
         return pose, np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
     apart = np.minimum(measured.apart, REACH).astype(np.float32)
-    over = np.maximum(measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:])
+    over = np.maximum(
+        measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:]
+    )
     over = over.astype(np.float32)
     pair = np.empty((*apart.shape, PAIR), np.float32)
     for row, lengths in enumerate((8 * apart, 100 * apart, 8 * over, 100 * over)):

@@ -83,11 +83,17 @@ def train_ranker(
         net = RankerNet(args.hidden, args.pooled)
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
     steps = min(args.iterations, max(600, 2 * len(labels)))
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, args.rate, total_steps=steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, args.rate, total_steps=steps, pct_start=0.1
+    )
     best, kept = -1.0, net.arrays()
     for step in range(1, steps + 1):
-        rows = chosen[torch.randint(len(chosen), (min(args.batch, len(chosen)),), generator=generator)]
-        loss = nn.functional.binary_cross_entropy_with_logits(net(pose[rows], pair[rows], missing[rows]), labels[rows])
+        rows = chosen[
+            torch.randint(len(chosen), (min(args.batch, len(chosen)),), generator=generator)
+        ]
+        loss = nn.functional.binary_cross_entropy_with_logits(
+            net(pose[rows], pair[rows], missing[rows]), labels[rows]
+        )
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
@@ -108,4 +114,8 @@ def _table(rows: Sequence[tuple[NDArray[Any], NDArray[Any]]]) -> tuple[Tensor, T
     missing = np.ones((len(rows), most), dtype=bool)
     for row, (_, pair) in enumerate(rows):
         pairs[row, : pair.shape[1]], missing[row, : pair.shape[1]] = pair[0], False
-    return torch.tensor(np.concatenate([pose for pose, _ in rows])), torch.tensor(pairs), torch.tensor(missing)
+    return (
+        torch.tensor(np.concatenate([pose for pose, _ in rows])),
+        torch.tensor(pairs),
+        torch.tensor(missing),
+    )

@@ -82,7 +82,15 @@ def cases(
         sources: What stands in the Python files among the samplers, by name.
     """
     return [
-        Case(problem, sampler, seed, time, algorithm, tuple(sorted(chosen.items())), _used(chosen, sources or {}))
+        Case(
+            problem,
+            sampler,
+            seed,
+            time,
+            algorithm,
+            tuple(sorted(chosen.items())),
+            _used(chosen, sources or {}),
+        )
         for seed in seeds
         for problem in dict.fromkeys(problems)
         for sampler, chosen in samplers.items()
@@ -119,7 +127,14 @@ def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, st
     label, sources = sampler, dict[str, str]()
     for _, text in _pairs(sampler) if "=" in sampler else ():
         name = parted(text)[0]
-        file = next((parted(one)[0] for one in chosen.values() if Path(parted(one)[0]) == Path(name).resolve()), None)
+        file = next(
+            (
+                parted(one)[0]
+                for one in chosen.values()
+                if Path(parted(one)[0]) == Path(name).resolve()
+            ),
+            None,
+        )
         if file is None:
             continue
         content = read_bytes(Path(file), MOST_BYTES)
@@ -166,9 +181,15 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
     name = sampler.partition(":")[0]
     able = [relation for relation in known if name in known[relation]]
     if not able:
-        names = dict.fromkeys(name for other, makers in known.items() if other != ANY for name in makers)
-        remedy = f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""
-        raise InputError(f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names), remedy=remedy)
+        names = dict.fromkeys(
+            name for other, makers in known.items() if other != ANY for name in makers
+        )
+        remedy = (
+            f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""
+        )
+        raise InputError(
+            f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names), remedy=remedy
+        )
     made: dict[str, str] = {}
     missing: list[InputError] = []
     for relation in able:

@@ -15,7 +15,9 @@ FIG8 = (
 """Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed with it as usual."""
 
 
-def chosen(samplers: Sequence[str], known: Registry) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
+def chosen(
+    samplers: Sequence[str], known: Registry
+) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
     """What of the samplers can be run, by relation, and why the others cannot.
 
     Args:

@@ -62,7 +62,9 @@ class Log:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._stream = path.open("ab", buffering=0)
         except OSError as error:
-            raise InputError(f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE) from None
+            raise InputError(
+                f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE
+            ) from None
         try:
             self._lock()
             whole = _whole(path)
@@ -78,7 +80,10 @@ class Log:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self._close()
 
@@ -112,7 +117,9 @@ class Log:
             with contextlib.suppress(OSError):  # no half a line
                 self._stream.truncate(size)
             what = f"the results cannot be written: {error.strerror}"
-            raise InputError(what, file=self.path, remedy="The same command goes on where this one was") from None
+            raise InputError(
+                what, file=self.path, remedy="The same command goes on where this one was"
+            ) from None
         self.lines.append(plain)
         self._known.add(key(plain["config"]))
 
@@ -126,7 +133,9 @@ class Log:
             fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             what = "another process is adding to these results"
-            raise InputError(what, file=self.path, remedy=f"Wait for it, or n{ELSEWHERE[1:]}") from None
+            raise InputError(
+                what, file=self.path, remedy=f"Wait for it, or n{ELSEWHERE[1:]}"
+            ) from None
 
 
 def _check(path: Path, lines: list[Line], time: float, algorithm: str, remedy: str = "") -> None:
@@ -149,7 +158,9 @@ def _check_own(path: Path) -> None:
         InputError: It is no regular file, or its only line, which may have been cut off, begins as none of ours.
     """
     if not os.path.isfile(path):
-        raise InputError("the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE)
+        raise InputError(
+            "the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE
+        )
     with path.open("rb") as stream:
         head = stream.read(LONGEST_LINE)
     if b"\n" not in head and head[: len(BEGINNING)] != BEGINNING[: len(head)]:
@@ -163,7 +174,10 @@ def _whole(path: Path) -> bytes:
 
 
 def _lines(path: Path, whole: bytes) -> list[Line]:
-    return [read_line(line, path, number) for number, line in enumerate(whole.split(b"\n")[:-1], start=1)]
+    return [
+        read_line(line, path, number)
+        for number, line in enumerate(whole.split(b"\n")[:-1], start=1)
+    ]
 
 
 def _plain(value: Any) -> Any:

@@ -87,12 +87,19 @@ class _Sheet:
     def of(self, one: Summary) -> list[float]:
         """A summary's times."""
         config = (one.problem, one.sampler)
-        return times(line for line in self.lines if (line["config"]["problem"], line["config"]["sampler"]) == config)
+        return times(
+            line
+            for line in self.lines
+            if (line["config"]["problem"], line["config"]["sampler"]) == config
+        )
 
     def style(self, sampler: str) -> dict[str, str]:
         """The same sampler looks the same everywhere."""
         index = self.samplers.index(sampler)
-        return {"color": COLOURS[index % len(COLOURS)], "linestyle": STYLES[index // len(COLOURS) % len(STYLES)]}
+        return {
+            "color": COLOURS[index % len(COLOURS)],
+            "linestyle": STYLES[index // len(COLOURS) % len(STYLES)],
+        }
 
     def save(self, path: Path) -> Path:
         """With one legend for all panels."""
@@ -103,7 +110,9 @@ class _Sheet:
         if labels:
             width, height = self._figure.get_size_inches()
             self._figure.set_size_inches(width + LEGEND, height)
-            self._figure.legend(list(labels.values()), list(labels), loc="outside right center", frameon=False)
+            self._figure.legend(
+                list(labels.values()), list(labels), loc="outside right center", frameon=False
+            )
         content = io.BytesIO()
         self._figure.savefig(content, dpi=150, format="png")
         write_whole(path, content.getvalue())
@@ -118,9 +127,13 @@ def _success(sheet: _Sheet) -> None:
         high = [100 * one.interval[1] - share for share, one in zip(shares, found, strict=True)]
         errors = [[max(0.0, error) for error in side] for side in (low, high)]
         places = range(len(found))
-        axes.bar(places, shares, color=[sheet.style(one.sampler)["color"] for one in found], width=0.7)
+        axes.bar(
+            places, shares, color=[sheet.style(one.sampler)["color"] for one in found], width=0.7
+        )
         axes.errorbar(places, shares, errors, fmt="none", ecolor="black", capsize=3, linewidth=1)
-        axes.set_xticks(places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor")
+        axes.set_xticks(
+            places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor"
+        )
         axes.set_ylim(0, 102)
         axes.grid(axis="x", visible=False)
         axes.set_ylabel(f"solved in {sheet.budget:g} s [%]")
@@ -134,7 +147,13 @@ def _ecdf(sheet: _Sheet) -> None:
             shares = [100 * count / one.runs for count in range(len(solved) + 1)]
             start = solved[:1] or [sheet.budget]
             ends = [*start, *solved, max([sheet.budget, *solved])]
-            axes.step(ends, [*shares, shares[-1]], where="post", label=one.sampler, **sheet.style(one.sampler))
+            axes.step(
+                ends,
+                [*shares, shares[-1]],
+                where="post",
+                label=one.sampler,
+                **sheet.style(one.sampler),
+            )
         axes.set_xscale("log")
         axes.set_ylim(0, 102)
         axes.set_xlabel("planning time [s]")
@@ -147,7 +166,14 @@ def _cactus(sheet: _Sheet) -> None:
         for one in found:
             solved = [time for time in sheet.of(one) if math.isfinite(time)]
             places = range(1, len(solved) + 1)
-            axes.plot(places, solved, label=one.sampler, marker=".", markersize=3, **sheet.style(one.sampler))
+            axes.plot(
+                places,
+                solved,
+                label=one.sampler,
+                marker=".",
+                markersize=3,
+                **sheet.style(one.sampler),
+            )
         axes.set_yscale("log")
         axes.set_xlim(0, max(one.runs for one in found) + 0.5)
         axes.set_xlabel("runs solved")
@@ -156,16 +182,27 @@ def _cactus(sheet: _Sheet) -> None:
 
 def _parts(sheet: _Sheet) -> None:
     """Mean time of a run by what it is spent on."""
-    told = [(part, seconds) for one in sheet.summaries for part, seconds in (one.parts or {}).items()]
+    told = [
+        (part, seconds) for one in sheet.summaries for part, seconds in (one.parts or {}).items()
+    ]
     parts = list(dict.fromkeys(part for part, seconds in told if seconds > 0.0))
     for axes, _, found in sheet.panels():
         places = range(len(found))
         bottom = [0.0] * len(found)
         for index, part in enumerate(parts):
             heights = [(one.parts or {}).get(part, 0.0) for one in found]
-            axes.bar(places, heights, bottom=bottom, color=COLOURS[index % len(COLOURS)], width=0.7, label=part)
+            axes.bar(
+                places,
+                heights,
+                bottom=bottom,
+                color=COLOURS[index % len(COLOURS)],
+                width=0.7,
+                label=part,
+            )
             bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
-        axes.set_xticks(places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor")
+        axes.set_xticks(
+            places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor"
+        )
         axes.grid(axis="x", visible=False)
         axes.set_ylabel("mean time of a run [s]")
 

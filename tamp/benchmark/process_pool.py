@@ -106,7 +106,9 @@ class Processes:
     def _replace(self, worker: _Worker) -> None:
         _end(worker)
         if not worker.ready:
-            raise InputError("a worker's process ended before its first run", remedy="What it said is above")
+            raise InputError(
+                "a worker's process ended before its first run", remedy="What it said is above"
+            )
         self._workers[self._workers.index(worker)] = self._hire()
 
 

@@ -39,14 +39,18 @@ class RayCrew:
         InputError: Ray is not installed, or there is no cluster at this address.
     """
 
-    def __init__(self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None) -> None:
+    def __init__(
+        self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None
+    ) -> None:
         _check_somebody_listens(address)
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody else is told
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         try:
             import ray
         except ImportError:
-            raise InputError("--ray needs Ray, which is not installed", remedy="pip install 'tamp[ray]'") from None
+            raise InputError(
+                "--ray needs Ray, which is not installed", remedy="pip install 'tamp[ray]'"
+            ) from None
         self._ray: Any = ray
         quiet = {"log_to_driver": False, "logging_level": "error"}
         try:
@@ -76,10 +80,16 @@ class RayCrew:
             case, _ = self._under_way.pop(reference)
             try:
                 ended.append((case, self._ray.get(reference, timeout=GRACE)))
-            except self._ray.exceptions.RayTaskError as error:  # not lost: it cannot be done there at all
+            except (
+                self._ray.exceptions.RayTaskError
+            ) as error:  # not lost: it cannot be done there at all
                 said = str(error.cause)
-                raise InputError(f"a worker of the cluster failed: {said}", remedy="Is tamp installed there?") from None
-            except self._ray.exceptions.RayError:  # its process, its machine or the way to it is gone
+                raise InputError(
+                    f"a worker of the cluster failed: {said}", remedy="Is tamp installed there?"
+                ) from None
+            except (
+                self._ray.exceptions.RayError
+            ):  # its process, its machine or the way to it is gone
                 ended.append((case, None))
         for reference in pending:
             case, since = self._under_way[reference]

@@ -81,11 +81,18 @@ def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
             for name, one in solution.statistics.items()
             if one.calls
         },
-        "samplers": {relation: [_account(one) for one in found] for relation, found in solution.samplers.items()},
+        "samplers": {
+            relation: [_account(one) for one in found]
+            for relation, found in solution.samplers.items()
+        },
         "verified": None,
     }
     if solution.solved:
-        line |= {"actions": len(solution.plan), "cost": solution.cost, "motion_s": solution.duration}
+        line |= {
+            "actions": len(solution.plan),
+            "cost": solution.cost,
+            "motion_s": solution.duration,
+        }
         line |= _verdict(solution)
     return line
 
@@ -100,7 +107,9 @@ def parts(solution: Solution) -> dict[str, float]:
     }
     times = dict.fromkeys(("symbolic", *beginnings.values(), "other streams", "timing"), 0.0)
     for name, statistics in solution.statistics.items():
-        part = next((part for start, part in beginnings.items() if name.startswith(start)), "other streams")
+        part = next(
+            (part for start, part in beginnings.items() if name.startswith(start)), "other streams"
+        )
         times[part] += statistics.seconds
     times["timing"] = solution.seconds.get("timing", 0.0)
     times["symbolic"] = max(0.0, solution.seconds.get("total", 0.0) - sum(times.values()))

@@ -17,7 +17,9 @@ LOST = "LOST"
 """The outcome of such a run."""
 
 
-def lead(cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any], int], None]) -> None:
+def lead(
+    cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any], int], None]
+) -> None:
     """Do all runs that the log does not have. The crew stays.
 
     Args:

@@ -106,7 +106,10 @@ def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
 
 
 def _summary(
-    problem: str, sampler: str, lines: list[Mapping[str, Any]], against: list[Mapping[str, Any]] | None
+    problem: str,
+    sampler: str,
+    lines: list[Mapping[str, Any]],
+    against: list[Mapping[str, Any]] | None,
 ) -> Summary:
     ordered = times(lines)
     solved = sum(map(succeeded, lines))
@@ -141,4 +144,8 @@ def _speedup(lines: list[Mapping[str, Any]], against: list[Mapping[str, Any]]) -
 def _parts(lines: list[Mapping[str, Any]]) -> dict[str, float] | None:
     told = [line["parts_s"] for line in lines if "parts_s" in line]
     names = dict.fromkeys(name for parts in told for name in parts)
-    return {name: sum(parts.get(name, 0.0) for parts in told) / len(told) for name in names} if told else None
+    return (
+        {name: sum(parts.get(name, 0.0) for parts in told) / len(told) for name in names}
+        if told
+        else None
+    )

@@ -64,7 +64,11 @@ def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
         for segment in action.segments:
             stretches.append(_stretch(segment, joints[segment.part], clock))
             clock += float(segment.times[-1])
-        actions.append(TimedAction(action.name, action.arguments, action.start, action.duration, tuple(stretches)))
+        actions.append(
+            TimedAction(
+                action.name, action.arguments, action.start, action.duration, tuple(stretches)
+            )
+        )
     return tuple(actions)
 
 
@@ -98,5 +102,7 @@ def rates(times: Array, positions: Array) -> Array:
     if len(times) > 2:
         spans = np.diff(times)[:, None]
         slopes = np.diff(positions, axis=0) / spans
-        velocities[1:-1] = (slopes[:-1] * spans[1:] + slopes[1:] * spans[:-1]) / (spans[:-1] + spans[1:])
+        velocities[1:-1] = (slopes[:-1] * spans[1:] + slopes[1:] * spans[:-1]) / (
+            spans[:-1] + spans[1:]
+        )
     return velocities

@@ -76,7 +76,9 @@ def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
                 meshes += [_part(part, ROBOT_COLOUR) for part in primitive_parts(element)]
             if element.mesh is not None:
                 coloured = element.mesh.with_suffix(".mtl").is_file()
-                read = read_mesh(element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL)
+                read = read_mesh(
+                    element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL
+                )
                 meshes += [mesh.moved(element.pose.matrix) for mesh in read]
         colour = BASE_COLOUR if link is robot.links[0] else ROBOT_COLOUR
         looks[link.name] = tuple(meshes) or tuple(_part(part, colour) for part in link.parts)

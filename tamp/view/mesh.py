@@ -48,14 +48,20 @@ def shape_mesh(shape: Shape, colour: Colour) -> Mesh:
         return _box(shape, colour)
     if isinstance(shape, Cylinder):
         half = shape.height / 2
-        return _turned([(0.0, -half), (shape.radius, -half), (shape.radius, half), (0.0, half)], colour)
+        return _turned(
+            [(0.0, -half), (shape.radius, -half), (shape.radius, half), (0.0, half)], colour
+        )
     if isinstance(shape, Sphere):
         tilts = np.linspace(-math.pi / 2, math.pi / 2, ROUND // 2)
-        return _turned([(shape.radius * math.cos(a), shape.radius * math.sin(a)) for a in tilts], colour)
+        return _turned(
+            [(shape.radius * math.cos(a), shape.radius * math.sin(a)) for a in tilts], colour
+        )
     return Mesh(np.asarray(shape.vertices, dtype=float), shape.faces, colour)
 
 
-def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0) -> list[Mesh]:
+def read_mesh(
+    file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0
+) -> list[Mesh]:
     """The triangles of a mesh file, a mesh for each of its colours.
 
     Args:
@@ -72,7 +78,9 @@ def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: f
     mirrored = float(np.prod(scale)) < 0
     for vertices, faces, own in pieces:
         if not np.isfinite(vertices).all():
-            raise InputError(f"the mesh '{file.name}' holds coordinates that are not finite numbers")
+            raise InputError(
+                f"the mesh '{file.name}' holds coordinates that are not finite numbers"
+            )
         turned = faces[:, ::-1] if mirrored else faces
         groups.setdefault(colour or own, []).append((vertices * np.asarray(scale), turned))
     meshes = [_joined(pieces, own) for own, pieces in groups.items()]
@@ -95,12 +103,18 @@ def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]
             io.BytesIO(content), file_type=file.suffix.lower()[1:], resolver=beside, process=False
         )  # fmt: skip
         found = [
-            (np.asarray(one.vertices, dtype=float), np.asarray(one.faces, dtype=np.int64), _material(one))
+            (
+                np.asarray(one.vertices, dtype=float),
+                np.asarray(one.faces, dtype=np.int64),
+                _material(one),
+            )
             for one in loaded.dump()
             if isinstance(one, trimesh.Trimesh)
         ]
     except Exception as error:  # trimesh raises whatever its readers stumble on
-        raise InputError(f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}") from None
+        raise InputError(
+            f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}"
+        ) from None
     yield from found
 
 
@@ -110,9 +124,14 @@ def simplified(mesh: Mesh, cell: float) -> Mesh:
     _, member = np.unique(cubes, axis=0, return_inverse=True)
     member = member.ravel()
     counts = np.bincount(member)
-    means = np.stack([np.bincount(member, mesh.vertices[:, axis]) for axis in range(3)], axis=1) / counts[:, None]
+    means = (
+        np.stack([np.bincount(member, mesh.vertices[:, axis]) for axis in range(3)], axis=1)
+        / counts[:, None]
+    )
     faces = member[mesh.faces]
-    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])]
+    faces = faces[
+        (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])
+    ]
     return Mesh(means, faces, mesh.colour)
 
 
@@ -142,7 +161,10 @@ def _box(shape: Box, colour: Colour) -> Mesh:
 def _turned(profile: list[tuple[float, float]], colour: Colour) -> Mesh:
     """A profile of (radius, z), from the bottom to the top, turned about z."""
     angles = np.linspace(0.0, 2 * math.pi, ROUND, endpoint=False)
-    rings = [np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1) for r, z in profile]
+    rings = [
+        np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1)
+        for r, z in profile
+    ]
     faces: list[tuple[int, int, int]] = []
     for ring in range(len(profile) - 1):
         low, high = ring * ROUND, (ring + 1) * ROUND

@@ -25,7 +25,9 @@ def _read(files: Sequence[Path], meshes: Sequence[Path]) -> None:
 
 
 def open_film(
-    what: str, problem: str | None = None, read: Callable[[Sequence[Path], Sequence[Path]], None] = _read
+    what: str,
+    problem: str | None = None,
+    read: Callable[[Sequence[Path], Sequence[Path]], None] = _read,
 ) -> Opened:
     """A plan file (.json), or a problem by file or name.
 

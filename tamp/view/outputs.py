@@ -91,7 +91,12 @@ class Wishes:
 
 
 def fulfil(
-    wishes: Wishes, film: Film, story: Story, document: Mapping[str, Any], file: Path | None, say: Callable[[str], None]
+    wishes: Wishes,
+    film: Film,
+    story: Story,
+    document: Mapping[str, Any],
+    file: Path | None,
+    say: Callable[[str], None],
 ) -> None:
     """Show a film.
 

@@ -28,7 +28,11 @@ if TYPE_CHECKING:
     from PIL import Image
 
 FLOOR_COLOURS = ((0.86, 0.85, 0.83, 1.0), (0.83, 0.82, 0.8, 1.0))
-EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (0.2, 0.45, 0.85, 1.0), (0.95, 0.45, 0.1, 1.0), (0.3, 0.3, 0.35, 1.0)
+EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (
+    (0.2, 0.45, 0.85, 1.0),
+    (0.95, 0.45, 0.1, 1.0),
+    (0.3, 0.3, 0.35, 1.0),
+)
 """Of the hand's path, empty and with a body in it, and of the base's."""
 
 THICK = 0.006
@@ -72,7 +76,9 @@ class _Trail:
     def until(self, time: float) -> Triangles:
         """What was passed by then."""
         count = int(np.searchsorted(self.passed, time, side="right"))
-        return Triangles(self.line.corners[:count], self.line.normals[:count], self.line.colours[:count])
+        return Triangles(
+            self.line.corners[:count], self.line.normals[:count], self.line.colours[:count]
+        )
 
 
 class Studio:
@@ -89,12 +95,16 @@ class Studio:
         self.camera = camera or framing(film, size)
         self._kinematics = Kinematics(film.robot)
         looks = robot_meshes(film.robot)
-        self._robot = {name: [triangles(mesh) for mesh in meshes if len(mesh.faces)] for name, meshes in looks.items()}
+        self._robot = {
+            name: [triangles(mesh) for mesh in meshes if len(mesh.faces)]
+            for name, meshes in looks.items()
+        }
         bodies = film.scene.bodies
         meshes = {name: body_meshes(body) for name, body in bodies.items()}
         crowd = sum(len(mesh.faces) for some in meshes.values() for mesh in some) > MOST_TRIANGLES
         self._bodies = {
-            name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some] for name, some in meshes.items()
+            name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some]
+            for name, some in meshes.items()
         }
         self._floor = _floor(film)
         self._trails = _trails(film, self._kinematics)
@@ -113,9 +123,18 @@ class Studio:
 def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
     """A camera that has all bodies, and the robot wherever it goes, in view."""
     boxes = [bounds(body.parts, body.pose) for body in film.scene.bodies.values()]
-    boxes += [(np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4])) for x, y in film.rows[::20, :2]]
+    boxes += [
+        (np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4]))
+        for x, y in film.rows[::20, :2]
+    ]
     boxes += [(np.array([*film.rows[0, :2], 0.4]), np.array([*film.rows[0, :2], 1.1]))]
-    corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
+    corners = np.array(
+        [
+            corner
+            for low, high in boxes
+            for corner in itertools.product(*zip(low, high, strict=True))
+        ]
+    )
     ahead = -VIEW / np.linalg.norm(VIEW)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
@@ -131,7 +150,9 @@ def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
     return Camera(_three(target - ahead * distance), _three(target), angle)
 
 
-def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)) -> None:
+def write_png(
+    film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)
+) -> None:
     """One picture, or one beside the other for several times; by default a plan's start, middle and end.
 
     Raises:
@@ -148,7 +169,9 @@ def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[i
     _save(file, image, "PNG", {"optimize": True})
 
 
-def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)) -> float:
+def write_video(
+    film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)
+) -> float:
     """A moving picture of the plan, `speed` times as fast as the robot; the seconds of long pauses that were cut.
 
     Raises:
@@ -159,18 +182,24 @@ def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int
     check_suffix(file)
     suffix = file.suffix.lower()
     if not film.actions:
-        raise InputError("nothing moves without a plan", file=file, remedy="A picture is made by --png")
+        raise InputError(
+            "nothing moves without a plan", file=file, remedy="A picture is made by --png"
+        )
     moments, cut = moments_of(film, speed)
     deep = 1 if suffix == ".gif" else 3
     most = MOST_BYTES // (size[0] * size[1] * deep)
     if len(moments) > most:
         what = f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, and {most:,} are the most"
         faster = math.ceil(speed * len(moments) / most)
-        raise InputError(what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room")
+        raise InputError(
+            what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room"
+        )
     studio = Studio(film, size)
     images = [Image.fromarray(studio.frame(float(moments[len(moments) // 2])))]
     palette = images[0].quantize(128, dither=Image.Dither.NONE) if suffix == ".gif" else None
-    images = [_coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments]
+    images = [
+        _coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments
+    ]
     options = {"save_all": True, "append_images": images[1:], "duration": 1000 // FRAMES, "loop": 0}
     _save(file, images[0], MOVING[suffix], options)
     return cut
@@ -219,13 +248,20 @@ def _floor(film: Film) -> list[Triangles]:
     """Tiles of two shades, a metre wide (larger ones in a hall), under the room and around it."""
     room = film.scene.room
     side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
-    xs, ys = (range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND) for low, high in (room.x, room.y))
+    xs, ys = (
+        range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND)
+        for low, high in (room.x, room.y)
+    )
     tiles: list[Triangles] = []
     for shade, colour in enumerate(FLOOR_COLOURS):
         corners = [(x, y) for x in xs for y in ys if (x + y) % 2 == shade]
         around = ((0, 0), (1, 0), (1, 1), (0, 1))
-        vertices = [(side * (x + dx), side * (y + dy), 0.0) for x, y in corners for dx, dy in around]
-        faces = [(4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))]
+        vertices = [
+            (side * (x + dx), side * (y + dy), 0.0) for x, y in corners for dx, dy in around
+        ]
+        faces = [
+            (4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))
+        ]
         tiles.append(triangles(Mesh(np.array(vertices), np.array(faces), colour)))
     return tiles
 
@@ -234,18 +270,26 @@ def _trails(film: Film, kinematics: Kinematics) -> list[_Trail]:
     full = np.array([*holding(film), False])
     tool = tool_path(film, kinematics)
     base = np.column_stack([film.rows[:, :2], np.full(len(film.rows), 0.01)])
-    lines = [(tool, ~full, EMPTY_COLOUR), (tool, full, FULL_COLOUR), (base, np.full(len(full), True), DRIVE_COLOUR)]
+    lines = [
+        (tool, ~full, EMPTY_COLOUR),
+        (tool, full, FULL_COLOUR),
+        (base, np.full(len(full), True), DRIVE_COLOUR),
+    ]
     trails = [_trail(points, film.times, shown, colour) for points, shown, colour in lines]
     return [trail for trail in trails if len(trail.passed)]
 
 
-def _trail(points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]) -> _Trail:
+def _trail(
+    points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]
+) -> _Trail:
     """Three-sided rods along the stretches of a polyline that are shown."""
     kept = [0]
     for i in range(1, len(points)):
         if np.linalg.norm(points[i] - points[kept[-1]]) >= STEP or shown[i] != shown[kept[-1]]:
             kept.append(i)
-    ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(-1, 2)
+    ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(
+        -1, 2
+    )
     starts, stops = points[ends[:, 0]], points[ends[:, 1]]
     along = stops - starts
     steep = np.abs(along[:, 2]) > 0.9 * np.linalg.norm(along, axis=1)

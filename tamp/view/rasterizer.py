@@ -171,7 +171,21 @@ def _fill(screen, perspective, depth, ids, weights):
 
 
 @njit(cache=True)
-def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame, scale, offset, shadows, pixels):
+def _shade(
+    ids,
+    weights,
+    corners,
+    normals,
+    colours,
+    eye,
+    sun,
+    background,
+    frame,
+    scale,
+    offset,
+    shadows,
+    pixels,
+):
     """Colours of pixels from the triangles that they see: some light from everywhere, some from above, the sun's."""
     rows, columns = ids.shape
     last = shadows.shape[0] - 1

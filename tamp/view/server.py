@@ -84,7 +84,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _answer(self, body: bool) -> None:
         if self.headers.get("Host", "").lower() not in self.server.names:
-            self.send_error(421, "asked for by another name")  # a page from elsewhere whose name was turned to us
+            self.send_error(
+                421, "asked for by another name"
+            )  # a page from elsewhere whose name was turned to us
             return
         found = self.path.partition("?")[0] in ("/", "/index.html")
         content = self.server.content if found else b"not found\n"
@@ -114,7 +116,9 @@ def check_browser() -> None:
         ) from None
 
 
-def serve(content: bytes, say: Callable[[str], None], *, port: int = 0, browser: bool = True) -> None:
+def serve(
+    content: bytes, say: Callable[[str], None], *, port: int = 0, browser: bool = True
+) -> None:
     """Serve a page and open it, until interrupted.
 
     Raises:

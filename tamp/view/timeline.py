@@ -92,7 +92,9 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     for action in () if plan is None else plan.actions:
         objects = tuple(places[name] for name in action.arguments if name in places)
         end = action.start + action.duration
-        actions.append(Shown(action.name, objects, action.start, end, _where(action, facts, places, scene)))
+        actions.append(
+            Shown(action.name, objects, action.start, end, _where(action, facts, places, scene))
+        )
         clock = action.start
         for segment in action.segments:
             maker.follow(segment, clock)
@@ -102,12 +104,19 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
 
 
-def _where(action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene) -> str:
+def _where(
+    action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene
+) -> str:
     """What a fact such as (supported mug p1 table) says of a body and a pose among the action's arguments."""
     said = [fact for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments}]
-    firm = [fact for fact in said if fact[0] in ("supported", "contained")]  # others may speak of another place
+    firm = [
+        fact for fact in said if fact[0] in ("supported", "contained")
+    ]  # others may speak of another place
     names = {fact[3] for fact in firm or said}
-    place = next((places[name] for name in sorted(names) if name in places and name not in action.arguments), None)
+    place = next(
+        (places[name] for name in sorted(names) if name in places and name not in action.arguments),
+        None,
+    )
     if place is None:
         return ""
     if any(segment.attach is not None for segment in action.segments):
@@ -119,7 +128,10 @@ class _Maker:
     def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
         self.times: list[float] = [0.0]
         self.rows: list[Array] = [row]
-        self.stays = {name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))] for name in scene.movable}
+        self.stays = {
+            name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))]
+            for name in scene.movable
+        }
         self._names = {name.lower(): name for name in scene.movable}
         self._kinematics = Kinematics(robot)
 
