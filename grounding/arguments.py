@@ -149,7 +149,7 @@ COMMANDS = {
 
 
 def parsed(arguments: list[str]) -> Arguments:
-    """What the words of a command line say.
+    """Parse the words of a command line.
 
     Raises:
         InputError: Something that the command does not know.
@@ -203,7 +203,7 @@ def _check(chosen: Arguments) -> None:
 
 
 def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
-    """A relation of one's own has data of one's own."""
+    """Check that a relation of one's own has data of one's own."""
     relation = chosen.relation
     if isinstance(chosen, Encoder | Train) and (
         chosen.data is not None or data_file(relation, "train").is_file()
@@ -216,5 +216,5 @@ def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
 
 
 def data_file(relation: str, split: str) -> Path:
-    """Where a relation's data are unless it is said."""
+    """Return the default path of a relation's data."""
     return Path("data") / f"{relation}_{split}.npz"

@@ -1,4 +1,6 @@
-"""Whether a trained classifier says more than chance: one that does not must not pass for one that knows."""
+"""Check that a trained classifier does better than chance: one that does not must not pass for one
+that knows.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ REASON = "cannot tell"
 
 
 def cannot_tell(card: Mapping[str, Any]) -> str | None:
-    """Why weights have no classifier yet, by their card; None when they have one."""
+    """Return why weights have no classifier yet, by their card; None when they have one."""
     if card.get("classifies", True):
         return None
     return str(
@@ -34,7 +36,7 @@ def cannot_tell(card: Mapping[str, Any]) -> str | None:
 
 
 def too_few(holds: Labels) -> str | None:
-    """Why labels are too few, or too much of one kind, to learn from them where a relation holds; else None."""
+    """Return why labels are too few, or too unbalanced, to learn a classifier from; else None."""
     count, positive = len(holds), int(holds.sum())
     negative = count - positive
     if count >= ENOUGH and min(positive, negative) >= EACH:
@@ -48,7 +50,8 @@ def too_few(holds: Labels) -> str | None:
 def no_better_than_chance(
     holds: Labels, fit: Callable[[NDArray[np.intp], NDArray[np.intp]], Labels]
 ) -> str | None:
-    """Why a classifier knows no more than chance does, by two-fold cross-validation; None when it knows more.
+    """Cross-validate a classifier in two folds; return why it knows no more than chance does, or
+    None.
 
     The mean of both kinds' recall has to be two standard errors of guessing above a half.
 
@@ -68,7 +71,9 @@ def no_better_than_chance(
 
 
 def chance(holds: Labels, said: Labels) -> str | None:
-    """Why answers are no better than guesses; None when they are. Both shape (n,)."""
+    """Test answers against chance; return why they are no better than guesses, or None. Both shape
+    (n,).
+    """
     if said.all() or not said.any():
         return f"it says {'yes' if said.all() else 'no'} to everything"
     recalls = (float(said[holds].mean()), float((~said[~holds]).mean()))

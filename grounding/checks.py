@@ -1,4 +1,6 @@
-"""Whether the arrays of a data set are one: every row, type, shape and range, before anything is made of them."""
+"""Validation of a data set's arrays: every row, type, shape and range, before anything is made of
+them.
+"""
 
 from __future__ import annotations
 
@@ -221,7 +223,7 @@ def _check(
 
 
 def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
-    """T_world_body or T_body_region, shape (..., 4, 4)."""
+    """Check that T_world_body or T_body_region, shape (..., 4, 4), are rigid transforms."""
     _refuse(
         name, np.asarray(~(np.abs(matrices[..., :3, 3]) <= FAR).all(axis=-1)), "is too far away"
     )
@@ -239,7 +241,7 @@ def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
 
 
 def _refuse(name: str, wrong: NDArray[np.bool_], what: str) -> None:
-    """Name the first entry that is wrong."""
+    """Raise an error that names the first entry that is wrong."""
     if wrong.any():
         row, *rest = (int(index) for index in np.argwhere(wrong)[0])
         where = f"row {row}" + (f", entry {', '.join(map(str, rest))}" if rest else "")

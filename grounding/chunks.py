@@ -38,52 +38,56 @@ Progress = Callable[[int, int], None]
 
 
 class Job(Protocol):
-    """What is to be made; a process gets it as a whole, so it must be one that can be sent there."""
+    """The specification of what is to be made; a process gets it as a whole, so it must be one that
+    can be sent there.
+    """
 
     @property
     def relation(self) -> str:
-        """Is "on" or "inside"."""
+        """Return the relation, "on" or "inside"."""
         ...
 
     @property
     def split(self) -> str:
-        """Is "train" or "test"; they share no object and no support."""
+        """Return the split, "train" or "test"; they share no object and no support."""
         ...
 
     @property
     def count(self) -> int:
-        """Scenes."""
+        """Return the number of scenes."""
         ...
 
     @property
     def seed(self) -> int:
-        """Of all randomness."""
+        """Return the seed of all randomness."""
         ...
 
     @property
     def folder(self) -> MeshFolder | None:
-        """Of one's own meshes."""
+        """Return the folder of one's own meshes."""
         ...
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The types of samples."""
+        """Return the types of samples."""
         ...
 
     @property
     def key(self) -> str:
-        """What must be the same for the chunks of an interrupted run to be used, the number of scenes aside."""
+        """Return the key that chunks of an interrupted run must share to be used again, the number
+        of scenes aside.
+        """
         ...
 
     def chunk(self, number: int, start: int, size: int) -> Sequence[Made]:
-        """`size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
+        """Make `size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
 
         They depend on nothing else but the job, and not on the size: it only says after how many to stop.
         """
         ...
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """What the card says beside the rest."""
+        """Return the card's own entries."""
         ...
 
 
@@ -125,7 +129,7 @@ def make_dataset(
 
 
 def _size(job: Job, number: int) -> int:
-    """Scenes of a chunk; the last one may be smaller."""
+    """Return the number of scenes of a chunk; the last one may be smaller."""
     return min(CHUNK, job.count - number * CHUNK)
 
 
@@ -180,7 +184,7 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 
 
 def _packed(job: Job, number: int, start: int, size: int) -> bytes:
-    """The scenes of one chunk, as the bytes of an npz."""
+    """Serialize the scenes of one chunk as the bytes of an npz."""
     tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     names = {
         name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])

@@ -225,7 +225,7 @@ def _evaluate(chosen: Evaluate) -> None:
 
 
 def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
-    """The folder of one's own meshes, with what there is to say of them."""
+    """Read the folder of one's own meshes, and say what there is to say of them."""
     if chosen.meshes is None:
         return None
     folder = MeshFolder(chosen.meshes, chosen.mesh_scale)
@@ -243,7 +243,7 @@ def _data(path: Path | None, relation: str, split: str) -> Dataset:
 
 
 def _with_card(path: Path | None) -> list[Path]:
-    """A file of data or weights, and what says what it is."""
+    """Return the path of a file of data or weights, and that of its card."""
     return [] if path is None else [path, path.with_suffix(".json")]
 
 
@@ -287,7 +287,7 @@ def _missing(error: ImportError) -> InputError:
 
 
 def _commit() -> str:
-    """The commit of the checkout that this runs from; empty outside one."""
+    """Return the commit of the checkout that this runs from; empty outside one."""
     folder = Path(__file__).resolve().parent
     try:
         said = subprocess.run(
@@ -307,7 +307,7 @@ _SHOWN = Progress(quiet=False)
 
 
 def _show(text: str, *, last: bool = False) -> None:
-    """How far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
+    """Show progress, on a line that a terminal rewrites; elsewhere printed now and then."""
     if last:
         _SHOWN.clear()
     else:

@@ -48,7 +48,7 @@ class Demonstration:
 
 
 def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
-    """A data set of demonstrations, for `tamp-learn train` and `grounding.train.train`.
+    """Collect demonstrations into a data set, for `tamp-learn train` and `grounding.train.train`.
 
     Args:
         relation: Its name.
@@ -95,7 +95,8 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
 
 
 def unsteady(data: Dataset) -> list[str]:
-    """Warnings of bodies for which the relation holds where no plan will put them, each with its first place.
+    """Return warnings of bodies for which the relation holds where no plan will put them, each with
+    its first place.
 
     They stand on none of their stable faces, hang in the air, or are sunk into the place.
     """
@@ -125,7 +126,8 @@ def unsteady(data: Dataset) -> list[str]:
 
 
 def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demonstration]:
-    """What problem files show: every `(RELATION body place)` and `(not (RELATION body place))` in their goals.
+    """Read demonstrations from problem files: every `(RELATION body place)` and `(not (RELATION
+    body place))` in their goals.
 
     Args:
         relation: Its name.
@@ -170,7 +172,7 @@ def _files(files: Sequence[Path]) -> Iterator[Path]:
 
 
 def _facts(form: Node, relation: str, holds: bool = True) -> Iterator[tuple[Group, bool]]:
-    """The relation's facts in a formula, and whether they are said or denied."""
+    """Yield the relation's facts in a formula, and whether they are asserted or denied."""
     if isinstance(form, Symbol):
         return
     if form.head == relation:
@@ -194,7 +196,9 @@ def _names(group: Group, scene: Scene) -> tuple[str, str]:
 
 
 def _bodies(one: Demonstration) -> tuple[list[str], Region]:
-    """The bodies of a scene, what the place is of first, then the body, then the others; and the place."""
+    """Return the bodies of a scene, what the place is of first, then the body, then the others; and
+    the place.
+    """
     scene, (name, place_name) = one.scene, one.arguments
     if name not in scene.bodies:
         raise InputError(f"'{name}' is no body", found=name, choices=scene.bodies)

@@ -83,12 +83,12 @@ class Dataset:
 
     @property
     def relation(self) -> str:
-        """The relation that the labels are about."""
+        """Return the relation that the labels are about."""
         return str(self.card["relation"])
 
     @cached_property
     def holds(self) -> NDArray[np.bool_]:
-        """The labels, shape (n,)."""
+        """Return the labels, shape (n,)."""
         return self.arrays["holds"].astype(bool)
 
     def __len__(self) -> int:
@@ -118,14 +118,16 @@ class Dataset:
         )
 
     def take(self, indices: NDArray[np.intp] | Sequence[int]) -> Dataset:
-        """The examples at these indices."""
+        """Return the examples at these indices."""
         chosen = np.asarray(indices)
         return Dataset(
             {k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card
         )
 
     def form(self, row: int, body: int) -> Form:
-        """The geometry of a scene's body: 0 for what the place is of, 1 for the relation's body, then the others."""
+        """Return the geometry of a scene's body: 0 for what the place is of, 1 for the relation's
+        body, then the others.
+        """
         return self._form(
             self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body])
         )
@@ -161,7 +163,7 @@ def write_dataset(path: Path, data: Dataset) -> None:
 
 
 def read_dataset(path: Path) -> Dataset:
-    """The data set at `path`.
+    """Read the data set at `path`.
 
     Raises:
         InputError: A file is missing, damaged or of another format, the two do not belong together, or an array is not
@@ -204,7 +206,9 @@ _SHAPES = (Box, Cylinder, Sphere, Hull)
 
 
 def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
-    """Parts as arrays: whose, which shape, its sizes, T_body_part, and how many rows of `vertices` and `faces`."""
+    """Flatten parts into arrays: whose, which shape, its sizes, T_body_part, and how many rows of
+    `vertices` and `faces`.
+    """
     rows: list[tuple[Any, ...]] = []
     vertices, faces = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)]
     for number, parts in enumerate(templates):
@@ -230,7 +234,7 @@ def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
 
 
 def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
-    """The inverse of `_packed`."""
+    """Rebuild the parts from arrays, the inverse of `_packed`."""
     templates: list[list[Part]] = [[] for _ in range(int(arrays["part_template"].max()) + 1)]
     vertex = face = 0
     for row, number in enumerate(arrays["part_template"]):

@@ -53,7 +53,7 @@ class Maker:
         self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
 
     def make(self, kind: str, rng: Random) -> Made:
-        """A scene of this kind; tries until one is found."""
+        """Sample a scene of this kind; tries until one is found."""
         while True:
             made = self._try(kind, rng)
             if made is not None:

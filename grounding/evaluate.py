@@ -1,4 +1,6 @@
-"""How good a grounding is on scenes with bodies it never saw: classifier accuracy, MCA, settled success, time."""
+"""Evaluation of a grounding on scenes with bodies it never saw: classifier accuracy, MCA, settled
+success, time.
+"""
 
 from __future__ import annotations
 
@@ -93,7 +95,8 @@ def evaluate(
 
 
 def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int = 0) -> float | None:
-    """The share of scenes that the classifier is right about, at their own poses; None when there is no classifier.
+    """Return the share of scenes that the classifier is right about, at their own poses; None when
+    there is no classifier.
 
     Args:
         model: The grounding.
@@ -113,7 +116,7 @@ def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int =
 
 
 def _failures(verdicts: Counter[str]) -> dict[str, float]:
-    """Shares of all."""
+    """Return each failure's share of all."""
     count = verdicts.total()
     return {
         name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS
@@ -121,7 +124,7 @@ def _failures(verdicts: Counter[str]) -> dict[str, float]:
 
 
 def wilson(share: float, count: int) -> tuple[float, float]:
-    """The 95 % interval of a share of `count` (Wilson 1927)."""
+    """Compute the 95 % confidence interval of a share of `count` (Wilson 1927)."""
     z = 1.96
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
     half = (

@@ -58,7 +58,7 @@ SECONDS = 2.5
 
 @dataclass(frozen=True)
 class Exploration:
-    """What is to be explored; a `grounding.chunks.Job`.
+    """The specification of an exploration; a `grounding.chunks.Job`.
 
     Attributes:
         relation: "on" or "inside".
@@ -76,30 +76,30 @@ class Exploration:
 
     @property
     def split(self) -> str:
-        """Exploration is for training."""
+        """Return "train": exploration is for training."""
         return "train"
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """What can happen."""
+        """Return the outcomes: what can happen."""
         return KINDS
 
     @property
     def key(self) -> str:
-        """All but the count; of the weights what they are, not where."""
+        """Return the key of all but the count; of the weights what they are, not where."""
         digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
         return json.dumps(
             ["explored", self.relation, self.seed, self.folder and self.folder.key, digest]
         )
 
     def chunk(self, number: int, start: int, size: int) -> list[Made]:
-        """The first `size` scenes of chunk `number`."""
+        """Make the first `size` scenes of chunk `number`."""
         explorer = _explorer(self.relation, self.weights, self.folder)
         rng = np.random.default_rng([self.seed, RELATIONS.index(self.relation), number, len(KINDS)])
         return [explorer.make(row % 2 == 0, rng) for row in range(size)]
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """How often a body was let go, and who drew."""
+        """Return the card's entries: how often a body was let go, and who drew."""
         drawn = None if self.weights is None else dict(read_weights(self.weights).card)
         return {"trials": int(arrays["trials"].sum()), "drawn by": drawn or "random"}
 
@@ -138,7 +138,9 @@ class Explorer:
         self._scenes, self._drops, self._model = scenes, drops, model
 
     def make(self, holds: bool, rng: Random) -> Made:
-        """A scene where the relation came to hold, or where it did not; explores until there is one."""
+        """Make a scene where the relation came to hold, or where it did not; explores until there
+        is one.
+        """
         trials, near = 0, not holds and rng.random() < HARD
         while True:
             scene = self._scenes.draw(rng, crowded=rng.random() < CROWDED)
@@ -158,7 +160,7 @@ class Explorer:
                 return scene.made(pose, kind, holds, True, {"trials": trials})
 
     def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array, bool]], int]:
-        """What happened in a scene, and how often the body was let go.
+        """Explore a scene: return what happened in it, and how often the body was let go.
 
         Returns:
             Kinds, poses T_world_body, and whether it was tried because of one that was found; and the number.
@@ -216,7 +218,9 @@ class Explorer:
 
 
 def uniform(scene: Drawn, rng: Random) -> Array:
-    """T_world_body: anywhere in argument 0's box, grown by half its largest half extent, turned in any way; (4, 4)."""
+    """Sample T_world_body uniformly: anywhere in argument 0's box, grown by half its largest half
+    extent, turned in any way; (4, 4).
+    """
     low, high = scene.support.region.box
     margin = GROWTH * float((high - low).max()) / 2
     pose = random_turn(rng)
@@ -225,7 +229,9 @@ def uniform(scene: Drawn, rng: Random) -> Array:
 
 
 def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
-    """T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned by any angle; (4, 4)."""
+    """Sample T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned
+    by any angle; (4, 4).
+    """
     low, high = scene.support.region.box
     place = scene.stand.matrix[:3, :3] @ rng.uniform(low, high) + scene.stand.matrix[:3, 3]
     result = Pose.from_xyz_yaw(0.0, 0.0, 0.0, rng.uniform(-math.pi, math.pi)).matrix @ pose
@@ -234,8 +240,8 @@ def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
 
 
 def moved(pose: Array, rng: Random) -> Array:
-    """T_world_body moved by FARTHEST and turned by STEEPEST at most; half of them only sideways, half of them only
-    about the vertical, by any angle. Shape (4, 4).
+    """Perturb T_world_body by FARTHEST and STEEPEST at most; half of them only sideways, half of
+    them only about the vertical, by any angle. Shape (4, 4).
     """
     result = pose.copy()
     far, steep = (most * 10.0 ** -rng.uniform(0.0, 2.0) for most in (FARTHEST, STEEPEST))

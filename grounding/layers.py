@@ -19,7 +19,7 @@ def layers_of(
     inputs: int | None = None,
     outputs: int | None = None,
 ) -> Layers:
-    """The layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ...
+    """Read the layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ...
 
     Raises:
         ValueError: They do not fit each other, or have other numbers of inputs or outputs.
@@ -43,7 +43,7 @@ def layers_of(
 
 
 def dense(layers: Layers, x: NDArray[Any]) -> Floats:
-    """ReLU after every layer but the last; (..., in) to (..., out)."""
+    """Apply dense layers, ReLU after every layer but the last; (..., in) to (..., out)."""
     for row, (weight, bias) in enumerate(layers):
         x = x @ weight + bias
         if row < len(layers) - 1:
@@ -52,7 +52,7 @@ def dense(layers: Layers, x: NDArray[Any]) -> Floats:
 
 
 def sigmoid(x: NDArray[Any]) -> NDArray[Any]:
-    """Stable for large arguments."""
+    """Compute the logistic sigmoid, stable for large arguments."""
     return np.where(
         x >= 0, 1.0 / (1.0 + np.exp(-np.abs(x))), np.exp(-np.abs(x)) / (1.0 + np.exp(-np.abs(x)))
     )

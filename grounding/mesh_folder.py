@@ -23,7 +23,7 @@ SUFFIXES = (".urdf", ".obj", ".stl", ".ply")
 
 @dataclass(frozen=True)
 class MeshFolder:
-    """Where one's own meshes are.
+    """A folder of one's own meshes, and their unit.
 
     Attributes:
         path: The folder.
@@ -35,7 +35,7 @@ class MeshFolder:
 
     @property
     def key(self) -> str:
-        """What its objects depend on: the meshes' contents."""
+        """Return the hash of the meshes' contents: what its objects depend on."""
         content = sha256(repr(self.scale).encode())
         for name, file in _files(self.path).items():
             content.update(name.encode() + file.read_bytes())
@@ -44,7 +44,7 @@ class MeshFolder:
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """What a folder holds.
+    """The objects of a mesh folder.
 
     Attributes:
         templates: Name to parts in metres; of the usable ones.
@@ -57,7 +57,8 @@ class Loaded:
 
 @lru_cache(maxsize=4)
 def read_folder(folder: MeshFolder) -> Loaded:
-    """One object for each subfolder, named after it, of its first mesh at any depth; and for each mesh beside them.
+    """Read one object for each subfolder, named after it, of its first mesh at any depth; and for
+    each mesh beside them.
 
     Raises:
         InputError: There is no such folder, it has no meshes, one of them is no mesh, or none is usable.
@@ -90,7 +91,9 @@ def read_folder(folder: MeshFolder) -> Loaded:
 
 
 def unusable(parts: tuple[Part, ...]) -> str | None:
-    """Why no data are made with a body of these parts; None when it is of a hand's size and rests on some face."""
+    """Return why no data are made with a body of these parts; None when it is of a hand's size and
+    rests on some face.
+    """
     form = Form(parts)
     size = float(np.ptp(form.corners, axis=0).max())
     if not SMALLEST < size < LARGEST:
@@ -99,7 +102,7 @@ def unusable(parts: tuple[Part, ...]) -> str | None:
 
 
 def _files(folder: Path) -> dict[str, Path]:
-    """Name to mesh."""
+    """Return the meshes by name."""
     found: dict[str, Path] = {}
     for place in sorted(folder.iterdir()) if folder.is_dir() else []:
         files = [file for file in place.rglob("*") if file.is_file()] if place.is_dir() else [place]
@@ -111,7 +114,9 @@ def _files(folder: Path) -> dict[str, Path]:
 
 
 def _with_option(error: InputError, file: Path) -> InputError:
-    """A mistake of units is mended by an option here, where a problem file has a key."""
+    """Reword a mistake of units, which is mended by an option here, where a problem file has a
+    key.
+    """
     remedy = error.remedy.replace("say scale: ", "say --mesh-scale ")
     return InputError(
         error.message,

@@ -27,7 +27,7 @@ _END = b"PK\x05\x06"
 
 
 class Header(NamedTuple):
-    """What the beginning of an array's file says: its shape, its type, and the bytes that it takes itself."""
+    """The header of an array's file: its shape, its type, and the bytes that it takes itself."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[Any]

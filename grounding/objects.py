@@ -37,7 +37,7 @@ _SEED = 20261125
 def object_templates(
     split: str, folder: MeshFolder | None = None
 ) -> Mapping[str, tuple[Part, ...]]:
-    """The objects of a split by name, parts in metres; deterministic.
+    """Return the objects of a split by name, parts in metres; deterministic.
 
     Args:
         split: "train" or "test".

@@ -31,7 +31,7 @@ SLACK = 0.002
 
 
 class Verdict(StrEnum):
-    """What the judges say; all but `HOLDS` are failures, in the order in which they are looked for.
+    """The judges' verdict; all but `HOLDS` are failures, in the order in which they are looked for.
 
     The paper's knows neither `PENETRATES` nor `TIPS`.
     """
@@ -47,7 +47,8 @@ class Verdict(StrEnum):
 
 
 def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
-    """The paper's manual classification accuracy (section IV-B) of poses T_world_body, shape (n, 4, 4).
+    """Judge poses T_world_body, shape (n, 4, 4), by the paper's manual classification accuracy
+    (section IV-B).
 
     `on`: the bottom of the box around the body within NEAR of the surface, the box's centre above the surface.
     `inside`: the box around the body, along the container's axes, in the container's box up to SLACK. Both: no
@@ -59,8 +60,8 @@ def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
 
 
 def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
-    """What `paper_oracle` says, and of failures the type (the paper's figure 6): the first that is true of too low, too
-    high, outside (with or without overlap, seen from above), collides.
+    """Judge as `paper_oracle` does, with the type of each failure (the paper's figure 6): the first
+    that is true of too low, too high, outside (with or without overlap, seen from above), collides.
     """
     region, form = situation.region, situation.body.form
     frame = situation.support.matrix if region.hollow else situation.T_world_region
@@ -98,7 +99,9 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
 
 
 def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
-    """Whether the relation holds with the body at each of the poses, shape (n, 4, 4), and goes on holding."""
+    """Judge by a physics simulation whether the relation holds with the body at each of the poses,
+    shape (n, 4, 4), and goes on holding.
+    """
     if not len(poses):
         return []
     boxes = [Placed(situation.body.form, pose).box for pose in poses if np.isfinite(pose).all()]
@@ -111,7 +114,9 @@ def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> 
 
 
 def place_verdict(region: Region, form: Form, T_region_body: Array) -> Verdict:
-    """Where a body is by geometry alone, contacts left out: HOLDS, or what is wrong with the place."""
+    """Judge a body's place by geometry alone, contacts left out: HOLDS, or what is wrong with the
+    place.
+    """
     points = form.vertices @ T_region_body[:3, :3].T + T_region_body[:3, 3]
     low, high = points.min(axis=0), points.max(axis=0)
     half = region.size[:2] / 2
@@ -137,7 +142,7 @@ class ItemOf:
         self._items: dict[tuple[int, float], tuple[Form, Item]] = {}
 
     def __call__(self, form: Form) -> Item:
-        """The same item for the same unit form and scale."""
+        """Return the same item for the same unit form and scale."""
         key = id(form.unit), form.scale
         if key not in self._items:
             self._items[key] = form, Item(form.parts)
@@ -165,7 +170,7 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
 
 
 def moved(form: Form, before: Array, after: Array) -> float:
-    """How far the centre of mass went, metres."""
+    """Return how far the centre of mass went, metres."""
     centre = form.centre_of_mass
     return float(
         np.linalg.norm((after[:3, :3] - before[:3, :3]) @ centre + after[:3, 3] - before[:3, 3])
@@ -173,6 +178,6 @@ def moved(form: Form, before: Array, after: Array) -> float:
 
 
 def turned(before: Array, after: Array) -> float:
-    """The angle between two orientations, radians."""
+    """Compute the angle between two orientations, radians."""
     cosine = (np.trace(before[:3, :3].T @ after[:3, :3]) - 1) / 2
     return math.acos(float(np.clip(cosine, -1.0, 1.0)))

@@ -124,7 +124,7 @@ def _card(file: Path, form: str, remedy: str) -> dict[str, Any]:
 
 
 def _refuse_infinite(value: Any, file: Path, remedy: str) -> None:
-    """JSON's 1e999 is read as infinity."""
+    """Refuse infinity, which is how JSON's 1e999 is read."""
     waiting = [value]
     while waiting:
         one = waiting.pop()
@@ -136,5 +136,5 @@ def _refuse_infinite(value: Any, file: Path, remedy: str) -> None:
 
 
 def _waiting(beside: Path, digest: str) -> Path:
-    """Where the card of a file of this hash waits until the file is there."""
+    """Return where the card of a file of this hash waits until the file is there."""
     return beside.with_name(f".{beside.name}.{digest[:16]}")

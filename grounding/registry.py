@@ -1,4 +1,6 @@
-"""Which groundings there are: by relation and name, made from the weights that ship or that a user trained."""
+"""The registry of groundings: by relation and name, made from the weights that ship or that a user
+trained.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +82,7 @@ RELATIONS = ("on", "inside")
 
 
 def load_model(path: Path, model: str | None = None) -> Model:
-    """The model of a weight file.
+    """Load the model of a weight file.
 
     Args:
         path: The file; its card is beside it.
@@ -116,7 +118,7 @@ def load_model(path: Path, model: str | None = None) -> Model:
 
 
 def shipped_model(relation: str, name: str) -> Model:
-    """The model of a name, of the weights that ship, or of none where it needs none.
+    """Load the model of a name, of the weights that ship, or of none where it needs none.
 
     Raises:
         InputError: An unknown relation or name, or weights that do not ship; then how to train them.
@@ -139,14 +141,16 @@ def shipped_model(relation: str, name: str) -> Model:
 
 
 def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer:
-    """`load_model` for the planner; without a classifier where the card says that it cannot tell yet."""
+    """Load a model for the planner; without a classifier where the card says that it cannot tell
+    yet.
+    """
     grounding = _grounding(load_model(path, model))
     why = cannot_tell(read_weights(path).card)
     return grounding if why is None else Proposer(grounding, why)
 
 
 def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
-    """`load_grounding` of a file that must be about this relation.
+    """Load a grounding of a file that must be about this relation.
 
     Raises:
         InputError: It is about another one, or as for `load_model`.
@@ -158,7 +162,7 @@ def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
 
 
 def shipped_grounding(relation: str, name: str) -> Grounding:
-    """`shipped_model` for the planner."""
+    """Load a shipped model for the planner."""
     return _grounding(shipped_model(relation, name))
 
 
@@ -170,7 +174,7 @@ def _grounding(model: Model) -> Grounding:
 
 
 def shipped_weights(relation: str, name: str) -> Path:
-    """Where the shipped weights of a model are, if they are."""
+    """Return the path of the shipped weights of a model, if they are there."""
     return SHIPPED / f"{relation}_{BORROWED.get(name, name)}.safetensors"
 
 

@@ -26,12 +26,14 @@ class Grounding:
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
-        """At most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the best first."""
+        """Propose at most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the
+        best first.
+        """
         poses = self.model.propose(situation_of(scene, arguments), count, rng)
         return [Pose.from_matrix(pose) for pose in poses]
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
-        """The probability that the relation holds where the body is."""
+        """Return the probability that the relation holds where the body is."""
         situation = situation_of(scene, arguments)
         return float(
             np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0)
@@ -52,5 +54,5 @@ class Proposer:
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
-        """As the grounding's."""
+        """Propose poses as the grounding does."""
         return self._grounding.propose(scene, arguments, count, rng)

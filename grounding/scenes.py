@@ -83,11 +83,11 @@ class Drawn:
 
     @property
     def placed(self) -> list[Placed]:
-        """The other bodies."""
+        """Return the other bodies."""
         return [item for _, _, item in self.others]
 
     def situation(self, pose: Array) -> Situation:
-        """With the body at T_world_body, shape (4, 4)."""
+        """Return the situation with the body at T_world_body, shape (4, 4)."""
         return near(self.stand, self.support.region, Placed(self.body, pose), self.placed)
 
     def made(
@@ -98,7 +98,7 @@ class Drawn:
         feasible: bool,
         columns: Mapping[str, int] | None = None,
     ) -> Made:
-        """This scene, labelled, with the body at T_world_body, shape (4, 4)."""
+        """Label this scene, with the body at T_world_body, shape (4, 4)."""
         names = [*self.names, *(name for name, _, _ in self.others)]
         scales = [*self.scales, *(scale for _, scale, _ in self.others)]
         poses = [self.stand.matrix, pose, *(item.matrix for item in self.placed)]
@@ -127,7 +127,7 @@ class Scenes:
         self._scaled: dict[tuple[str, float], Form] = {}
 
     def draw(self, rng: Random, *, crowded: bool = True) -> Drawn:
-        """A scene; `crowded` has bodies on or in argument 0."""
+        """Sample a scene; `crowded` has bodies on or in argument 0."""
         name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         support = self._supports[name]
         support = replace(support, region=scaled_region(support.region, scale))
@@ -153,13 +153,15 @@ class Scenes:
         )
 
     def around(self, scene: Drawn, pose: Array) -> list[tuple[Item, Array]]:
-        """What the body can touch from T_world_body, shape (4, 4), as the engine's items and their matrices."""
+        """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
+        their matrices.
+        """
         box = Placed(scene.body, pose).box
         bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
         return [(self.items(item.form), item.matrix) for item in bodies]
 
     def on_other(self, form: Form, other: tuple[str, float, Placed], rng: Random) -> Array | None:
-        """At rest on the other support."""
+        """Sample a pose at rest on the other support."""
         name, scale, item = other
         region = scaled_region(self._tables[name].region, scale)
         pose = random_rest(form, region.size, False, rng)
@@ -209,14 +211,18 @@ class Scenes:
 
 
 def free(poses: Array, scene: Drawn) -> Array:
-    """Those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the other bodies."""
+    """Select those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the
+    other bodies.
+    """
     if not len(poses) or not scene.others:
         return poses
     return poses[(separations(scene.body, poses, scene.obstacles) > GAP).all(axis=1)]
 
 
 def resting(scene: Drawn, rng: Random) -> Array:
-    """World poses at rest in the region, up to TRIES: any face, any yaw, the body or its centre inside."""
+    """Sample world poses at rest in the region, up to TRIES: any face, any yaw, the body or its
+    centre inside.
+    """
     region = scene.support.region
     poses = [
         scene.T_world_region @ pose

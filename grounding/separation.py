@@ -1,4 +1,6 @@
-"""How far a body at many poses is from the bodies around it: separating axes between convex hulls, all at once."""
+"""Separations of a body at many poses from the bodies around it: separating axes between convex
+hulls, all at once.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,8 @@ class Obstacles:
 
 
 def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
-    """Signed distances along the best of some axes, metres: a lower bound of the distance, negative when hulls overlap.
+    """Compute signed distances along the best of some axes, metres: a lower bound of the distance,
+    negative when hulls overlap.
 
     The axes are both bodies' own, the vertical, and the line between the centres: exact for boxes that stand upright
     and for cylinders beside each other, a little pessimistic at corners.
@@ -86,7 +89,9 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     cache=True,
 )
 def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
-    """`separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
+    """Compute `separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the
+    rest of `Obstacles`.
+    """
     points = np.empty_like(own)
     for n in range(len(poses)):
         pose = poses[n]

@@ -1,4 +1,6 @@
-"""What a grounding sees of a scene: the relation's two arguments and what is around them."""
+"""The situation that a grounding sees of a scene: the relation's two arguments and what is around
+them.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ class Placed:
 
     @cached_property
     def box(self) -> Array:
-        """The box around it along the world's axes: low and high corner, shape (2, 3), metres."""
+        """Return the bounding box along the world's axes: low and high corner, shape (2, 3),
+        metres.
+        """
         centre, half = self.form.corners.mean(axis=0), np.ptp(self.form.corners, axis=0) / 2
         if len(self.form.vertices) > 8:
             points = self.form.vertices @ self.matrix[:3, :3].T
@@ -41,7 +45,7 @@ class Placed:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Where on or in its support a body is wanted.
+    """The rectangle on or in its support where a body is wanted.
 
     Attributes:
         hollow: Whether it is a cavity; else a surface.
@@ -75,12 +79,13 @@ class Situation:
 
     @property
     def T_world_region(self) -> Array:
-        """Shape (4, 4)."""
+        """Return the pose of the region's frame, shape (4, 4)."""
         return self.support.matrix @ self.region.matrix
 
 
 def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None) -> Situation:
-    """What a scene shows about (body, surface or cavity), the planner's order of a relation's arguments.
+    """Build the situation of (body, surface or cavity), the planner's order of a relation's
+    arguments.
 
     Args:
         scene: The scene.
@@ -109,12 +114,12 @@ def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None
 
 @lru_cache(maxsize=4096)
 def _placed(parts: tuple[Part, ...], pose: Pose) -> Placed:
-    """Bodies mostly stay where they are from one situation to the next."""
+    """Place a body; bodies mostly stay where they are from one situation to the next."""
     return Placed(form_of(parts), pose.matrix)
 
 
 def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
-    """The situation, with those of `others` that are surroundings."""
+    """Return the situation with those of `others` that are surroundings."""
     around = tuple(
         other
         for other in others
@@ -124,7 +129,7 @@ def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]
 
 
 def region_of(support: Body, place: Surface | Cavity) -> Region:
-    """A surface or a cavity of a body as a region."""
+    """Build the region of a surface or a cavity of a body."""
     return _region(support.parts, len(support.cavities) == 1 and not support.surfaces, place)
 
 
@@ -159,6 +164,6 @@ def _turned(corners: Array, matrix: Array) -> Array:
 
 
 def gap(first: Array, second: Array) -> float:
-    """Distance between two boxes along the axes, metres; 0 when they overlap."""
+    """Compute the distance between two boxes along the axes, metres; 0 when they overlap."""
     apart = np.maximum(np.maximum(first[0] - second[1], second[0] - first[1]), 0.0)
     return float(np.sqrt(apart @ apart))

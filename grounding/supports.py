@@ -30,7 +30,7 @@ class Support:
 
 @lru_cache(maxsize=4)
 def support_templates(relation: str, split: str) -> Mapping[str, Support]:
-    """Supports for `on`, containers for `inside`, by name; deterministic."""
+    """Make the supports for `on`, containers for `inside`, by name; deterministic."""
     rng = np.random.default_rng([_SEED, SPLITS.index(split), relation == "on"])
     found: dict[str, Support] = {}
     for kind, make in (_SUPPORTS if relation == "on" else _CONTAINERS).items():
@@ -43,7 +43,7 @@ def support_templates(relation: str, split: str) -> Mapping[str, Support]:
 
 
 def scaled_region(region: Region, factor: float) -> Region:
-    """The region of a support that is made larger."""
+    """Scale the region of a support that is made larger."""
     matrix = region.matrix.copy()
     matrix[:3, 3] *= factor
     return replace(region, matrix=matrix, size=region.size * factor, box=region.box * factor)
@@ -63,7 +63,7 @@ def _block(rng: Random) -> Body:
 
 
 def _board(rng: Random) -> Body:
-    """A thin board that hangs at some height."""
+    """Make a thin board that hangs at some height."""
     x, y, height = (float(v) for v in rng.uniform([0.3, 0.18, 0.2], [1.0, 0.45, 1.4]))
     part = Part(Box((x, y, 0.03)), Pose((0.0, 0.0, height - 0.015)))
     surface = Surface("board", "board", Pose(), (x, y))
@@ -73,7 +73,7 @@ def _board(rng: Random) -> Body:
 
 
 def _round(rng: Random) -> Body:
-    """A round table on one leg; the surface is the largest square on it."""
+    """Make a round table on one leg; the surface is the largest square on it."""
     radius, height = (float(v) for v in rng.uniform([0.25, 0.4], [0.6, 0.9]))
     plate = Part(Cylinder(radius, 0.04), Pose((0.0, 0.0, height - 0.02)))
     leg = Part(Cylinder(0.05, height - 0.04), Pose((0.0, 0.0, (height - 0.04) / 2)))
@@ -113,7 +113,7 @@ def _bin(rng: Random) -> Body:
 
 
 def _drawer(rng: Random) -> Body:
-    """Drawn out of nothing, at some height: wide, shallow, thin walls."""
+    """Make a drawer drawn out of nothing, at some height: wide, shallow, thin walls."""
     size = rng.uniform([0.3, 0.3, 0.09], [0.6, 0.5, 0.16])
     body, lift = (
         _furniture("open_box", size, Options(thickness=0.012)),

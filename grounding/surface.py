@@ -1,4 +1,6 @@
-"""What an engineer would write for `on` and `inside`: the reference that needs no training."""
+"""The reference samplers for `on` and `inside` as an engineer would write them, without
+training.
+"""
 
 from __future__ import annotations
 
@@ -40,8 +42,8 @@ class SurfaceModel:
         return situation.T_world_region @ np.stack(poses)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """1 or 0, shape (n,): near the floor of the region with a stable face down, above it (`on`: the centre of
-        mass; `inside`: the whole body), in none of the bodies around.
+        """Return 1 or 0, shape (n,): near the floor of the region with a stable face down, above it
+        (`on`: the centre of mass; `inside`: the whole body), in none of the bodies around.
         """
         region, form = situation.region, situation.body.form
         inner = np.linalg.inv(situation.T_world_region) @ poses
@@ -62,7 +64,7 @@ class SurfaceModel:
 
 
 def _faces(situation: Situation) -> list[Face]:
-    """The stable faces, the one that is down where the body is first, then the steadiest."""
+    """Return the stable faces, the one that is down where the body is first, then the steadiest."""
     down = -situation.body.matrix[2, :3]
     return sorted(
         situation.body.form.faces,

@@ -1,4 +1,6 @@
-"""From labelled scenes to weights of a grounding, by name; torch and scikit-learn are imported when they are used."""
+"""Training from labelled scenes to weights of a grounding, by name; torch and scikit-learn are
+imported when they are used.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,7 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class TrainArgs:
-    """What is trained.
+    """The training options.
 
     Attributes:
         samples: How many scenes of the data set; None for all.
@@ -91,7 +93,7 @@ def train(
 
 
 def check(relation: str, model: str, args: TrainArgs) -> None:
-    """What can be said before the data are read.
+    """Check the options as far as they can be before the data are read.
 
     Raises:
         InputError: An unknown model or one that is not trained, or an option that it has not.
@@ -119,7 +121,8 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
 def train_relational(
     data: Dataset, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None, *, flow: bool
 ) -> Weights:
-    """A relational grounding of the first scenes of a data set: demonstrations to transfer, or a flow, and the ranker.
+    """Train a relational grounding of the first scenes of a data set: demonstrations to transfer,
+    or a flow, and the ranker.
 
     Raises:
         InputError: None of them holds.
@@ -181,7 +184,7 @@ def _certainty(
     score: float | None,
     seed: int,
 ) -> dict[str, object]:
-    """Whether the ranker may judge, for the card, and else why not."""
+    """Return the card's entries on whether the ranker may judge, and else why not."""
     why = too_few(holds)
     if why is None and ranks:
         from grounding.relational.training import Args, train_ranker
@@ -206,13 +209,15 @@ def _certainty(
 
 
 def measure(example: Example) -> Measures:
-    """An example's one pose in its region's frame."""
+    """Measure an example's one pose in its region's frame."""
     view = View(example.situation)
     return view.measure((view.T_region_world @ example.situation.body.matrix)[None])
 
 
 def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
-    """One of the paper's networks, on as many scenes in the order of `grounding.paper.table.order`."""
+    """Train one of the paper's networks, on as many scenes in the order of
+    `grounding.paper.table.order`.
+    """
     from grounding.paper.training import train as train_networks
 
     (weights,) = train_networks(
@@ -230,7 +235,7 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
 
 
 def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
-    """One of the paper's trees, on the same scenes."""
+    """Train one of the paper's trees, on the same scenes."""
     from grounding.paper import tree_training
 
     weights = tree_training.train_tree(
@@ -245,7 +250,9 @@ def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> 
 
 
 def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
-    """The weights with what their card says of their classifier; it is asked of the labels that it was shown."""
+    """Add to the weights what their card says of their classifier; it is asked of the labels that
+    it was shown.
+    """
     count = args.samples or len(data)
     why = too_few(data.holds[:count])
     if why is None and weights.card.get("classifies", True):

@@ -1,4 +1,6 @@
-"""What a data set of demonstrations cannot teach: what is the same in all of them, and what they say both ways."""
+"""Lack of variety in a data set of demonstrations: what is the same in all of them, and what they
+say both ways.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,8 @@ Numbers = NDArray[np.float64]
 
 
 def monotony(data: Dataset, count: int | None = None) -> list[str]:
-    """Warnings of what is the same in all scenes in which the relation holds, and of one label alone.
+    """Return warnings of what is the same in all scenes in which the relation holds, and of one
+    label alone.
 
     Args:
         data: Labelled scenes.
@@ -62,7 +65,9 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
 
 
 def contradictions(data: Dataset) -> Iterator[tuple[int, int]]:
-    """Pairs of rows that are the same situation with opposite labels, the first of each situation."""
+    """Yield pairs of rows that are the same situation with opposite labels, the first of each
+    situation.
+    """
     seen: dict[bytes, tuple[int, bool]] = {}
     for row, holds in enumerate(data.holds.tolist()):
         key = _key(data, row)
@@ -72,7 +77,7 @@ def contradictions(data: Dataset) -> Iterator[tuple[int, int]]:
 
 
 def _key(data: Dataset, row: int) -> bytes:
-    """All that a scene shows of its situation; the others in any order."""
+    """Return a key of all that a scene shows of its situation; the others in any order."""
     a = data.arrays
     names = tuple(data.templates)
     there = np.flatnonzero(a["body"][row] >= 0)
@@ -94,13 +99,13 @@ def _rounded(values: Numbers) -> str:
 
 
 def _height(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the place's middle above the ground."""
+    """Return the height of the place's middle above the ground, metres."""
     places = data.arrays["pose"][rows, 0] @ data.arrays["region"][rows]
     return _constant(places[:, 2, 3], SAME_LENGTH)
 
 
 def _yaw(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Radians, of the body's first axis that lies, about the place's upright one."""
+    """Return the yaw of the body's first axis that lies, about the place's upright one, radians."""
     regions = data.arrays["pose"][rows, 0] @ data.arrays["region"][rows]
     turned = np.linalg.inv(regions) @ data.arrays["pose"][rows, 1]
     axis = int(np.argmax(np.abs(turned[0, :2, :3]).max(axis=0)))
@@ -113,7 +118,7 @@ def _yaw(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
 
 
 def _size(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the body's box along its own axes, the shortest side first."""
+    """Return the sides of the body's box along its own axes, metres, the shortest side first."""
     sizes: list[Numbers] = []
     for row in rows:
         corners = data.form(row, 1).corners
@@ -124,7 +129,7 @@ def _size(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
 
 
 def _room(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the place's two sides."""
+    """Return the lengths of the place's two sides, metres."""
     return _constant(data.arrays["size"][rows, :2], SAME_LENGTH)
 
 

@@ -56,7 +56,7 @@ def write_weights(path: Path, weights: Weights) -> None:
 
 
 def read_weights(path: Path) -> Weights:
-    """The weights at `path`.
+    """Read the weights at `path`.
 
     Raises:
         InputError: A file is missing, damaged, truncated, or not of this format, or the two do not belong together.

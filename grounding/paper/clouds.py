@@ -16,7 +16,8 @@ POINTS = 2048
 
 
 def cloud(form: Form) -> Array:
-    """POINTS points on the surfaces of the form's parts, uniform by area, shape (POINTS, 3); metres, its own frame.
+    """Sample a cloud of POINTS points on the surfaces of the form's parts, uniform by area, shape
+    (POINTS, 3); metres, its own frame.
 
     The same form has the same points, and a scaled one has them scaled.
     """

@@ -31,7 +31,7 @@ def coded_table(
     count: int | None = None,
     surroundings: bool = True,
 ) -> Table:
-    """As `table_of` with `CloudFeatures(encoder)`, by torch; agrees to 1e-5.
+    """Compute the table of `table_of` with `CloudFeatures(encoder)` by torch; agrees to 1e-5.
 
     Args:
         data: The scenes.
@@ -94,7 +94,9 @@ class _TorchEncoder:
     def __call__(
         self, template: NDArray[np.intp], turn: NDArray[np.float64]
     ) -> NDArray[np.float32]:
-        """Codes, shape (n, CODE), of clouds of these templates turned and scaled by (n, 3, 3)."""
+        """Encode clouds of these templates turned and scaled by (n, 3, 3); codes of shape (n,
+        CODE).
+        """
         points = self._unit[torch.tensor(template, device=self._device)] @ self._tensor(
             turn
         ).transpose(1, 2)

@@ -57,7 +57,9 @@ def critic_gradient(
 
 
 def _weighted(scenes: int, like: Tensor) -> Tensor:
-    """The last layer's u: a row counts -1/B when real, 1/B when fake, and 1 in between; shape (M, 3 B, 1)."""
+    """Weight the last layer's u: a row counts -1/B when real, 1/B when fake, and 1 in between;
+    shape (M, 3 B, 1).
+    """
     weights = torch.tensor([-1 / scenes, 1 / scenes, 1.0]).repeat_interleave(scenes)
     return weights.view(1, -1, 1).expand(len(like), -1, 1)
 

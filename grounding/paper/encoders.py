@@ -23,7 +23,7 @@ SCALINGS = ("one", "each")
 
 @dataclass(frozen=True)
 class Args:
-    """How an encoder is trained.
+    """The encoder's training options.
 
     Attributes:
         iterations: Batches.
@@ -54,7 +54,7 @@ class Conv(nn.Module):
         self.layers = dense_layers([3, 64, 128, 128, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         return run_layers(self.layers, points).amax(dim=1)
 
 
@@ -74,7 +74,7 @@ class PointNet(nn.Module):
         self.last = dense_layers([259, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         places, features = points, points[..., :0]
         for count, layers in zip(self.CENTRES, (self.first, self.second), strict=True):
             centres = places[:, : min(count, places.shape[1])]
@@ -99,7 +99,7 @@ class Dense(nn.Module):
         self.layers = dense_layers([3 * points, 512, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         return run_layers(self.layers, points.flatten(1))
 
 
@@ -118,7 +118,8 @@ def train_encoder(
     args: Args = Args(),
     progress: Callable[[str], None] = lambda line: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
-    """The encoder's arrays, with `scale` and `points` as the runtime reads them, and its validation Chamfer distance.
+    """Train an encoder; return its arrays, with `scale` and `points` as the runtime reads them, and
+    its validation Chamfer distance.
 
     Args:
         data: Scenes, whose bodies as they are turned are the clouds.
@@ -189,7 +190,7 @@ class PosedClouds:
 
     @classmethod
     def of(cls, data: Dataset, device: str, points: int = POINTS) -> PosedClouds:
-        """Of all bodies of all scenes."""
+        """Collect the clouds of all bodies of all scenes."""
         unit = np.stack([centred(Form(parts))[0][:points] for parts in data.templates.values()])
         there = data.arrays["body"] >= 0
         turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
@@ -204,25 +205,25 @@ class PosedClouds:
 
     @property
     def radius(self) -> float:
-        """Of the ball that contains every cloud, metres."""
+        """Return the radius of the ball that contains every cloud, metres."""
         largest = self.unit.norm(dim=2).amax(dim=1)[self.template]
         return float((largest * self.turn[:, 0].norm(dim=1)).max())
 
     def take(self, rows: Tensor) -> Tensor:
-        """Posed clouds, shape (rows, points, 3), metres."""
+        """Select posed clouds, shape (rows, points, 3), metres."""
         rows = rows.to(self.template.device)
         return self.unit[self.template[rows]] @ self.turn[rows].transpose(1, 2)
 
 
 def centred(form: Form) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """A form's cloud about its centroid, and that centroid."""
+    """Centre a form's cloud about its centroid; return both."""
     points = cloud(form)
     centroid = points.mean(axis=0)
     return points - centroid, centroid
 
 
 def scaled(points: Tensor, factor: float) -> Tensor:
-    """As `runtime.scaled`, of clouds (n, points, 3)."""
+    """Scale clouds (n, points, 3) as `runtime.scaled` does."""
     if factor:
         return points * factor
     extents = points.amax(dim=1) - points.amin(dim=1)
@@ -230,7 +231,9 @@ def scaled(points: Tensor, factor: float) -> Tensor:
 
 
 def chamfer(first: Tensor, second: Tensor) -> Tensor:
-    """Mean squared distance to the nearest point, both ways, of clouds (n, points, 3); shape (n,)."""
+    """Compute the Chamfer distance of clouds (n, points, 3), the mean squared distance to the
+    nearest point, both ways; shape (n,).
+    """
     squares = (
         (first**2).sum(-1)[:, :, None]
         + (second**2).sum(-1)[:, None]

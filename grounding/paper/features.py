@@ -58,11 +58,15 @@ class Features(Protocol):
     size: int
 
     def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
-        """The features of a situation as it is; without its surroundings for a network that does not see them."""
+        """Compute the features of a situation as it is; without its surroundings for a network that
+        does not see them.
+        """
         ...
 
     def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
-        """The features that argument 1 would have at T_world_body, shape (n, 4, 4); returns (n, f)."""
+        """Compute the features that argument 1 would have at T_world_body, shape (n, 4, 4); returns
+        (n, f).
+        """
         ...
 
 
@@ -129,7 +133,7 @@ class CloudFeatures:
         return features
 
     def _features(self, item: Placed) -> Array:
-        """Worked out once while a body stays where it is."""
+        """Compute a body's features, once while it stays where it is."""
         if item not in self._known:
             self._known[item] = self._described(item)
         return self._known[item]
@@ -144,14 +148,17 @@ class CloudFeatures:
 
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
-    """BB, shape (n, 19), of positions (n, 3), quaternions (n, 4) and own boxes, low and high corner (n, 2, 3)."""
+    """Compute the bounding box features BB, shape (n, 19), of positions (n, 3), quaternions (n, 4)
+    and own boxes, low and high corner (n, 2, 3).
+    """
     features = np.empty((len(centres), BB), centres.dtype)
     describe_boxes(centres, turns, rotations(turns), corners, features)
     return features
 
 
 def completed(seen: Observation, positions: Array, turns: Array) -> Array:
-    """Argument 1's features when a generator put it at positions (n, 3) and unit quaternions (n, 4); shape (n, f).
+    """Complete argument 1's features when a generator put it at positions (n, 3) and unit
+    quaternions (n, 4); shape (n, f).
 
     Its own box or its code stay as they were seen: a code is not computed again, although its cloud has turned.
     """
@@ -165,7 +172,9 @@ def completed(seen: Observation, positions: Array, turns: Array) -> Array:
 
 
 def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
-    """T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have them, turned by (n, 4)."""
+    """Compute T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have
+    them, turned by (n, 4).
+    """
     poses = np.zeros((len(positions), 4, 4))
     poses[:, 3, 3] = 1.0
     poses[:, :3, :3] = rotations(turns)
@@ -174,7 +183,7 @@ def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
 
 
 def _moved(matrices: Array, points: Array) -> Array:
-    """One point of each frame, in the outer frame; shape (n, 3)."""
+    """Transform one point of each frame to the outer frame; shape (n, 3)."""
     moved = np.empty((len(matrices), 3))
     move(matrices, points.reshape(-1, 3), moved)
     return moved

@@ -41,7 +41,8 @@ class Moving(Grounding):
 
 
 def laid(form: Form, pose: Array) -> Array:
-    """The pose turned about the body's middle onto the nearest stable face, the lowest point as high as it was.
+    """Turn the pose about the body's middle onto the nearest stable face, the lowest point as high
+    as it was.
 
     Args:
         form: The body's; one without stable faces is left as it is.

@@ -38,17 +38,21 @@ class Batch:
 
 
 def classifier_shapes(features: int, scene: bool) -> dict[str, tuple[int, int]]:
-    """Layers by name, inputs and outputs: args -> 64-32-1, with the scene's embedding when there is one."""
+    """Return the classifier's layers by name, inputs and outputs: args -> 64-32-1, with the scene's
+    embedding when there is one.
+    """
     return {**_scene(features, scene), **_chain("main", (2 * features + SCENE * scene, 64, 32, 1))}
 
 
 def critic_shapes(features: int) -> dict[str, tuple[int, int]]:
-    """The discriminator: args -> 64-32-12-1; it never sees the surroundings."""
+    """Return the discriminator's layers: args -> 64-32-12-1; it never sees the surroundings."""
     return _chain("main", (2 * features, 64, 32, 12, 1))
 
 
 def generator_shapes(features: int, scene: bool) -> dict[str, tuple[int, int]]:
-    """From args (+ scene) + noise through 12-12 to position and quaternion."""
+    """Return the generator's layers, from args (+ scene) + noise through 12-12 to position and
+    quaternion.
+    """
     return {
         **_scene(features, scene),
         **_chain("main", (2 * features + SCENE * scene + NOISE, 12, 12, 7)),
@@ -92,19 +96,25 @@ class Ensemble:
         self.fixed = {name: tensor.detach() for name, tensor in self.weights.items()}
 
     def parts(self, flat: Tensor) -> list[Tensor]:
-        """A vector laid out like `flat` as matrices (M, inputs, outputs) and biases (M, 1, outputs) in turn."""
+        """View a vector laid out like `flat` as matrices (M, inputs, outputs) and biases (M, 1,
+        outputs) in turn.
+        """
         pieces = flat.split([count * rows * outputs for count, rows, outputs in self._layout])
         return [piece.view(shape) for piece, shape in zip(pieces, self._layout, strict=True)]
 
     @torch.no_grad()
     def update(self, rate: float) -> None:
-        """One step of RMSprop (torch's: smoothing 0.99, epsilon 1e-8); the gradient is zero afterwards."""
+        """Take one step of RMSprop (torch's: smoothing 0.99, epsilon 1e-8); the gradient is zero
+        afterwards.
+        """
         self.square.mul_(0.99).addcmul_(self.gradient, self.gradient, value=0.01)
         self.flat.addcdiv_(self.gradient, self.square.sqrt().add_(1e-8), value=-rate)
         self.gradient.zero_()
 
     def model(self, index: int) -> dict[str, NDArray[np.float32]]:
-        """The weights of one of the networks: matrices (inputs, outputs) and biases (outputs,)."""
+        """Return the weights of one of the networks: matrices (inputs, outputs) and biases
+        (outputs,).
+        """
         return {
             name: (tensor.detach()[index] if name.endswith("weight") else tensor.detach()[index, 0])
             .numpy()
@@ -114,7 +124,7 @@ class Ensemble:
 
 
 def score(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
-    """Logits of a classifier, or scores of a critic, shape (M, B)."""
+    """Compute the logits of a classifier, or scores of a critic, shape (M, B)."""
     inputs = batch.arguments
     if "scene.0.weight" in weights:
         inputs = torch.cat([inputs, embedding(weights, batch)], dim=-1)
@@ -122,7 +132,9 @@ def score(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
 
 
 def generate(weights: Mapping[str, Tensor], batch: Batch, noise: Tensor) -> Tensor:
-    """The arguments' features with argument 1 where the generator puts it, shape (M, B, 2 f)."""
+    """Generate the arguments' features with argument 1 where the generator puts it, shape (M, B, 2
+    f).
+    """
     inputs = [batch.arguments, noise]
     if "scene.0.weight" in weights:
         inputs.insert(1, embedding(weights, batch))
@@ -131,7 +143,9 @@ def generate(weights: Mapping[str, Tensor], batch: Batch, noise: Tensor) -> Tens
 
 
 def completed(arguments: Tensor, positions: Tensor, turns: Tensor) -> Tensor:
-    """As `features.completed`, for quaternions of any norm, shape (M, B, 2 f)."""
+    """Complete features as `features.completed` does, for quaternions of any norm, shape (M, B, 2
+    f).
+    """
     turns = turns / (torch.linalg.vector_norm(turns, dim=-1, keepdim=True) + 1e-8)
     half = arguments.shape[-1] // 2
     if half != BB:
@@ -147,7 +161,8 @@ def completed(arguments: Tensor, positions: Tensor, turns: Tensor) -> Tensor:
 
 
 def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
-    """The mean over the others of (args, other) -> 64-32-16, shape (M, B, 16).
+    """Compute the scene's embedding, the mean over the others of (args, other) -> 64-32-16, shape
+    (M, B, 16).
 
     The first layer's matrix is split, so that the arguments are multiplied once a scene; the last layer is linear, so
     that it may as well follow the mean. A scene without others has the last layer's bias.

@@ -62,7 +62,9 @@ class PaperModel:
         return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """The probability that the relation holds with argument 1 at each of the poses, shape (n,)."""
+        """Return the probability that the relation holds with argument 1 at each of the poses,
+        shape (n,).
+        """
         seen = self._features.observe(situation, self._sees)
         return classified(self.classifier, self._features, seen, situation, poses)
 
@@ -84,7 +86,8 @@ class Network:
             raise InputError(f"the weights have no {name}", remedy=_REMEDY)
 
     def context(self, arguments: Floats, others: Floats) -> Floats:
-        """The embedding of the surroundings, shape (n, 16), or (n, 0) of a network that does not look at them.
+        """Compute the embedding of the surroundings, shape (n, 16), or (n, 0) of a network that
+        does not look at them.
 
         Args:
             arguments: Shape (n, 2 f).
@@ -101,7 +104,7 @@ class Network:
         return hidden.mean(axis=1) @ third + bias_3
 
     def __call__(self, inputs: Floats) -> Floats:
-        """The layers `main`, shape (n, outputs)."""
+        """Apply the layers `main`, shape (n, outputs)."""
         x = inputs
         for weight, bias in self.main[:-1]:
             x = x @ weight
@@ -137,7 +140,7 @@ class NumpyEncoder:
         self.scale, self.points = float(arrays["scale"]), int(arrays["points"])
 
     def __call__(self, points: Array) -> Floats:
-        """The code, shape (CODE,), of a posed, centred cloud, shape (n, 3), metres."""
+        """Encode a posed, centred cloud, shape (n, 3), metres, as its code, shape (CODE,)."""
         x = scaled(points, self.scale)[: self.points].astype(np.float32)
         for number, (weight, bias) in enumerate(self.layers):
             x = x @ weight
@@ -148,12 +151,14 @@ class NumpyEncoder:
 
 
 def scaled(points: Array, factor: float) -> Array:
-    """Scaling (a), by one factor for all clouds, or (b), when it is 0: the largest extent fills the cube of edge 1."""
+    """Compute the scaling (a), by one factor for all clouds, or (b), when it is 0: the largest
+    extent fills the cube of edge 1.
+    """
     return points * factor if factor else points / max(float(np.ptp(points, axis=0).max()), 1e-9)
 
 
 def features_in(arrays: Arrays, classifier: Network) -> Features:
-    """The features that a classifier is for.
+    """Return the features that a classifier is for.
 
     Raises:
         InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
@@ -182,7 +187,9 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
 
 
 def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Floats, Floats]:
-    """Positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for noise (n, 4)."""
+    """Generate positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for
+    noise (n, 4).
+    """
     inputs = np.empty((len(noise), network.main[0][0].shape[0]), np.float32)
     arguments = seen.arguments.reshape(1, -1).astype(np.float32)
     known = arguments.shape[1]
@@ -197,12 +204,16 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
 def classified(
     network: Network, features: Features, seen: Observation, situation: Situation, poses: Array
 ) -> Array:
-    """Probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4, 4)."""
+    """Classify poses: probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4,
+    4).
+    """
     return judged(network, seen, features.at(seen, situation, poses))
 
 
 def judged(network: Network, seen: Observation, argument: Array) -> Array:
-    """Probabilities, shape (n,), with argument 1's features as given, shape (n, f)."""
+    """Classify features: probabilities, shape (n,), with argument 1's features as given, shape (n,
+    f).
+    """
     size = argument.shape[1]
     arguments = np.empty((len(argument), 2 * size), np.float32)
     arguments[:, :size], arguments[:, size:] = seen.arguments[0], argument
@@ -213,7 +224,7 @@ def judged(network: Network, seen: Observation, argument: Array) -> Array:
 
 
 def unit(turns: Array) -> Array:
-    """Quaternions of norm 1, shape (n, 4); no rotation for one that is zero."""
+    """Normalize quaternions, shape (n, 4); no rotation for one that is zero."""
     units = np.empty((len(turns), 4))
     normalize(turns, units)
     return units
@@ -238,7 +249,7 @@ def _check_generator(network: Network, size: int) -> None:
 
 
 def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
-    """The layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
+    """Read the layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
     dot = f"{prefix}." if prefix else ""
     layers: list[tuple[Floats, Floats]] = []
     while f"{dot}{len(layers)}.weight" in arrays and f"{dot}{len(layers)}.bias" in arrays:

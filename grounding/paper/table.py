@@ -33,7 +33,7 @@ class Table:
 
     @cached_property
     def features(self) -> int:
-        """Numbers a body."""
+        """Return the number of features a body."""
         return self.others.shape[2]
 
 
@@ -43,7 +43,7 @@ def table_of(
     progress: Callable[[str], None] = lambda _: None,
     count: int | None = None,
 ) -> Table:
-    """The features of the first `count` scenes of `order`, or of all."""
+    """Compute the features of the first `count` scenes of `order`, or of all."""
     indices = order(data.holds)[:count]
     arguments = np.zeros((len(indices), 2 * features.size), np.float32)
     most = max(1, data.arrays["body"].shape[1] - 2)
@@ -62,7 +62,8 @@ def table_of(
 
 
 def order(holds: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Indices of examples such that each prefix is a smaller training set, shape (n,): shuffled, the labels in turn.
+    """Order examples such that each prefix is a smaller training set, shape (n,): shuffled, the
+    labels in turn.
 
     Sets of different sizes are nested, and all training seeds see the same ones.
     """

@@ -33,7 +33,7 @@ SCHEMES = ("discriminator", "classifier", "both")
 
 @dataclass(frozen=True)
 class Args:
-    """How to train.
+    """The training options of the networks.
 
     Attributes:
         iterations: Of the classifier, and then of the generator.
@@ -134,7 +134,9 @@ class Trainer:
             torch.set_num_threads(threads)
 
     def models(self) -> Iterator[dict[str, np.ndarray]]:
-        """Classifier and generator of each model, as float32 arrays named like `classifier.main.0.weight`."""
+        """Yield classifier and generator of each model, as float32 arrays named like
+        `classifier.main.0.weight`.
+        """
         for index in range(len(self.sizes)):
             yield {
                 f"{name}.{layer}": array
@@ -166,7 +168,9 @@ class Trainer:
             self.classifier.flat.copy_(self._best)
 
     def _classify(self, start: int, end: int) -> float:
-        """Equation 1, from one iteration to another; returns the mean loss of the last batches."""
+        """Train the classifier by equation 1, from one iteration to another; returns the mean loss
+        of the last batches.
+        """
         batches = self._draw(self._seen, 1, start, end - start)
         total = torch.zeros(())
         for step, rows in enumerate(batches.unbind(1), start + 1):
@@ -202,7 +206,9 @@ class Trainer:
                     best[model] = now[model]
 
     def _generate(self, start: int, end: int) -> float:
-        """Equations 2 to 4, from one iteration of the generator to another; returns the last mean loss."""
+        """Train the generator by equations 2 to 4, from one iteration of the generator to another;
+        returns the last mean loss.
+        """
         steps = [self._critic_steps(step) for step in range(start + 1, end + 1)]
         randoms = [
             _random(size, seed, 2, start) for size, seed in zip(self.sizes, self.seeds, strict=True)
@@ -231,7 +237,7 @@ class Trainer:
         return float(loss.detach()) / batch / len(self.sizes)
 
     def _loss(self, batch: Batch, noise: Tensor) -> Tensor:
-        """Of the generator: equation 3, equation 4, or their sum."""
+        """Compute the generator's loss: equation 3, equation 4, or their sum."""
         proposed = Batch(generate(self.generator.weights, batch, noise), batch.others, batch.share)
         loss = torch.zeros(())
         if self.scheme != "classifier":
@@ -247,7 +253,9 @@ class Trainer:
         return self.args.critic_catches_up if rarely else self.args.critic_steps
 
     def _draw(self, rows: Sequence[Tensor], stage: int, start: int, count: int) -> Tensor:
-        """Batches of rows, shape (M, count, batch): each model's own, shuffled over and over."""
+        """Draw batches of rows, shape (M, count, batch): each model's own, shuffled over and
+        over.
+        """
         drawn: list[Tensor] = []
         wanted = count * self.args.batch
         for size, seed, own in zip(self.sizes, self.seeds, rows, strict=True):
@@ -258,7 +266,7 @@ class Trainer:
         return torch.stack(drawn)
 
     def _batch(self, rows: Tensor) -> Batch:
-        """The scenes of these rows, shape (M, B)."""
+        """Gather the scenes of these rows, shape (M, B)."""
         arguments = self._arguments[rows]
         return (
             Batch(arguments, self._others[rows], self._share[rows])
@@ -301,7 +309,7 @@ class Trainer:
             tensor.copy_(tensors[name])
 
     def _run(self) -> str:
-        """What a state must agree in to go on from it."""
+        """Return the run's identity: what a state must agree in to go on from it."""
         digest = hashlib.blake2b(digest_size=16)
         for array in (self.table.arguments, self.table.others, self.table.holds):
             digest.update(np.ascontiguousarray(array).data)
@@ -320,5 +328,5 @@ def _random(size: int, seed: int, stage: int, block: int) -> torch.Generator:
 def _stack(
     randoms: Sequence[torch.Generator], draw: Callable[..., Tensor], shape: tuple[int, ...]
 ) -> Tensor:
-    """One draw a model, shape (M, *shape)."""
+    """Stack one draw a model, shape (M, *shape)."""
     return torch.stack([draw(shape, generator=random) for random in randoms])

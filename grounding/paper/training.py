@@ -1,4 +1,4 @@
-"""From a data set to the paper's models, by name."""
+"""Training of the paper's models from a data set, by name."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def features_of(
     progress: Callable[[str], None],
     count: int | None = None,
 ) -> Table:
-    """The features that a model is trained on, of the first `count` scenes or of all."""
+    """Compute the features that a model is trained on, of the first `count` scenes or of all."""
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
         return coded_table(

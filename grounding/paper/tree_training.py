@@ -28,7 +28,8 @@ def train_tree(
     encoder: Weights | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Weights:
-    """A tree of scikit-learn's usual settings, grown to the end on the arguments' features.
+    """Train a decision tree of scikit-learn's usual settings, grown to the end on the arguments'
+    features.
 
     Args:
         data: The training set.
@@ -79,7 +80,7 @@ def train_tree(
 
 
 def _chance(table: Table, samples: int, seed: int) -> str | None:
-    """Why trees of halves of the examples know no more than chance of the other halves."""
+    """Return why trees of halves of the examples know no more than chance of the other halves."""
     from sklearn.tree import DecisionTreeClassifier
 
     arguments, holds = table.arguments[:samples], table.holds[:samples]
@@ -92,7 +93,7 @@ def _chance(table: Table, samples: int, seed: int) -> str | None:
 
 
 def grown(table: Table, samples: int, seed: int) -> dict[str, np.ndarray]:
-    """The tree of the table's first examples, as `trees.TreeModel` wants its arrays."""
+    """Grow the tree of the table's first examples, as `trees.TreeModel` wants its arrays."""
     from sklearn.tree import DecisionTreeClassifier
 
     arguments, holds = table.arguments[:samples], table.holds[:samples]

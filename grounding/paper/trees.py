@@ -60,7 +60,7 @@ class TreeModel:
         return poses_of(seen, rng.uniform(low, high), turns)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """The share of positive examples in each pose's leaf, shape (n,)."""
+        """Return the share of positive examples in each pose's leaf, shape (n,)."""
         seen = self._observe(situation)
         argument = self._features.at(seen, situation, poses)
         return self.tree.positive[self.tree.leaf(_rows(seen, argument))]
@@ -121,7 +121,7 @@ class Tree:
             raise _refused("a leaf that no example can reach")
 
     def leaf(self, features: Array) -> NDArray[np.intp]:
-        """The leaves of both arguments' features, shape (n, 2 f); returns (n,)."""
+        """Find the leaves of both arguments' features, shape (n, 2 f); returns (n,)."""
         values = features.astype(np.float32)  # what it was trained on
         node, rows = np.zeros(len(features), np.intp), np.arange(len(features))
         while len(rows):
@@ -132,7 +132,8 @@ class Tree:
         return node
 
     def _limits(self, least: Array, most: Array) -> tuple[Array, Array]:
-        """Of argument 1's features in each node, from the root down, shape (nodes, f).
+        """Compute the limits of argument 1's features in each node, from the root down, shape
+        (nodes, f).
 
         Edges of the box along the world's axes are unlimited at the root: they follow from position and rotation.
         """
@@ -152,7 +153,8 @@ class Tree:
 def position_limits(
     low: Array, high: Array, turns: Array, seen: Observation
 ) -> tuple[Array, Array]:
-    """Limits of argument 1's position, each shape (n, 3), that limits of its features, shape (n, f), amount to.
+    """Compute the limits of argument 1's position, each shape (n, 3), that limits of its features,
+    shape (n, f), amount to.
 
     Of boxes also those of the box along the world's axes, which reaches as far as the rotations, quaternions (n, 4),
     make it. Limits that contradict each other, for a body of this size, leave the point midway.
@@ -167,7 +169,7 @@ def position_limits(
 
 
 def _columns(size: int) -> tuple[slice, slice]:
-    """Where position and quaternion are among a body's features."""
+    """Return the columns of position and quaternion among a body's features."""
     return slice(0, 3), slice(9, 13) if size == BB else slice(3, 7)
 
 

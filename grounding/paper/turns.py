@@ -21,14 +21,16 @@ for _row, _column, _first, _second, _factor in (
 
 
 def rotations(turns: Array) -> Array:
-    """Rotation matrices, shape (n, 3, 3), of unit quaternions xyzw, shape (n, 4)."""
+    """Convert unit quaternions xyzw, shape (n, 4), to rotation matrices, shape (n, 3, 3)."""
     matrices = np.empty((len(turns), 3, 3), turns.dtype)
     _rotate(turns, matrices)
     return matrices
 
 
 def quaternions(matrices: Array) -> Array:
-    """Unit quaternions xyzw with w >= 0, shape (n, 4), of rotation matrices, shape (n, 3, 3) (Shepperd's method)."""
+    """Convert rotation matrices, shape (n, 3, 3), to unit quaternions xyzw with w >= 0, shape (n,
+    4) (Shepperd's method).
+    """
     turns = np.empty((len(matrices), 4))
     _turn(np.asarray(matrices, dtype=float), turns)
     return turns

@@ -46,7 +46,7 @@ class UniformModel:
         return poses_of(seen, positions, turns)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """What the classifier says, shape (n,); not a number where there is none."""
+        """Return the classifier's probabilities, shape (n,); not a number where there is none."""
         if self.classifier is None:
             return np.full(len(poses), np.nan)
         return classified(
@@ -64,7 +64,7 @@ def _box_classifier(weights: Weights) -> Network:
 
 
 def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Array, Array]:
-    """One position (3,) and its quaternion (4,)."""
+    """Sample one accepted position (3,) and its quaternion (4,)."""
     positions, turns, first = np.zeros((1, 3)), np.zeros((1, 4)), 0
     for count in TRIES:
         positions, turns = _drawn(seen, count, rng)
@@ -76,7 +76,9 @@ def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Arra
 
 
 def _drawn(seen: Observation, count: int, rng: Random) -> tuple[Array, Array]:
-    """Positions (n, 3) relative to argument 0, and quaternions (n, 4), w >= 0 as in the features."""
+    """Sample positions (n, 3) relative to argument 0, and quaternions (n, 4), w >= 0 as in the
+    features.
+    """
     low, high = seen.arguments[0, 3:6], seen.arguments[0, 6:9]
     margin = GROWTH * float((high - low).max()) / 2
     positions = rng.uniform(low - margin, high + margin, size=(count, 3))

@@ -78,7 +78,7 @@ class Chart:
 
     @classmethod
     def fit(cls, measured: Sequence[Measures]) -> Chart:
-        """From positive examples, each of one pose."""
+        """Fit the coordinates to positive examples, each of one pose."""
         heights = np.array(
             [_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured]
         )  # (n, 3, 4)
@@ -108,7 +108,7 @@ class Chart:
 
     @classmethod
     def from_card(cls, card: Mapping[str, Any]) -> Chart:
-        """The inverse of `card`.
+        """Rebuild the coordinates from a card, the inverse of `card`.
 
         Raises:
             TypeError: An entry is missing, unknown, or no number or truth value as it should be.
@@ -129,12 +129,12 @@ class Chart:
 
     @property
     def card(self) -> dict[str, Any]:
-        """Its entries as JSON knows them, which has no infinite ceiling: None."""
+        """Return the card's entries as JSON knows them, which has no infinite ceiling: None."""
         entries = asdict(self)
         return {**entries, "ceiling": self.ceiling if math.isfinite(self.ceiling) else None}
 
     def encode(self, measured: Measures) -> Demonstration:
-        """One pose in these coordinates."""
+        """Encode one pose in these coordinates."""
         height = (
             float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor])
             - self.offset
@@ -148,7 +148,7 @@ class Chart:
         return Demonstration(coordinates, view.faces.descriptors[measured.face[0]], view.size)
 
     def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Measures:
-        """Poses of faces (n,) and coordinates (n, 7), measured."""
+        """Decode faces (n,) and coordinates (n, 7) to poses, measured."""
         cosine, sine = coordinates[:, 5], coordinates[:, 6]
         length = np.maximum(np.hypot(cosine, sine), 1e-9)
         rotations = turns(cosine / length, sine / length)
@@ -181,7 +181,9 @@ class Chart:
         return still.moved(positions)
 
     def shortfall(self, measured: Measures) -> Array:
-        """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""
+        """Compute the constraint violation: by how much each pose misses what all demonstrations
+        keep, metres, 0 for none; shape (n,).
+        """
         missing = np.empty(len(measured.poses))
         bounds = (self.sides, self.balance, self.ceiling, self.apart)
         sizes = (
@@ -203,13 +205,15 @@ class Chart:
 
 
 def _levels(measured: Measures) -> Array:
-    """The body's lowest, middle and highest heights, shape (n, 3)."""
+    """Return the body's lowest, middle and highest heights, shape (n, 3)."""
     low, high = measured.low[:, 2], measured.high[:, 2]
     return np.stack([low, (low + high) / 2, high], axis=1)
 
 
 def _anchors(view: View) -> Array:
-    """The region's plane and ceiling, the foot and the middle of the argument's box, in the region's frame, (4,)."""
+    """Return the region's plane and ceiling, the foot and the middle of the argument's box, in the
+    region's frame, (4,).
+    """
     region = view.region
     bottom, top = region.box[0, 2] - region.matrix[2, 3], region.box[1, 2] - region.matrix[2, 3]
     return np.array([0.0, region.size[2], bottom, (bottom + top) / 2])

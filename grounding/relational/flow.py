@@ -70,7 +70,7 @@ class Flow:
         around: NDArray[np.float32],
         half: NDArray[np.float32],
     ) -> NDArray[np.float32]:
-        """Of samples (n, 7) at times (n, 1), shape (n, 7).
+        """Compute the flow's velocity of samples (n, 7) at times (n, 1), shape (n, 7).
 
         Args:
             x: Coordinates in their scale.
@@ -87,7 +87,9 @@ class Flow:
 
 
 def settled_coordinates(coordinates: Array) -> Array:
-    """Heights and tilts that are within what physics leaves become none, as demonstrations have them."""
+    """Round heights and tilts that are within what physics leaves to none, as demonstrations have
+    them.
+    """
     coordinates[:, 2] = np.where(np.abs(coordinates[:, 2]) < LEVEL, 0.0, coordinates[:, 2])
     tilted = np.hypot(coordinates[:, 3], coordinates[:, 4]) >= FLAT
     coordinates[:, 3:5] *= tilted[:, None]
@@ -95,7 +97,9 @@ def settled_coordinates(coordinates: Array) -> Array:
 
 
 def condition(view: View) -> NDArray[np.float32]:
-    """What is known before a pose is, for each face that may be down, shape (f, CONDITION)."""
+    """Compute the condition, what is known before a pose is, for each face that may be down, shape
+    (f, CONDITION).
+    """
     turned = (view.form.vertices @ view.rotations.reshape(-1, 3).T).reshape(-1, len(view.faces), 3)
     extents = np.ptp(turned, axis=0)  # (f, 3)
     region = np.array([view.region.hollow, *np.minimum(view.region.size, 1.5)])
@@ -104,7 +108,9 @@ def condition(view: View) -> NDArray[np.float32]:
 
 
 def surroundings(view: View) -> NDArray[np.float32]:
-    """Centre x, y, half extents x, y, bottom and top of what is around, metres, shape (m, AROUND)."""
+    """Describe the surroundings: centre x, y, half extents x, y, bottom and top of what is around,
+    metres, shape (m, AROUND).
+    """
     around = view.obstacles
     if not around.count:
         return np.zeros((0, AROUND), np.float32)
@@ -114,7 +120,8 @@ def surroundings(view: View) -> NDArray[np.float32]:
 
 
 def pair_features(places: Any, known: Any, around: Any) -> tuple[Any, ...]:
-    """Of n samples and m things around, parts of shape (n, m, 2) or (n, m, 4), PAIR in all; numpy's arrays or torch's.
+    """Compute the features of n samples and m things around, parts of shape (n, m, 2) or (n, m, 4),
+    PAIR in all; numpy's arrays or torch's.
 
     Args:
         places: Where the samples are, x and y in the region's frame, shape (n, 2), metres.

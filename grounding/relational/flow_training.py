@@ -31,7 +31,7 @@ NARROW = 0.02
 
 @dataclass(frozen=True)
 class Args:
-    """How the flow is trained.
+    """The flow's training options.
 
     Attributes:
         iterations: Batches.
@@ -64,7 +64,7 @@ class FlowNet(nn.Module):
         )
 
     def forward(self, x: Tensor, time: Tensor, scenes: Scenes) -> Tensor:
-        """Velocities (n, 7) of samples (n, 7) at times (n, 1)."""
+        """Compute velocities (n, 7) of samples (n, 7) at times (n, 1)."""
         places = x[:, :2] * scenes.half
         pairs = torch.cat(pair_features(places, scenes.known, scenes.around), dim=2)
         pooled = (
@@ -76,13 +76,15 @@ class FlowNet(nn.Module):
         return run_layers(self.velocity, torch.cat([x, time, scenes.known, pooled], dim=1))
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
-        """The weights as `Flow` reads them."""
+        """Return the weights as `Flow` reads them."""
         return arrays_of(face=self.face, pair=self.pair, velocity=self.velocity)
 
 
 @dataclass(frozen=True, eq=False)
 class Scenes:
-    """Of n positive scenes: what is known, what is around (n, m, AROUND), what of it is missing, half sizes scaled."""
+    """A batch of n positive scenes: what is known, what is around (n, m, AROUND), what of it is
+    missing, half sizes scaled.
+    """
 
     known: Tensor
     around: Tensor
@@ -90,7 +92,7 @@ class Scenes:
     half: Tensor
 
     def take(self, rows: Tensor) -> Scenes:
-        """Some of them."""
+        """Select some of the scenes."""
         return Scenes(self.known[rows], self.around[rows], self.missing[rows], self.half[rows])
 
 
@@ -100,7 +102,7 @@ def train_flow(
     args: Args = Args(),
     progress: Callable[[int, int, float], None] = lambda step, steps, loss: None,
 ) -> dict[str, NDArray[np.float32]]:
-    """The arrays of a `Flow`.
+    """Train a flow by flow matching; return the arrays of a `Flow`.
 
     Args:
         chart: The coordinates.
@@ -163,7 +165,7 @@ def _scenes(
 
 
 def _padded(rows: Sequence[NDArray[Any]], width: int) -> tuple[Tensor, Tensor]:
-    """Shape (n, m, width), zero where there are fewer than m, and where that is, (n, m)."""
+    """Pad to shape (n, m, width), zero where there are fewer than m, and where that is, (n, m)."""
     most = max(1, max(len(row) for row in rows))
     padded, missing = (
         np.zeros((len(rows), most, width), np.float32),

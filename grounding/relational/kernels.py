@@ -18,7 +18,7 @@ _ROWS, _COLUMN = "float64[:,::1]", "float64[::1]"
     cache=True,
 )
 def describe_poses(poses, low, high, centre, nearest, downs, steady, size, hollow, features):
-    """The features of `ranker.features` that are a pose's alone, into `features` (n, POSE).
+    """Compute the features of `ranker.features` that are a pose's alone, into `features` (n, POSE).
 
     Args: T_region_body (n, 4, 4), the body's least and largest coordinates and its centre of mass (n, 3), the least
     separation (n,), the matrix that turns the face down (n, 3, 3) and the tilt that it withstands (n,), the region's
@@ -57,7 +57,9 @@ def describe_poses(poses, low, high, centre, nearest, downs, steady, size, hollo
     cache=True,
 )
 def fall_short(low, high, centre, nearest, size, bounds, slack, missing):
-    """`Chart.shortfall` into `missing` (n,); bounds are those of sides, balance, ceiling and distance."""
+    """Compute `Chart.shortfall` into `missing` (n,); bounds are those of sides, balance, ceiling
+    and distance.
+    """
     for n in range(len(missing)):
         sides, balance = math.inf, math.inf
         for k in range(2):

@@ -53,7 +53,9 @@ class RelationalModel:
         self._ranks, self._classifies = bool(self.card["ranks"]), bool(self.card["classifies"])
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """At most `count` poses T_world_body, the best first; none for a body that rests on no face."""
+        """Propose at most `count` poses T_world_body, the best first; none for a body that rests on
+        no face.
+        """
         view = View(situation)
         if not len(view.faces):
             return np.zeros((0, 4, 4))
@@ -68,7 +70,9 @@ class RelationalModel:
         return view.T_world_region @ poses[best]
 
     def classify(self, situation: Situation, poses: Array) -> NDArray[np.float64]:
-        """The probability that the relation holds with the body at each pose T_world_body, shape (n,)."""
+        """Return the probability that the relation holds with the body at each pose T_world_body,
+        shape (n,).
+        """
         view = View(situation)
         if not len(view.faces) or not len(poses):
             return np.zeros(len(poses))
@@ -104,7 +108,9 @@ def relational_weights(
     rank: Mapping[str, NDArray[Any]],
     card: Mapping[str, Any],
 ) -> Weights:
-    """What `RelationalModel` is made of; the proposals are demonstrations or the arrays of a `Flow`."""
+    """Assemble the weights of a `RelationalModel`; the proposals are demonstrations or the arrays
+    of a `Flow`.
+    """
     if isinstance(proposals, Transfer):
         arrays = {name: np.asarray(getattr(proposals, name), np.float32) for name in DEMONSTRATIONS}
     else:

@@ -47,7 +47,7 @@ class Transfer:
 
     @classmethod
     def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
-        """From encoded demonstrations."""
+        """Build the transfer from encoded demonstrations."""
         columns = zip(
             *((one.coordinates, one.face, one.size) for one in demonstrations), strict=True
         )
@@ -59,7 +59,7 @@ class Transfer:
         return self.chart.decode(view, faces, coordinates)
 
     def choose(self, view: View, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
-        """Faces (n,) and coordinates (n, 7) taken from demonstrations."""
+        """Choose faces (n,) and coordinates (n, 7) from demonstrations."""
         weights = _weights(self, tuple(view.size.tolist()))
         chosen = np.searchsorted(weights, rng.random(count) * weights[-1], side="right")
         chosen = np.minimum(chosen, len(weights) - 1)
@@ -81,7 +81,9 @@ class Transfer:
 
 @lru_cache(maxsize=256)
 def _weights(transfer: Transfer, size: tuple[float, float, float]) -> Array:
-    """The demonstrations' weights for a body of these logarithms of extents, summed up, shape (n,)."""
+    """Compute the demonstrations' weights for a body of these logarithms of extents, summed up,
+    shape (n,).
+    """
     apart = transfer.sizes - np.array(size)
     logits = -SIMILAR * np.einsum("nk,nk->n", apart, apart)
     return np.cumsum(np.exp(logits - logits.max()))

@@ -28,14 +28,18 @@ class Ranker:
         self._main = layers_of(arrays, "main", POSE + self._pair[-1][0].shape[1], 1)
 
     def logits(self, measured: Measures) -> NDArray[Any]:
-        """Shape (n,): the larger, the likelier that the relation holds."""
+        """Compute the ranker's logits, shape (n,): the larger, the likelier that the relation
+        holds.
+        """
         pose, pair = features(measured)
         pooled = dense(self._pair, pair).max(axis=1)
         return dense(self._main, np.concatenate([pose, pooled], axis=1))[:, 0]
 
 
 def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Of poses, shape (n, POSE), and of pairs with what is around, (n, at least 1, PAIR)."""
+    """Compute the features of poses, shape (n, POSE), and of pairs with what is around, (n, at
+    least 1, PAIR).
+    """
     view, face = measured.view, measured.face
     pose = np.empty((len(face), POSE), np.float32)
     describe_poses(

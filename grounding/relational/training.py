@@ -18,7 +18,7 @@ from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 @dataclass(frozen=True)
 class Args:
-    """How the ranker is trained.
+    """The ranker's training options.
 
     Attributes:
         iterations: Batches.
@@ -49,12 +49,14 @@ class RankerNet(nn.Module):
         self.main = dense_layers([POSE + pooled, hidden, hidden, 1])
 
     def forward(self, pose: Tensor, pair: Tensor, missing: Tensor) -> Tensor:
-        """Logits (n,) of poses (n, POSE), pairs (n, m, PAIR), and which of them are not there (n, m)."""
+        """Compute logits (n,) of poses (n, POSE), pairs (n, m, PAIR), and which of them are not
+        there (n, m).
+        """
         pooled = run_layers(self.pair, pair).masked_fill(missing[..., None], -torch.inf).amax(dim=1)
         return run_layers(self.main, torch.cat([pose, pooled], dim=1))[:, 0]
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
-        """The weights as `layers_of` reads them."""
+        """Return the weights as `layers_of` reads them."""
         return arrays_of(pair=self.pair, main=self.main)
 
 
@@ -64,7 +66,7 @@ def train_ranker(
     args: Args = Args(),
     progress: Callable[[int, int, float], None] = lambda step, steps, accuracy: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
-    """Weights, and their accuracy on the validation split.
+    """Train the ranker; return its weights, and their accuracy on the validation split.
 
     Args:
         measured: Scenes, one pose each.

@@ -52,14 +52,14 @@ class Case:
 
     @property
     def config(self) -> dict[str, Any]:
-        """All that tells it from another run, for the record."""
+        """Return the configuration that tells it from another run, for the record."""
         entries = {**asdict(self), "samplers": dict(self.samplers)}
         del entries["sources"]
         return entries
 
 
 def key(config: Mapping[str, Any]) -> tuple[Any, ...]:
-    """What makes two runs the same one."""
+    """Return the key that makes two runs the same one."""
     return tuple(config[name] for name in IDENTITY)
 
 
@@ -71,7 +71,7 @@ def cases(
     algorithm: str = "adaptive",
     sources: Mapping[str, str] | None = None,
 ) -> list[Case]:
-    """All runs of a benchmark, seed by seed, so that an early look is a fair one.
+    """Return all runs of a benchmark, seed by seed, so that an early look is a fair one.
 
     Args:
         problems: As `named` returns them.
@@ -103,7 +103,8 @@ def _used(chosen: Mapping[str, str], sources: Mapping[str, str]) -> tuple[tuple[
 
 
 def named(problem: str) -> str:
-    """The shipped problem's name, or the whole path of a user's own: one name from wherever it is asked for.
+    """Return the shipped problem's name, or the whole path of a user's own: one name from wherever
+    it is asked for.
 
     Raises:
         InputError: There is none, with the choices.
@@ -113,7 +114,7 @@ def named(problem: str) -> str:
 
 
 def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, str]]:
-    """How the results name a sampler, and what stands in its Python files.
+    """Return how the results name a sampler, and what stands in its Python files.
 
     A file is named with the beginning of its hash: when it is changed, it is another sampler.
 
@@ -145,7 +146,7 @@ def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, st
 
 
 def _pairs(sampler: str) -> list[tuple[str, str]]:
-    """RELATION=NAME,RELATION=NAME as pairs; a file's name may have a comma."""
+    """Parse RELATION=NAME,RELATION=NAME as pairs; a file's name may have a comma."""
     parts = (pair.partition("=") for pair in re.split(r",(?=[^,=]+=)", sampler))
     pairs = [(relation, name) for relation, _, name in parts]
     for relation, count in Counter(relation for relation, _ in pairs).items():
@@ -155,7 +156,7 @@ def _pairs(sampler: str) -> list[tuple[str, str]]:
 
 
 def relations(sampler: str, known: Registry) -> dict[str, str]:
-    """The sampler by relation: a bare name serves every relation that has one of this name.
+    """Return the sampler by relation: a bare name serves every relation that has one of this name.
 
     Args:
         sampler: As in `Case`.

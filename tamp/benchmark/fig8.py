@@ -18,7 +18,7 @@ FIG8 = (
 def chosen(
     samplers: Sequence[str], known: Registry
 ) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
-    """What of the samplers can be run, by relation, and why the others cannot.
+    """Choose the samplers that can be run, by relation, and say why the others cannot.
 
     Args:
         samplers: As in `Case`.

@@ -71,7 +71,7 @@ def _check_fields(
 
 
 def _word(value: Any) -> bool:
-    """A word that a table may show."""
+    """Check that a word may stand in a table."""
     return isinstance(value, str) and 0 < len(value) <= 4096 and value.isprintable()
 
 

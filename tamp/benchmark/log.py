@@ -30,7 +30,7 @@ MOST_BYTES = 100_000_000
 
 
 def read_log(path: Path) -> list[Line]:
-    """All results of a file, the oldest first. A last line that was cut off is left out.
+    """Read all results of a file, the oldest first. A last line that was cut off is left out.
 
     Raises:
         InputError: It cannot be read, a line of it is no result, or there are none, or some of several settings.
@@ -100,7 +100,7 @@ class Log:
         _check(self.path, self.lines, time, algorithm, ELSEWHERE)
 
     def missing(self, cases: list[Case]) -> list[Case]:
-        """The runs that are not among the results, each once."""
+        """Return the runs that are not among the results, each once."""
         wanted = {key(case.config): case for case in cases}
         return [case for identity, case in wanted.items() if identity not in self._known]
 
@@ -168,7 +168,7 @@ def _check_own(path: Path) -> None:
 
 
 def _whole(path: Path) -> bytes:
-    """The file up to the end of its last whole line."""
+    """Read the file up to the end of its last whole line."""
     content = read_bytes(path, MOST_BYTES, kind="file of results")
     return content[: content.rfind(b"\n") + 1]
 
@@ -181,7 +181,7 @@ def _lines(path: Path, whole: bytes) -> list[Line]:
 
 
 def _plain(value: Any) -> Any:
-    """JSON knows no infinities."""
+    """Replace infinities, which JSON does not know."""
     if isinstance(value, dict):
         return {str(name): _plain(inner) for name, inner in value.items()}
     if isinstance(value, list | tuple):

@@ -76,7 +76,7 @@ class _Sheet:
             axes.set_visible(False)
 
     def panels(self) -> Iterator[tuple[Any, str, list[Summary]]]:
-        """Each problem's axes, with its summaries."""
+        """Yield each problem's axes, with its summaries."""
         for axes, problem in zip(self._axes, self.problems, strict=False):
             axes.set_title(short(problem))
             axes.spines[["top", "right"]].set_visible(False)
@@ -85,7 +85,7 @@ class _Sheet:
             yield axes, problem, [one for one in self.summaries if one.problem == problem]
 
     def of(self, one: Summary) -> list[float]:
-        """A summary's times."""
+        """Return a summary's times."""
         config = (one.problem, one.sampler)
         return times(
             line
@@ -94,7 +94,7 @@ class _Sheet:
         )
 
     def style(self, sampler: str) -> dict[str, str]:
-        """The same sampler looks the same everywhere."""
+        """Return a sampler's style: the same one looks the same everywhere."""
         index = self.samplers.index(sampler)
         return {
             "color": COLOURS[index % len(COLOURS)],
@@ -102,7 +102,7 @@ class _Sheet:
         }
 
     def save(self, path: Path) -> Path:
-        """With one legend for all panels."""
+        """Save the picture with one legend for all panels."""
         labels: dict[str, Any] = {}
         for axes in self._axes:
             for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -120,7 +120,7 @@ class _Sheet:
 
 
 def _success(sheet: _Sheet) -> None:
-    """Shares of solved runs with Wilson's intervals: the paper's figure 8."""
+    """Plot the success rates with Wilson's intervals: the paper's figure 8."""
     for axes, _, found in sheet.panels():
         shares = [100 * one.solved / one.runs for one in found]
         low = [share - 100 * one.interval[0] for share, one in zip(shares, found, strict=True)]
@@ -140,7 +140,7 @@ def _success(sheet: _Sheet) -> None:
 
 
 def _ecdf(sheet: _Sheet) -> None:
-    """How many runs are solved after how much time."""
+    """Plot the empirical distribution: how many runs are solved after how much time."""
     for axes, _, found in sheet.panels():
         for one in found:
             solved = [time for time in sheet.of(one) if math.isfinite(time)]
@@ -161,7 +161,7 @@ def _ecdf(sheet: _Sheet) -> None:
 
 
 def _cactus(sheet: _Sheet) -> None:
-    """In how much time each the quickest n runs are solved."""
+    """Plot the cactus: in how much time each the quickest n runs are solved."""
     for axes, _, found in sheet.panels():
         for one in found:
             solved = [time for time in sheet.of(one) if math.isfinite(time)]
@@ -181,7 +181,7 @@ def _cactus(sheet: _Sheet) -> None:
 
 
 def _parts(sheet: _Sheet) -> None:
-    """Mean time of a run by what it is spent on."""
+    """Plot the mean time of a run by what it is spent on."""
     told = [
         (part, seconds) for one in sheet.summaries for part, seconds in (one.parts or {}).items()
     ]

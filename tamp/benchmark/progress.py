@@ -1,4 +1,4 @@
-"""What is said while the runs go on."""
+"""Progress of the runs, as lines of text."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Watch:
         weakref.finalize(self, self._meanwhile.end)
 
     def ended(self, line: Mapping[str, Any], left: int) -> None:
-        """A run has ended, and so many are still to come."""
+        """Report that a run has ended, and how many are still to come."""
         self._done += 1
         self._solved += succeeded(line)
         self._meanwhile.begin(f"{self._total - left}/{self._total} runs ended")

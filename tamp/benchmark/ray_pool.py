@@ -73,7 +73,7 @@ class RayCrew:
         self._under_way[self._do.remote(*self._job, case)] = case, time.monotonic()
 
     def finished(self) -> list[Ended]:
-        """Runs that have ended since; waits for a fifth of a second at most."""
+        """Return runs that have ended since; waits for a fifth of a second at most."""
         ready, pending = self._ray.wait(list(self._under_way), num_returns=1, timeout=0.2)
         ended: list[Ended] = []
         for reference in ready:
@@ -106,7 +106,9 @@ class RayCrew:
 
 
 def _check_somebody_listens(address: str) -> None:
-    """Ray itself tries for minutes before it says that nobody is there."""
+    """Check that a cluster answers: Ray itself tries for minutes before it says that nobody is
+    there.
+    """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if not host or not port.isdigit():
         return
@@ -123,5 +125,5 @@ def _prepared_work(work: Work, prepare: Callable[[], None], case: Case) -> dict[
 
 @cache
 def _prepare_once(prepare: Callable[[], None]) -> None:
-    """Per process."""
+    """Prepare the process, once for each."""
     prepare()

@@ -98,7 +98,9 @@ def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
 
 
 def parts(solution: Solution) -> dict[str, float]:
-    """Where the time went, in the words of a robot's planner; "symbolic" is all that is not spent in streams."""
+    """Split the time by what it went to, in the words of a robot's planner; "symbolic" is all that
+    is not spent in streams.
+    """
     beginnings = {
         "sample-": "sampling",
         "inverse-kinematics": "ik",

@@ -48,7 +48,9 @@ def lead(
 
 
 def lost(case: Case) -> dict[str, Any]:
-    """The line of a run whose workers were lost each time: it counts as one that took all its time in vain."""
+    """Return the line of a run whose workers were lost each time: it counts as one that took all
+    its time in vain.
+    """
     return {
         "config": case.config,
         "seed": case.seed,

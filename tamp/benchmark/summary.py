@@ -1,4 +1,6 @@
-"""What the runs of a benchmark amount to: success with its interval, times, paired comparison, time by part."""
+"""Statistics of a benchmark's runs: success with its interval, times, paired comparison, time by
+part.
+"""
 
 from __future__ import annotations
 
@@ -49,12 +51,13 @@ class Summary:
 
 
 def succeeded(line: Mapping[str, Any]) -> bool:
-    """Whether a run ended with a plan that the judge accepts."""
+    """Check whether a run ended with a plan that the judge accepts."""
     return line["solved"] and line["verified"] is True
 
 
 def summaries(lines: Iterable[Mapping[str, Any]], baseline: str | None = None) -> list[Summary]:
-    """One for each problem and sampler, in the order in which they first appear, the problems together.
+    """Summarize the runs, once for each problem and sampler, in the order in which they first
+    appear, the problems together.
 
     Args:
         lines: Results of one budget and algorithm.
@@ -72,17 +75,19 @@ def summaries(lines: Iterable[Mapping[str, Any]], baseline: str | None = None) -
 
 
 def times(lines: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Planning times, infinite without a plan, the shortest first."""
+    """Return planning times, infinite without a plan, the shortest first."""
     return sorted(line["planning_s"] if succeeded(line) else math.inf for line in lines)
 
 
 def penalised(line: Mapping[str, Any]) -> float:
-    """The planning time, twice the budget without a plan."""
+    """Return the penalised planning time: twice the budget without a plan."""
     return line["planning_s"] if succeeded(line) else PENALTY * line["config"]["time"]
 
 
 def percentile(ordered: Sequence[float], q: float) -> float:
-    """The q-th percentile, 0 to 100, of sorted values, linear between the two nearest; NaN of nothing."""
+    """Compute the q-th percentile, 0 to 100, of sorted values, linear between the two nearest; NaN
+    of nothing.
+    """
     if not ordered:
         return math.nan
     place = q / 100 * (len(ordered) - 1)
@@ -92,7 +97,8 @@ def percentile(ordered: Sequence[float], q: float) -> float:
 
 
 def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
-    """Wilson's score interval of a success rate, 95 % by default; (0, 1) when nothing was tried.
+    """Compute Wilson's score interval of a success rate, 95 % by default; (0, 1) when nothing was
+    tried.
 
     Source: E. B. Wilson, Journal of the American Statistical Association 22 (1927), 209-212.
     """

@@ -17,7 +17,7 @@ MOST_WARNINGS = 10
 
 
 def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> str:
-    """Success and times, time by part, and where the figures come from.
+    """Format the report: success and times, time by part, and where the figures come from.
 
     Args:
         lines: Results of one budget and algorithm, at least one.
@@ -35,7 +35,9 @@ def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> s
 
 
 def _sidelined(lines: Iterable[Mapping[str, Any]]) -> list[str]:
-    """What was said of samplers that took no part to the end, once for each: without them the figures are others'."""
+    """Describe the samplers that took no part to the end, once for each: without them the figures
+    are others'.
+    """
     said = Counter(
         (line["config"]["sampler"], warning)
         for line in lines
@@ -57,7 +59,7 @@ def _sidelined(lines: Iterable[Mapping[str, Any]]) -> list[str]:
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Rows of cells under the first one's keys, numbers to the right."""
+    """Format rows of cells under the first one's keys, numbers to the right."""
     head = list(rows[0])
     widths = [max(len(name), *(len(row[name]) for row in rows)) for name in head]
     left = [name in ("problem", "sampler") for name in head]
@@ -72,7 +74,7 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def short(problem: str) -> str:
-    """A problem's name: that of its file, when it is a path."""
+    """Shorten a problem's name to that of its file, when it is a path."""
     return Path(problem).stem if "/" in problem else problem
 
 

@@ -1,4 +1,4 @@
-"""Who does the runs: workers, of which each does one at a time."""
+"""The interface of a pool of workers, of which each does one run at a time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Crew(Protocol):
         ...
 
     def finished(self) -> list[Ended]:
-        """Runs that have ended since; waits for a fifth of a second at most."""
+        """Return runs that have ended since; waits for a fifth of a second at most."""
         ...
 
     def close(self) -> None:

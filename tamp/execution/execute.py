@@ -49,7 +49,7 @@ MOVED = (0.005, 0.09)
 
 @dataclass(frozen=True)
 class Circumstances:
-    """How a plan is carried out.
+    """The circumstances of an execution: how a plan is carried out.
 
     Attributes:
         grasp: "friction", or "constraint": the fingers bind what they close on.
@@ -115,7 +115,7 @@ class _Run:
         self._known = frozenset(world.scene.bodies)
 
     def all(self) -> None:
-        """Every action of the plan, and of those that take its place."""
+        """Execute every action of the plan, and of those that take its place."""
         self._world.wait(SETTLE)
         while self._queue and not self._explanation:
             action = self._queue.pop(0)
@@ -125,7 +125,7 @@ class _Run:
             self._done.append(done)
 
     def result(self) -> Execution:
-        """What came of it."""
+        """Return the execution's outcome."""
         self._world.wait(SETTLE)
         truth = self._look()
         goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own)
@@ -202,7 +202,9 @@ class _Run:
     # What is seen
 
     def _held(self) -> str | None:
-        """The body in the hand: bound to it, or between the fingers and off the ground that it stood on."""
+        """Return the body in the hand: bound to it, or between the fingers and off the ground that
+        it stood on.
+        """
         world = self._world
         if world.bound is not None or not world.squeezing:
             return world.bound

@@ -1,4 +1,4 @@
-"""What is noticed while an action is carried out: how far the robot lags, and what touches what."""
+"""Execution monitoring: how far the robot lags behind its trajectory, and what touches what."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Watch:
             self.touches[pair] = max(self.touches.get(pair, 0.0), force)
 
     def unwanted(self) -> tuple[Touch, ...]:
-        """What should not have touched, at the action's end.
+        """Return the unwanted contacts at the action's end.
 
         A body may touch what it touches before or after the action: that is what it rests on. The hand may touch
         what it handles.

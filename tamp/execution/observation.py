@@ -1,4 +1,6 @@
-"""What is on and inside what, by the bodies' geometry where they are seen; and the scene as it is then."""
+"""Observation of what is on and inside what, by the bodies' geometry where they are seen; and the
+scene as it is then.
+"""
 
 from __future__ import annotations
 
@@ -59,13 +61,15 @@ class Observer:
         self._world.close()
 
     def become(self, scene: Scene) -> None:
-        """Bodies were added or taken away."""
+        """Rebuild the observer when bodies were added or taken away."""
         if self._scene.bodies.keys() != scene.bodies.keys():
             self._world.close()
             self.__init__(scene)
 
     def see(self, poses: Mapping[str, Array], base: Array, held: str | None) -> Truth:
-        """The truth about movable bodies at their T_world_body (4, 4), the base (3,) and the body in the hand."""
+        """Observe the truth about movable bodies at their T_world_body (4, 4), the base (3,) and
+        the body in the hand.
+        """
         standing = [name for name in self._scene.movable if name in poses and name != held]
         if held is not None:
             self._seen.pop(held, None)

@@ -1,4 +1,4 @@
-"""What came of a plan in physics, for people and for programs."""
+"""Report of a plan's execution in physics, for people and for programs."""
 
 from __future__ import annotations
 
@@ -101,12 +101,12 @@ class Execution:
 
     @property
     def kinds(self) -> dict[str, int]:
-        """How often each kind of deviation occurred."""
+        """Count how often each kind of deviation occurred."""
         counts = Counter(one.kind for action in self.actions for one in action.deviations)
         return dict(sorted(counts.items()))
 
     def text(self) -> str:
-        """For people: a line an action, the goal, and a summary."""
+        """Format the report for people: a line an action, the goal, and a summary."""
         lines = [line for number, action in enumerate(self.actions, 1) for line in _action(number, action)]
         lines.append("")
         lines += [_goal(fact) for fact in self.goal]
@@ -122,7 +122,7 @@ class Execution:
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:
-        """For programs: metres, radians, seconds, newtons."""
+        """Return the report for programs: metres, radians, seconds, newtons."""
         return {"format": "tamp-execution", "version": 1, **asdict(self), "kinds": self.kinds}
 
 

@@ -22,7 +22,7 @@ NANOSECONDS = 10**9
 
 
 def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """The actions with their stretches, times from the plan's start."""
+    """Format the actions with their stretches as JSON, times from the plan's start."""
     document = {
         "format": "tamp-trajectory",
         "version": 1,
@@ -44,7 +44,9 @@ def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> s
 
 
 def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """One row a sample with all joints, those that stand still too; the columns of velocities begin with v_."""
+    """Format the trajectory as CSV, one row a sample with all joints, those that stand still too;
+    the columns of velocities begin with v_.
+    """
     arm, fingers = _names(robot)
     joints = (*BASE_JOINTS, *arm, *fingers)
     column = {name: at for at, name in enumerate(joints)}
@@ -78,7 +80,8 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
 
 
 def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which they are to be sent.
+    """Format trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which
+    they are to be sent.
 
     `time_from_start` counts from the message's own start. Beside each message stands what it belongs to.
     """
@@ -120,7 +123,9 @@ def _names(robot: Robot) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _start(plan: PlanFile, robot: Robot) -> Array:
-    """All joints before the first action: each part stands where its first segment begins, if it ever moves."""
+    """Return all joints before the first action: each part stands where its first segment begins,
+    if it ever moves.
+    """
     places = [
         plan.values.get(fact[1]) for fact in plan.initial if fact[0] == "at-base" and len(fact) == 2
     ]

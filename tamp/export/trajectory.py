@@ -51,7 +51,7 @@ class TimedAction:
 
 
 def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
-    """The plan's motions in the plan's time."""
+    """Time the plan's motions from the plan's start."""
     joints = {
         "base": BASE_JOINTS,
         "arm": tuple(joint.name for joint in robot.joints),
@@ -89,7 +89,8 @@ def _stretch(segment: StoredSegment, joints: tuple[str, ...], clock: float) -> S
 
 
 def rates(times: Array, positions: Array) -> Array:
-    """Velocities (n, d) at samples of a motion from rest to rest: the mean of the slopes before and after each one.
+    """Differentiate samples of a motion from rest to rest: velocities (n, d), the mean of the
+    slopes before and after each one.
 
     Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that the slopes keep
     are kept.

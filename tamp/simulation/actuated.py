@@ -96,7 +96,9 @@ class Actuated(World):
     # Time
 
     def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """One step of 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the trajectory's speeds there."""
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+        trajectory's speeds there.
+        """
         bullet, client = self._bullet, self.client
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
@@ -120,21 +122,21 @@ class Actuated(World):
 
     @property
     def time(self) -> float:
-        """Seconds since the beginning."""
+        """Return the simulated time, seconds since the beginning."""
         return self._steps / RATE
 
     def actual(self) -> Array:
-        """The configuration (10,) as it is."""
+        """Return the actual configuration (10,)."""
         states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
         return np.array([state[0] for state in states])
 
     def width(self) -> float:
-        """How far the fingers are apart, metres."""
+        """Return how far the fingers are apart, metres."""
         states = self._bullet.getJointStates(self._mover, self._fingers, physicsClientId=self.client)
         return float(sum(state[0] for state in states))
 
     def tool(self) -> Array:
-        """T_world_tool (4, 4) as it is."""
+        """Return the actual T_world_tool (4, 4)."""
         state = self._bullet.getLinkState(
             self._mover, self._hand, computeForwardKinematics=1, physicsClientId=self.client
         )  # fmt: skip
@@ -142,12 +144,13 @@ class Actuated(World):
         return Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])).matrix @ self._T_hand_tool
 
     def speed(self, body: str) -> tuple[float, float]:
-        """Of a movable body: metres and radians a second."""
+        """Return the speed of a movable body: metres and radians a second."""
         moving = self._bullet.getBaseVelocity(self.solids[body][0].handle, physicsClientId=self.client)
         return float(np.linalg.norm(moving[0])), float(np.linalg.norm(moving[1]))
 
     def touches(self) -> dict[tuple[str, str], float]:
-        """Newtons between the robot's links and bodies, and between pairs of bodies one of which can move.
+        """Return the contact forces, newtons, between the robot's links and bodies, and between
+        pairs of bodies one of which can move.
 
         The link comes first in a pair; two bodies are sorted. "floor" is a body.
         """
@@ -163,7 +166,7 @@ class Actuated(World):
         return found
 
     def near_fingers(self, body: str, reach: float = NEAR) -> bool:
-        """Whether both fingers are this near to a body, metres."""
+        """Check whether both fingers are this near to a body, metres."""
         handle = self.solids[body][0].handle
         return all(
             self._bullet.getClosestPoints(self._mover, handle, reach, finger, -1, physicsClientId=self.client)
@@ -194,7 +197,7 @@ class Actuated(World):
             self.bound = None
 
     def pass_through(self, body: str, passes: bool) -> None:
-        """Whether the robot and a body do not feel each other."""
+        """Switch collisions between the robot and a body: whether they do not feel each other."""
         for link in range(-1, self._bullet.getNumJoints(self._mover, physicsClientId=self.client)):
             self._bullet.setCollisionFilterPair(
                 self._mover, self.solids[body][0].handle, link, -1, 0 if passes else 1, physicsClientId=self.client

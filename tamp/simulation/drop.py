@@ -41,7 +41,9 @@ class Item:
 
 @dataclass(frozen=True)
 class Contact:
-    """How far argument and obstacle are apart: metres, negative when they lie in each other."""
+    """The contact of argument and obstacle: the distance in metres, negative when they lie in each
+    other.
+    """
 
     obstacle: int
     distance: float
@@ -81,7 +83,9 @@ class Drops:
         self._body = (self._add(body, np.eye(4), fixed=False), body)
 
     def contacts(self, T_world_body: Array, reach: float = 0.005) -> list[Contact]:
-        """The obstacles that are nearer to the body at this pose than `reach` metres; the floor is obstacle -1."""
+        """Find the obstacles that are nearer to the body at this pose than `reach` metres; the
+        floor is obstacle -1.
+        """
         handle, item = self._placed(T_world_body)
         low, high = bounds(item.parts, Pose.from_matrix(T_world_body))
         found = [Contact(-1, float(low[2]))] if low[2] < reach else []

@@ -93,7 +93,7 @@ class World:
     # Where things are
 
     def pose(self, body: str) -> Array:
-        """T_world_body, shape (4, 4)."""
+        """Return T_world_body, shape (4, 4)."""
         if not self.dynamic:
             return self._poses[body]
         handle = self.solids[body][0].handle
@@ -123,12 +123,16 @@ class World:
         self._bullet.resetJointStatesMultiDof(self._arm, self._joints, values, physicsClientId=self.client)
 
     def link_frames(self) -> Array:
-        """Position (m) and quaternion x, y, z, w of each link's frame, in the order of `links`, shape (l, 7)."""
+        """Return position (m) and quaternion x, y, z, w of each link's frame, in the order of
+        `links`, shape (l, 7).
+        """
         states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
         return np.array(self._base_frames + [link_frame(state) for state in states])
 
     def link_poses(self) -> dict[str, Array]:
-        """T_world_link of the links as they stand, shape (4, 4) each; the base has its frame on the floor."""
+        """Return T_world_link of the links as they stand, shape (4, 4) each; the base has its frame
+        on the floor.
+        """
         frames = self.link_frames().tolist()
         return {
             name: Pose((x, y, z), (qx, qy, qz, qw)).matrix
@@ -138,7 +142,9 @@ class World:
     # What touches what
 
     def distance(self, first: Solid, second: Solid, reach: float = 0.02) -> float:
-        """Metres between two solids, negative when they penetrate; infinite when farther apart than `reach`."""
+        """Compute the distance of two solids, metres, negative when they penetrate; infinite when
+        farther apart than `reach`.
+        """
         pads = first.pad + second.pad
         points = self._bullet.getClosestPoints(
             first.handle, second.handle, reach, first.link, second.link, physicsClientId=self.client
@@ -146,12 +152,14 @@ class World:
         return min((point[8] + pads for point in points), default=math.inf)
 
     def body_distance(self, first: str, second: str, reach: float = 0.02) -> float:
-        """The same between two bodies."""
+        """Compute the distance of two bodies as that of two solids."""
         pairs = itertools.product(self.solids[first], self.solids[second])
         return min((self.distance(a, b, reach) for a, b in pairs), default=math.inf)
 
     def rays(self, starts: Array, ends: Array) -> list[tuple[str | None, float]]:
-        """What rays hit first: the owner's name or None, and the fraction of the way. Shapes (n, 3), metres."""
+        """Cast rays: return what each hits first, the owner's name or None, and the fraction of the
+        way. Shapes (n, 3), metres.
+        """
         hits: list[tuple[str | None, float]] = []
         for at in range(0, len(starts), 8192):  # more at a time overflow the engine's shared memory
             some = slice(at, at + 8192)
@@ -291,7 +299,7 @@ class World:
 
 
 def load_bullet() -> ModuleType:
-    """pybullet, without the build time that it prints when imported."""
+    """Import pybullet, without the build time that it prints when imported."""
     if "pybullet" in sys.modules:
         return sys.modules["pybullet"]
     with silence():

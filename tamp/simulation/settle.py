@@ -1,4 +1,4 @@
-"""Whether bodies stay where they are put, when gravity is on."""
+"""Stability test: do bodies stay where they are put, when gravity is on?"""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from tamp.simulation.physics import World
 
 @dataclass(frozen=True)
 class Settled:
-    """How far a body went while it settled: metres of its frame's origin, radians of its orientation."""
+    """The displacement of a body while it settled: metres of its frame's origin, radians of its
+    orientation.
+    """
 
     moved: float
     turned: float

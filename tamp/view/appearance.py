@@ -1,4 +1,4 @@
-"""What bodies and the robot look like."""
+"""The appearance of bodies and of the robot: their meshes and colours."""
 
 from __future__ import annotations
 
@@ -25,13 +25,17 @@ LARGE = 20_000
 
 
 def body_meshes(body: Body) -> tuple[Mesh, ...]:
-    """A body in its own frame: what its file shows, where that can be read, else its parts."""
+    """Return the meshes of a body in its own frame: what its file shows, where that can be read,
+    else its parts.
+    """
     drawn, _ = _drawing(body)
     return drawn or tuple(_part(part, body.colour) for part in body.parts)
 
 
 def undrawable(bodies: Iterable[Body]) -> tuple[str, ...]:
-    """For each body of whose file the drawing cannot be read, a sentence that says so; its parts are drawn."""
+    """Describe each body of whose file the drawing cannot be read, in a sentence; its parts are
+    drawn.
+    """
     sentences: list[str] = []
     for body in bodies:
         _, why = _drawing(body)
@@ -42,7 +46,7 @@ def undrawable(bodies: Iterable[Body]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def _drawing(body: Body) -> tuple[tuple[Mesh, ...], str]:
-    """The meshes of a body's visuals, or none and why they cannot be read."""
+    """Read the meshes of a body's visuals, or return none and why they cannot be read."""
     meshes: list[Mesh] = []
     try:
         for visual in body.visuals:
@@ -66,7 +70,9 @@ def _visual(visual: Visual, body: Body) -> Iterator[Mesh]:
 
 
 def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
-    """Each link in its own frame: the base's parts, and what the arm's URDF shows."""
+    """Return the meshes of each link in its own frame: the base's parts, and what the arm's URDF
+    shows.
+    """
     visuals = read_visuals(robot.urdf)
     looks: dict[str, tuple[Mesh, ...]] = {}
     for link in robot.links:

@@ -22,7 +22,7 @@ GRID = 65_535
 
 
 def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dict[str, Any]:
-    """The film, the samples and the story; assets/page.js reads it."""
+    """Describe the film, the samples and the story as the document that assets/page.js reads."""
     scene, robot = film.scene, film.robot
     looks = robot_meshes(robot)
     return {
@@ -97,7 +97,7 @@ def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dic
 
 
 def _view(film: Film) -> dict[str, Any]:
-    """The first camera, and the ball in which shadows are drawn."""
+    """Describe the first camera, and the ball in which shadows are drawn."""
     camera = framing(film, (1000, 800))
     target, out = np.array(camera.target), np.array(camera.eye) - np.array(camera.target)
     distance = float(np.linalg.norm(out))

@@ -33,17 +33,17 @@ class Mesh:
     colour: Colour
 
     def moved(self, T_a_b: Array) -> Mesh:
-        """The mesh of frame b in frame a; T_a_b of shape (4, 4)."""
+        """Transform the mesh of frame b to frame a; T_a_b of shape (4, 4)."""
         return Mesh(self.vertices @ T_a_b[:3, :3].T + T_a_b[:3, 3], self.faces, self.colour)
 
 
 def unit(vectors: Array) -> Array:
-    """Vectors of length 1 in the same directions, shape (..., 3); what has no direction stays 0."""
+    """Normalize vectors to length 1, shape (..., 3); what has no direction stays 0."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
 def shape_mesh(shape: Shape, colour: Colour) -> Mesh:
-    """A convex shape in its own frame."""
+    """Triangulate a convex shape in its own frame."""
     if isinstance(shape, Box):
         return _box(shape, colour)
     if isinstance(shape, Cylinder):
@@ -62,7 +62,7 @@ def shape_mesh(shape: Shape, colour: Colour) -> Mesh:
 def read_mesh(
     file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0
 ) -> list[Mesh]:
-    """The triangles of a mesh file, a mesh for each of its colours.
+    """Read the triangles of a mesh file, a mesh for each of its colours.
 
     Args:
         file: OBJ, STL, PLY, COLLADA or glTF.
@@ -88,7 +88,7 @@ def read_mesh(
 
 
 def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]:
-    """The geometries of a file with the colours of their materials."""
+    """Yield the geometries of a file with the colours of their materials."""
     if file.suffix.lower() == ".dae":
         yield *read_triangles(file), _GREY
         return
@@ -119,7 +119,9 @@ def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]
 
 
 def simplified(mesh: Mesh, cell: float) -> Mesh:
-    """A coarser mesh: the vertices in each cube of that many metres become one, their mean (vertex clustering)."""
+    """Simplify a mesh by vertex clustering: the vertices in each cube of that many metres become
+    one, their mean.
+    """
     cubes = np.round(mesh.vertices / cell).astype(np.int64)
     _, member = np.unique(cubes, axis=0, return_inverse=True)
     member = member.ravel()
@@ -159,7 +161,9 @@ def _box(shape: Box, colour: Colour) -> Mesh:
 
 
 def _turned(profile: list[tuple[float, float]], colour: Colour) -> Mesh:
-    """A profile of (radius, z), from the bottom to the top, turned about z."""
+    """Make the surface of revolution of a profile of (radius, z), from the bottom to the top, about
+    z.
+    """
     angles = np.linspace(0.0, 2 * math.pi, ROUND, endpoint=False)
     rings = [
         np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1)

@@ -1,4 +1,4 @@
-"""What a user wants to see, and showing it."""
+"""The outputs that a user asks for (page, picture, video), and how they are written."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_PIXELS = 4096
 
 @dataclass(frozen=True)
 class Wishes:
-    """Where a film is to be shown.
+    """A request for outputs: where a film is to be shown.
 
     Attributes:
         html: A page to write.
@@ -48,17 +48,17 @@ class Wishes:
 
     @property
     def page(self) -> bool:
-        """Whether the page is wanted, with the samples that were tried."""
+        """Check whether the page is wanted, with the samples that were tried."""
         return self.view or self.html is not None
 
     @property
     def outputs(self) -> dict[str, Path | None]:
-        """What is written, by option."""
+        """Return the files to be written, by option."""
         return {"--html": self.html, "--png": self.png, "--video": self.video}
 
     @property
     def any(self) -> bool:
-        """Whether anything is wanted."""
+        """Check whether anything is wanted."""
         return self.page or self.png is not None or self.video is not None
 
     def check(self) -> None:

@@ -74,7 +74,7 @@ class _Trail:
     passed: Array
 
     def until(self, time: float) -> Triangles:
-        """What was passed by then."""
+        """Return the triangles that were passed by then."""
         count = int(np.searchsorted(self.passed, time, side="right"))
         return Triangles(
             self.line.corners[:count], self.line.normals[:count], self.line.colours[:count]
@@ -82,7 +82,7 @@ class _Trail:
 
 
 class Studio:
-    """What is drawn of a film, prepared once for all its pictures.
+    """The renderer of a film: what is drawn of it, prepared once for all its pictures.
 
     Args:
         film: What happens.
@@ -110,7 +110,7 @@ class Studio:
         self._trails = _trails(film, self._kinematics)
 
     def frame(self, time: float) -> NDArray[np.uint8]:
-        """The picture at a time, with the paths up to then; rows x columns x RGB."""
+        """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
         row = self.film.row(time)
         links = self._kinematics.link_poses(row[:10], float(row[10]))
         parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
@@ -121,7 +121,7 @@ class Studio:
 
 
 def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
-    """A camera that has all bodies, and the robot wherever it goes, in view."""
+    """Place a camera that has all bodies, and the robot wherever it goes, in view."""
     boxes = [bounds(body.parts, body.pose) for body in film.scene.bodies.values()]
     boxes += [
         (np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4]))
@@ -153,7 +153,8 @@ def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
 def write_png(
     film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)
 ) -> None:
-    """One picture, or one beside the other for several times; by default a plan's start, middle and end.
+    """Write one picture, or one beside the other for several times; by default a plan's start,
+    middle and end.
 
     Raises:
         InputError: The file cannot be written.
@@ -172,7 +173,8 @@ def write_png(
 def write_video(
     film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)
 ) -> float:
-    """A moving picture of the plan, `speed` times as fast as the robot; the seconds of long pauses that were cut.
+    """Write a video of the plan, `speed` times as fast as the robot; return the seconds of long
+    pauses that were cut.
 
     Raises:
         InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it cannot be written.
@@ -206,7 +208,7 @@ def write_video(
 
 
 def moments_of(film: Film, speed: float) -> tuple[Array, float]:
-    """The times of a moving picture's frames, and how many seconds of pauses they leave out.
+    """Choose the times of a video's frames, and return how many seconds of pauses they leave out.
 
     Raises:
         InputError: There would be more than anybody has memory for.
@@ -223,7 +225,7 @@ def moments_of(film: Film, speed: float) -> tuple[Array, float]:
 
 
 def _coloured(image: Image.Image, palette: Image.Image | None) -> Image.Image:
-    """With colours that the scene has, the same in all frames."""
+    """Quantize a picture to colours that the scene has, the same in all frames."""
     from PIL import Image
 
     return image if palette is None else image.quantize(palette=palette, dither=Image.Dither.NONE)
@@ -245,7 +247,9 @@ def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> N
 
 
 def _floor(film: Film) -> list[Triangles]:
-    """Tiles of two shades, a metre wide (larger ones in a hall), under the room and around it."""
+    """Make tiles of two shades, a metre wide (larger ones in a hall), under the room and around
+    it.
+    """
     room = film.scene.room
     side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
     xs, ys = (
@@ -282,7 +286,7 @@ def _trails(film: Film, kinematics: Kinematics) -> list[_Trail]:
 def _trail(
     points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]
 ) -> _Trail:
-    """Three-sided rods along the stretches of a polyline that are shown."""
+    """Make three-sided rods along the stretches of a polyline that are shown."""
     kept = [0]
     for i in range(1, len(points)):
         if np.linalg.norm(points[i] - points[kept[-1]]) >= STEP or shown[i] != shown[kept[-1]]:

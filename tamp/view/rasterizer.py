@@ -38,7 +38,9 @@ BACKGROUND = (0.94, 0.95, 0.96)
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the eye is and what it looks at, metres in the world; the angle of view from top to bottom, degrees."""
+    """A camera: where the eye is and what it looks at, metres in the world; the angle of view from
+    top to bottom, degrees.
+    """
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
@@ -54,13 +56,15 @@ class Triangles:
     colours: Array
 
     def moved(self, T_a_b: Array) -> Triangles:
-        """The same of frame b in frame a."""
+        """Transform the triangles of frame b to frame a."""
         turn = T_a_b[:3, :3].T
         return Triangles(self.corners @ turn + T_a_b[:3, 3], self.normals @ turn, self.colours)
 
 
 def triangles(mesh: Mesh) -> Triangles:
-    """A mesh with the normals of its corners: shared where faces meet smoothly, the face's own at edges."""
+    """Shade a mesh with the normals of its corners: shared where faces meet smoothly, the face's
+    own at edges.
+    """
     corners = mesh.vertices[mesh.faces]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     _, member = np.unique(np.round(mesh.vertices, 5), axis=0, return_inverse=True)
@@ -76,7 +80,7 @@ def triangles(mesh: Mesh) -> Triangles:
 
 
 def render(parts: Sequence[Triangles], camera: Camera, size: tuple[int, int]) -> NDArray[np.uint8]:
-    """A picture.
+    """Render a picture.
 
     Args:
         parts: In the world.
@@ -105,7 +109,7 @@ def render(parts: Sequence[Triangles], camera: Camera, size: tuple[int, int]) ->
 
 
 def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
-    """Columns, rows and distances of corners, shape (n, 3, 3)."""
+    """Project corners to columns, rows and distances, shape (n, 3, 3)."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     ahead = unit((target - eye)[None])[0]
     right = unit(np.cross(ahead, [0.0, 0.0, 1.0])[None])[0]
@@ -117,7 +121,9 @@ def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
 
 
 def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
-    """What the sun sees: the axes (3, 3) of its view, the scale and offset (3,) of its map, the map of distances."""
+    """Compute the shadow map, what the sun sees: the axes (3, 3) of its view, the scale and offset
+    (3,) of its map, the map of distances.
+    """
     side = unit(np.cross(SUN, np.array([0.0, 0.0, 1.0])))
     frame = np.stack([side, np.cross(SUN, side), -SUN], axis=1)
     raised = corners[corners[:, :, 2].max(axis=1) > 0.001]  # the floor throws no shadow
@@ -186,7 +192,9 @@ def _shade(
     shadows,
     pixels,
 ):
-    """Colours of pixels from the triangles that they see: some light from everywhere, some from above, the sun's."""
+    """Shade pixels by the triangles that they see: some light from everywhere, some from above, the
+    sun's.
+    """
     rows, columns = ids.shape
     last = shadows.shape[0] - 1
     point, normal = np.zeros(3), np.zeros(3)

@@ -40,7 +40,8 @@ class Shot:
 
 
 def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -> tuple[Shot, ...]:
-    """The samples of a plan file's record, and the poses and grasps that the plan itself has.
+    """Collect the samples of a plan file's record, and the poses and grasps that the plan itself
+    has.
 
     Raises:
         InputError: The record is not what the format says.

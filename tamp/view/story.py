@@ -1,4 +1,6 @@
-"""How a plan was found, for a panel: what was searched, which streams were asked, where the time went."""
+"""Summary of how a plan was found, for a panel: what was searched, which streams were asked, where
+the time went.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,7 @@ class Story:
 
 
 def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
-    """What a plan file, or the summary of a run that found no plan, tells of the run.
+    """Summarize what a plan file, or the summary of a run that found no plan, tells of the run.
 
     Args:
         document: Their content.
