@@ -31,8 +31,8 @@ class Generate:
     out: Path | None = None
     """The file; by default data/RELATION_SPLIT.npz."""
     meshes: Path | None = None
-    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
-    For training and test take different ones."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes:
+    they join the objects. For training and test take different ones."""
     mesh_scale: float = 1.0
     """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
@@ -41,21 +41,25 @@ class Generate:
 
 @dataclass(frozen=True)
 class Explore:
-    """Make labelled scenes by trying poses out in physics; an interrupted run goes on where it was."""
+    """Make labelled scenes by trying poses in physics; an interrupted run goes on where it was."""
 
     relation: Annotated[str, tyro.conf.Positional]
     """on or inside."""
     count: int = 1000
     """Scenes; in half of them the relation came to hold."""
     model: Path | None = None
-    """Weights of a grounding that proposes half of the poses, moved at random; by default all poses are random."""
+    """Weights of a grounding that proposes half of the poses, moved at random; by default all poses
+    are random.
+    """
     seed: int = 0
     """Of all randomness: the same seed gives the same bytes."""
     out: Path | None = None
-    """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION --data FILE."""
+    """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION
+    --data FILE.
+    """
     meshes: Path | None = None
-    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
-    For training and test take different ones."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes:
+    they join the objects. For training and test take different ones."""
     mesh_scale: float = 1.0
     """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
@@ -69,14 +73,16 @@ class Collect:
     relation: Annotated[str, tyro.conf.Positional]
     """Any name."""
     files: Annotated[tuple[Path, ...], tyro.conf.Positional]
-    """Problem files, or folders of them. Their goals say what holds in them: (RELATION BODY PLACE), or (not (...))."""
+    """Problem files, or folders of them. Their goals say what holds in them: (RELATION BODY PLACE),
+    or (not (...)).
+    """
     out: Path | None = None
     """The file; by default data/RELATION_train.npz."""
 
 
 @dataclass(frozen=True)
 class Encoder:
-    """Train an encoder of point clouds, which the models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
+    """Train an encoder of point clouds, as models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
 
     relation: Annotated[str, tyro.conf.Positional]
     """on or inside, or one's own."""
@@ -105,7 +111,9 @@ class Train:
     model: str = "transfer"
     """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
     scheme: str | None = None
-    """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by default both."""
+    """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by
+    default both.
+    """
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -127,7 +135,9 @@ class Evaluate:
     weights: Annotated[str, tyro.conf.Positional]
     """A weight file (.safetensors), or RELATION=NAME of what ships, such as on=surface."""
     model: str | None = None
-    """What to make of the weights; by default what they were trained as. uniform+mlp is made of those of mlp-bb."""
+    """What to make of the weights; by default what they were trained as. uniform+mlp is made of
+    those of mlp-bb.
+    """
     data: Path | None = None
     """The data set; by default data/RELATION_test.npz of the weights' relation."""
     scenes: int | None = None

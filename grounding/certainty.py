@@ -57,7 +57,8 @@ def no_better_than_chance(
 
     Args:
         holds: The labels, shape (n,).
-        fit: Trains on the rows of its first argument, and returns what it says of those of the second one.
+        fit: Trains on the rows of its first argument, and returns what it says of those of the
+            second one.
     """
     said = np.zeros(len(holds), dtype=bool)
     fold = np.zeros(len(holds), dtype=np.intp)
@@ -81,7 +82,10 @@ def chance(holds: Labels, said: Labels) -> str | None:
     if np.mean(recalls) > 0.5 + 2 * error:
         return None
     yes, no = (f"{100 * share:.0f} %" for share in recalls)
-    return f"it is no better than chance: right about {yes} of the positive labels and {no} of the negative ones"
+    return (
+        f"it is no better than chance: right about {yes} of the positive labels "
+        f"and {no} of the negative ones"
+    )
 
 
 def _needed() -> str:

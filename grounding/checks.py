@@ -34,7 +34,9 @@ COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "size": ("f", (3,)),
     "box": ("f", (2, 3)),
 }
-"""Of each array with a row a scene: b for truth values, i for integers, f for numbers, and the shape of a row."""
+"""Of each array with a row a scene: b for truth values, i for integers, f for numbers, and the
+shape of a row.
+"""
 
 PARTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "part_template": ("i", ()),
@@ -209,7 +211,8 @@ def _check(
     if array.ndim != 1 + len(row) or array.shape[1:] != tuple(row):
         wanted = "rows" if not row else f"rows of shape {'x'.join(map(str, row))}"
         raise InputError(
-            f"array '{name}' has shape {'x'.join(map(str, array.shape)) or 'of one number'}, not {wanted}"
+            f"array '{name}' has shape {'x'.join(map(str, array.shape)) or 'of one number'}, "
+            f"not {wanted}"
         )
     if length is not None and len(array) != length:
         other = "holds" if name in COLUMNS else "part_template"

@@ -1,4 +1,6 @@
-"""Data sets made by many processes, a chunk at a time: resumable, and the same bytes for the same job."""
+"""Data sets made by many processes, a chunk at a time: resumable, and the same bytes for the same
+job.
+"""
 
 from __future__ import annotations
 
@@ -82,7 +84,8 @@ class Job(Protocol):
     def chunk(self, number: int, start: int, size: int) -> Sequence[Made]:
         """Make `size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
 
-        They depend on nothing else but the job, and not on the size: it only says after how many to stop.
+        They depend on nothing else but the job, and not on the size: it only says after how many to
+        stop.
         """
         ...
 
@@ -94,7 +97,8 @@ class Job(Protocol):
 def make_dataset(
     job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
 ) -> Dataset:
-    """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made is used.
+    """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made
+    is used.
 
     Args:
         job: What to make.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -21,14 +20,21 @@ from grounding.arguments import (
     parsed,
 )
 from grounding.certainty import cannot_tell
+from grounding.cli_files import (
+    check_out,
+    encoder_file,
+    files_below,
+    mesh_files,
+    read_data,
+    with_card,
+)
 from grounding.dataset import FORMAT as DATA
-from grounding.dataset import Dataset, read_dataset, write_dataset
+from grounding.dataset import write_dataset
 from grounding.mesh_folder import MeshFolder, read_folder
 from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
-from tamp.system.outputs import check_outputs, check_writable
 from tamp.system.progress import Progress
 from tamp.system.terminal import spoken
 
@@ -82,7 +88,7 @@ def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
-    _check_out(out, DATA, _mesh_files(chosen))
+    check_out(out, DATA, mesh_files(chosen))
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
     data = generate(
         job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
@@ -95,14 +101,15 @@ def _explore(chosen: Explore) -> None:
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
-    _check_out(out, DATA, [*_mesh_files(chosen), *_with_card(chosen.model)])
+    check_out(out, DATA, [*mesh_files(chosen), *with_card(chosen.model)])
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
     data = explore(
         job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
     )
     _show("", last=True)
     print(
-        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}"
+        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, "
+        f"{data.card['by type']}"
     )
 
 
@@ -110,8 +117,8 @@ def _collect(chosen: Collect) -> None:
     from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
-    _check_out(
-        out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))]
+    check_out(
+        out, DATA, [file for path in chosen.files for file in (path, *files_below(path, "*.yaml"))]
     )
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
     for text in (*unsteady(data), *monotony(data)):
@@ -121,9 +128,9 @@ def _collect(chosen: Collect) -> None:
 
 
 def _encoder(chosen: Encoder) -> None:
-    out = chosen.out or _encoder_file(chosen.relation)
-    _check_out(out, WEIGHTS, _with_card(chosen.data or data_file(chosen.relation, "train")))
-    data = _data(chosen.data, chosen.relation, "train")
+    out = chosen.out or encoder_file(chosen.relation)
+    check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
+    data = read_data(chosen.data, chosen.relation, "train")
     try:
         from grounding.paper.encoders import Args, train_encoder
     except ImportError as error:
@@ -156,9 +163,9 @@ def _train(chosen: Train) -> None:
     if (
         encoder is None
         and chosen.model in OPTIONS["encoder"]
-        and _encoder_file(chosen.relation).is_file()
+        and encoder_file(chosen.relation).is_file()
     ):
-        encoder = _encoder_file(chosen.relation)
+        encoder = encoder_file(chosen.relation)
     args = TrainArgs(
         samples=chosen.samples,
         seed=chosen.seed,
@@ -169,9 +176,9 @@ def _train(chosen: Train) -> None:
         commit=_commit(),
     )
     check(chosen.relation, chosen.model, args)
-    read = [*_with_card(chosen.data or data_file(chosen.relation, "train")), *_with_card(encoder)]
-    _check_out(out, WEIGHTS, read, args.state)
-    data = _data(chosen.data, chosen.relation, "train")
+    read = [*with_card(chosen.data or data_file(chosen.relation, "train")), *with_card(encoder)]
+    check_out(out, WEIGHTS, read, args.state)
+    data = read_data(chosen.data, chosen.relation, "train")
     file = chosen.data or data_file(chosen.relation, "train")
     for text in monotony(data, chosen.samples):
         print(f"warning: {file}: {text}", file=sys.stderr)
@@ -203,7 +210,7 @@ def _evaluate(chosen: Evaluate) -> None:
     else:
         model = load_model(Path(chosen.weights), chosen.model)
         relation = str(read_weights(Path(chosen.weights)).card.get("relation"))
-    data = _data(chosen.data, relation, "test")
+    data = read_data(chosen.data, relation, "test")
     found = evaluate(
         model,
         data,
@@ -232,54 +239,6 @@ def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
     for text in read_folder(folder).warnings:
         print(f"warning: {text}", file=sys.stderr)
     return folder
-
-
-def _data(path: Path | None, relation: str, split: str) -> Dataset:
-    path = path or data_file(relation, split)
-    data = read_dataset(path)
-    if data.relation != relation:
-        raise InputError(f"the data are about '{data.relation}', not '{relation}'", file=path)
-    return data
-
-
-def _with_card(path: Path | None) -> list[Path]:
-    """Return the path of a file of data or weights, and that of its card."""
-    return [] if path is None else [path, path.with_suffix(".json")]
-
-
-def _below(folder: Path, pattern: str) -> list[Path]:
-    return sorted(folder.rglob(pattern)) if os.path.isdir(folder) else []
-
-
-def _mesh_files(chosen: Generate | Explore) -> list[Path]:
-    return (
-        []
-        if chosen.meshes is None
-        else [file for file in _below(chosen.meshes, "*") if os.path.isfile(file)]
-    )
-
-
-def _check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:
-    """Refuse an output that cannot be written, or that (or whose card) would take the place of something else.
-
-    Raises:
-        InputError: As for `check_writable` and `check_outputs`, or the .json beside it is no card of this form.
-    """
-    card = out.with_suffix(".json")
-    for path in (out, card):
-        check_writable(path)
-    try:
-        found = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {"format": form}
-    except (OSError, ValueError, RecursionError):
-        found = None  # no card at all
-    if not isinstance(found, dict) or found.get("format") != form:
-        what = f"the card of {out.name} would overwrite it"
-        raise InputError(what, file=card, remedy="Choose another name with --out")
-    check_outputs({"--out": out, "the card of --out": card, "what is kept to go on": state}, read)
-
-
-def _encoder_file(relation: str) -> Path:
-    return Path("weights") / f"{relation}_encoder.safetensors"
 
 
 def _missing(error: ImportError) -> InputError:

@@ -1,4 +1,6 @@
-"""Demonstrations of a relation of one's own: scenes as problem files, with what holds in them as their goal."""
+"""Demonstrations of a relation of one's own: scenes as problem files, with what holds in them as
+their goal.
+"""
 
 from __future__ import annotations
 
@@ -55,8 +57,8 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
         demonstrations: In the order in which `--samples` takes them.
 
     Raises:
-        InputError: There are none, arguments that are not a body and a surface or container of another one, or the
-            same situation is said to hold and not to hold.
+        InputError: There are none, arguments that are not a body and a surface or container of
+            another one, or the same situation is said to hold and not to hold.
     """
     sources: list[str] = []
     rows: list[tuple[bool, Region, list[tuple[int, Array]]]] = []
@@ -120,7 +122,8 @@ def unsteady(data: Dataset) -> list[str]:
             found[entry] += 1
             first.setdefault(entry, data.sources[row] if data.sources else f"row {row}")
     return [
-        f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): no plan will put it down so"
+        f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): "
+        f"no plan will put it down so"
         for (name, what), count in found.items()
     ]
 
@@ -134,8 +137,8 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
         files: Problem files; of a folder all its .yaml files.
 
     Raises:
-        InputError: A file is no problem, or its goal says nothing of the relation, or what it says is not about a body
-            and a surface or container.
+        InputError: A file is no problem, or its goal says nothing of the relation, or what it says
+            is not about a body and a surface or container.
     """
     for path in _files(files):
         loaded = load_scene(path)

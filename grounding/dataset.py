@@ -1,6 +1,7 @@
 """Labelled situations on disk: NAME.npz with the scenes, NAME.json, the card, with what is in them.
 
-A data set is self-contained: it carries the geometry of its bodies, so that nothing else is needed to train on it.
+A data set is self-contained: it carries the geometry of its bodies, so that nothing else is needed
+to train on it.
 """
 
 from __future__ import annotations
@@ -54,14 +55,16 @@ class Dataset:
     """A sequence of examples, made when they are asked for.
 
     Args:
-        examples: As many rows of each array: `holds`, `kind`, `body` (n, b), -1 for none, `scale` (n, b), `pose`
-            (n, b, 4, 4), and the region's `hollow`, `region` (n, 4, 4), `size` (n, 3), `box` (n, 2, 3).
+        examples: As many rows of each array: `holds`, `kind`, `body` (n, b), -1 for none, `scale`
+            (n, b), `pose` (n, b, 4, 4), and the region's `hollow`, `region` (n, 4, 4), `size` (n,
+            3), `box` (n, 2, 3).
         templates: Name to the parts of a body of scale 1.
         kinds: The names of the types of samples.
         card: Relation, seed, commit, counts, splits.
 
     Attributes:
-        sources: Where each row is from, for messages, as far as that is known: "lying.yaml:9"; it is not written.
+        sources: Where each row is from, for messages, as far as that is known: "lying.yaml:9"; it
+            is not written.
     """
 
     def __init__(
@@ -166,8 +169,8 @@ def read_dataset(path: Path) -> Dataset:
     """Read the data set at `path`.
 
     Raises:
-        InputError: A file is missing, damaged or of another format, the two do not belong together, or an array is not
-            what it should be; then with the array and its row.
+        InputError: A file is missing, damaged or of another format, the two do not belong together,
+            or an array is not what it should be; then with the array and its row.
     """
     remedy = "Generate it again: tamp-learn generate --help, or collect it again"
     pair = read_pair(path, FORMAT, what="data set", most=MOST_BYTES, remedy=remedy)

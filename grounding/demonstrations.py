@@ -1,4 +1,6 @@
-"""Labelled scenes from physics: the paper's sample types (section III-E), settled and checked against true geometry."""
+"""Labelled scenes from physics: the paper's sample types (section III-E), settled and checked
+against true geometry.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,31 @@ Kinds = Mapping[str, float]
 
 KINDS: Mapping[str, Kinds] = {
     "on": {
-        "alone": 0.1, "among others": 0.4, "afloat": 0.075, "on the ground": 0.05, "above": 0.075, "sunken": 0.05,
-        "in the middle": 0.075, "on another support": 0.05, "colliding": 0.125,
+        "alone": 0.1,
+        "among others": 0.4,
+        "afloat": 0.075,
+        "on the ground": 0.05,
+        "above": 0.075,
+        "sunken": 0.05,
+        "in the middle": 0.075,
+        "on another support": 0.05,
+        "colliding": 0.125,
     },
     "inside": {
-        "alone": 0.1, "among others": 0.4, "afloat": 0.05, "on the ground": 0.05, "above": 0.075, "sunken": 0.075,
-        "on another support": 0.05, "colliding": 0.1, "sticking out": 0.1,
+        "alone": 0.1,
+        "among others": 0.4,
+        "afloat": 0.05,
+        "on the ground": 0.05,
+        "above": 0.075,
+        "sunken": 0.075,
+        "on another support": 0.05,
+        "colliding": 0.1,
+        "sticking out": 0.1,
     },
-}  # fmt: skip
-"""The share of each type of sample (LEARNING.md, section 1); the first two hold, the others do not."""
+}
+"""The share of each type of sample (LEARNING.md, section 1); the first two hold, the
+others do not.
+"""
 
 POSITIVE = ("alone", "among others")
 

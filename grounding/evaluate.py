@@ -29,7 +29,8 @@ class Evaluation:
         scenes: How many.
         mca: Success by the paper's oracle, of the one pose returned.
         settled: Success in physics.
-        feasible: The share of scenes in which a placement was found at all, by the data's maker or by the model.
+        feasible: The share of scenes in which a placement was found at all, by the data's maker or
+            by the model.
         accuracy: Of the classifier, at the scenes' own poses; None when it has none.
         failures: How the failures failed in physics, shares by verdict.
         mca_failures: How they failed by the paper's oracle.
@@ -53,7 +54,8 @@ def evaluate(
     seed: int = 0,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Evaluation:
-    """Ask for one pose in each scene, and judge it by both oracles; the planner's collision test takes no part.
+    """Ask for one pose in each scene, and judge it by both oracles; the planner's collision test
+    takes no part.
 
     Args:
         model: The grounding.

@@ -1,9 +1,10 @@
-"""Data from exploration: poses proposed without knowing what holds, tried in physics, labelled by what happened.
+"""Data from exploration: poses proposed without knowing what holds, tried in physics, labelled by
+what happened.
 
-A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is let go at each: it
-stays, or it falls and may come to rest where the relation holds after all. What came to rest is then moved a little or
-a lot, or slid elsewhere, and tried again, which finds where the relation ends. One trial of a scene is kept, success
-and failure in turn.
+A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is
+let go at each: it stays, or it falls and may come to rest where the relation holds after all. What
+came to rest is then moved a little or a lot, or slid elsewhere, and tried again, which finds where
+the relation ends. One trial of a scene is kept, success and failure in turn.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.drop import Drops
 
 STAYED, RESTED = "stayed", "came to rest"
-"""How a relation can come to hold: the body stayed where it was put, or it fell and lies where it holds too."""
+"""How a relation can come to hold: the body stayed where it was put, or it fell and lies where it
+holds too.
+"""
 
 KINDS = (STAYED, RESTED, *(verdict.value for verdict in Verdict if verdict is not Verdict.HOLDS))
 """The types of samples: the failures are those of `settled`."""
@@ -44,13 +47,19 @@ DRAWN, MOVED, SLID = 12, 6, 8
 """Poses that are drawn in a scene, that one which was found is moved to, and that it is slid to."""
 
 CROWDED = 0.8
-"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive samples)."""
+"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive
+samples).
+"""
 
 FARTHEST, STEEPEST = 0.3, 1.0
-"""Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as likely."""
+"""Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as
+likely.
+"""
 
 HARD = 0.75
-"""The share of failures that are taken from poses near one that was found: they show where the relation ends."""
+"""The share of failures that are taken from poses near one that was found: they show where the
+relation ends.
+"""
 
 SECONDS = 2.5
 """For how long a body may fall until it counts as come to rest."""
@@ -163,7 +172,8 @@ class Explorer:
         """Explore a scene: return what happened in it, and how often the body was let go.
 
         Returns:
-            Kinds, poses T_world_body, and whether it was tried because of one that was found; and the number.
+            Kinds, poses T_world_body, and whether it was tried because of one that was found; and
+            the number.
         """
         drawn = np.stack([uniform(scene, rng) for _ in range(DRAWN)])
         if self._model is not None:
@@ -182,9 +192,11 @@ class Explorer:
         return tried, trials
 
     def _try(self, scene: Drawn, poses: Array) -> list[tuple[str, Array]]:
-        """Let the body go at each pose: the failures, and where it came to rest so that the relation holds.
+        """Let the body go at each pose: the failures, and where it came to rest so that the
+        relation holds.
 
-        What came to rest against other bodies is neither: it stays, but is no place to put something.
+        What came to rest against other bodies is neither: it stays, but is no place to put
+        something.
         """
         situation, items = scene.situation(poses[0]), self._scenes.items
         verdicts = settled(situation, poses, self._drops, items)

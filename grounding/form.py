@@ -15,7 +15,9 @@ from tamp.geometric.stability.hulls import body_hull, centre_of_mass
 from tamp.geometric.stability.stable_poses import Face, stable_faces
 
 DIRECTIONS = 128
-"""Directions in which a hull's extreme vertices are kept; more vertices would change no decision."""
+"""Directions in which a hull's extreme vertices are kept; more vertices would change no
+decision.
+"""
 
 FEW = 42
 """The same where speed counts."""
@@ -116,10 +118,16 @@ class Form:
             return tuple(sorted(stable_faces(self._body), key=lambda face: -face.angle))
         s = self.scale
         return tuple(
-            replace(face, height=face.height * s, extent=face.extent * s, outline=face.outline * s, base=face.base * s,
-                    centre=face.centre * s)
+            replace(
+                face,
+                height=face.height * s,
+                extent=face.extent * s,
+                outline=face.outline * s,
+                base=face.base * s,
+                centre=face.centre * s,
+            )
             for face in self._unit.faces
-        )  # fmt: skip
+        )
 
     @cached_property
     def piece_boxes(self) -> Array:

@@ -1,4 +1,6 @@
-"""Data sets of demonstrations: the paper's sample types in their shares, half of the scenes positive."""
+"""Data sets of demonstrations: the paper's sample types in their shares, half of the scenes
+positive.
+"""
 
 from __future__ import annotations
 

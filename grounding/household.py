@@ -1,4 +1,6 @@
-"""Procedural household shapes with sizes as in the YCB set: boxes, cans, bottles, mugs, bowls and others."""
+"""Procedural household shapes with sizes as in the YCB set: boxes, cans, bottles, mugs, bowls and
+others.
+"""
 
 from __future__ import annotations
 
@@ -91,8 +93,11 @@ def dumbbell(rng: Random) -> tuple[Part, ...]:
 def wedge(rng: Random) -> tuple[Part, ...]:
     """Make a wedge: a prism with a triangular side, such as a piece of cheese."""
     x, y, z = (float(v) for v in rng.uniform([0.05, 0.06, 0.04], [0.1, 0.14, 0.09]))
-    corners = np.array([[-x / 2, s * y / 2, 0.0] for s in (-1, 1)] + [[x / 2, s * y / 2, 0.0] for s in (-1, 1)]
-                       + [[-x / 4, s * y / 2, z] for s in (-1, 1)])  # fmt: skip
+    corners = np.array(
+        [[-x / 2, s * y / 2, 0.0] for s in (-1, 1)]
+        + [[x / 2, s * y / 2, 0.0] for s in (-1, 1)]
+        + [[-x / 4, s * y / 2, z] for s in (-1, 1)]
+    )
     return (Part(hull(corners)),)
 
 
@@ -107,9 +112,17 @@ def tapered(rng: Random) -> tuple[Part, ...]:
 
 
 SHAPES: Mapping[str, Callable[[Random], tuple[Part, ...]]] = {
-    "box": box, "can": can, "bottle": bottle, "mug": mug, "bowl": bowl, "bracket": bracket, "dumbbell": dumbbell,
-    "wedge": wedge, "tapered": tapered, "ball": ball,
-}  # fmt: skip
+    "box": box,
+    "can": can,
+    "bottle": bottle,
+    "mug": mug,
+    "bowl": bowl,
+    "bracket": bracket,
+    "dumbbell": dumbbell,
+    "wedge": wedge,
+    "tapered": tapered,
+    "ball": ball,
+}
 """Makers by name: each draws one shape of its kind."""
 
 YCB: Mapping[str, tuple[Part, ...]] = {

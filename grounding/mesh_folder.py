@@ -1,4 +1,6 @@
-"""A folder of one's own meshes, one a subfolder as the YCB set comes, or one a file: objects to make data with."""
+"""A folder of one's own meshes, one a subfolder as the YCB set comes, or one a file: objects to
+make data with.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ SMALLEST, LARGEST = 0.02, 0.28
 """Metres: what is smaller or larger is not moved by a hand."""
 
 SUFFIXES = (".urdf", ".obj", ".stl", ".ply")
-"""Of meshes; where a subfolder has several, the first of these, since a PLY may be a cloud of points."""
+"""Of meshes; where a subfolder has several, the first of these, since a PLY may be a cloud of
+points.
+"""
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,8 @@ def read_folder(folder: MeshFolder) -> Loaded:
     each mesh beside them.
 
     Raises:
-        InputError: There is no such folder, it has no meshes, one of them is no mesh, or none is usable.
+        InputError: There is no such folder, it has no meshes, one of them is no mesh, or none is
+            usable.
     """
     files = _files(folder.path)
     if not files:
@@ -97,7 +102,10 @@ def unusable(parts: tuple[Part, ...]) -> str | None:
     form = Form(parts)
     size = float(np.ptp(form.corners, axis=0).max())
     if not SMALLEST < size < LARGEST:
-        return f"it is {size:.3g} m large, and not between {SMALLEST} and {LARGEST} m; --mesh-scale makes it metres"
+        return (
+            f"it is {size:.3g} m large, and not between {SMALLEST} and {LARGEST} m; "
+            f"--mesh-scale makes it metres"
+        )
     return None if form.faces else "it rests on no face"
 
 

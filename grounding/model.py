@@ -11,14 +11,17 @@ from tamp.geometric.scene.pose import Array
 
 
 class Model(Protocol):
-    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n, 4, 4)."""
+    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n,
+    4, 4).
+    """
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
         """Propose at most `count` poses, the best first, shape (n, 4, 4); none when it knows of no
         way.
 
         Args:
-            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models, where it starts.
+            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models,
+                where it starts.
             count: How many are wanted.
             rng: The only source of randomness.
         """

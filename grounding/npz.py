@@ -1,4 +1,6 @@
-"""Arrays out of a .npz file that is not to be trusted: sizes and types are looked at before anything is unpacked."""
+"""Arrays out of a .npz file that is not to be trusted: sizes and types are looked at before
+anything is unpacked.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +40,8 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
     """Unpack the arrays of a .npz file, as `numpy.savez` writes it.
 
     Raises:
-        InputError: It is none; an array is of objects or text, claims what is not there, or all are too large. The
-            message names the array.
+        InputError: It is none; an array is of objects or text, claims what is not there, or all are
+            too large. The message names the array.
     """
     _check_end(content)
     try:
@@ -48,7 +50,8 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
             total = sum(member.file_size for member in members)
             if total > MOST_BYTES:
                 raise InputError(
-                    f"its arrays take {total / 1e6:,.0f} MB, at most {MOST_BYTES / 1e6:,.0f} are read"
+                    f"its arrays take {total / 1e6:,.0f} MB, "
+                    f"at most {MOST_BYTES / 1e6:,.0f} are read"
                 )
             return dict(_member(archive, member) for member in members)
     except (

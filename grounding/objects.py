@@ -1,5 +1,5 @@
-"""The objects that data are made with: household shapes, pybullet's meshes, a folder of one's own. Training and test
-objects are disjoint.
+"""The objects that data are made with: household shapes, pybullet's meshes, a folder of one's own.
+Training and test objects are disjoint.
 """
 
 from __future__ import annotations

@@ -50,9 +50,10 @@ def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
     """Judge poses T_world_body, shape (n, 4, 4), by the paper's manual classification accuracy
     (section IV-B).
 
-    `on`: the bottom of the box around the body within NEAR of the surface, the box's centre above the surface.
-    `inside`: the box around the body, along the container's axes, in the container's box up to SLACK. Both: no
-    collision with the surrounding bodies, for which the paper asks a simulator and we their convex hulls.
+    `on`: the bottom of the box around the body within NEAR of the surface, the box's centre above
+    the surface. `inside`: the box around the body, along the container's axes, in the container's
+    box up to SLACK. Both: no collision with the surrounding bodies, for which the paper asks a
+    simulator and we their convex hulls.
     """
     return np.array(
         [verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool

@@ -1,8 +1,10 @@
-"""A file of numbers and its card, NAME.json, which says what they are: two files that belong together.
+"""A file of numbers and its card, NAME.json, which says what they are: two files that belong
+together.
 
-The card holds the hash of its file. Of a new pair the card is written beside the old one first, under a name of its
-own; then the file takes its place, and then the card. So whoever is killed leaves the old pair, or the new one: a file
-whose card has not yet taken its place is read with the one that waits.
+The card holds the hash of its file. Of a new pair the card is written beside the old one first,
+under a name of its own; then the file takes its place, and then the card. So whoever is killed
+leaves the old pair, or the new one: a file whose card has not yet taken its place is read with the
+one that waits.
 """
 
 from __future__ import annotations
@@ -61,7 +63,8 @@ class Pair:
     Attributes:
         content: The file's bytes.
         card: The card, without the hash.
-        stranger: The error when the card is that of another file; to be raised once the file itself was found sound.
+        stranger: The error when the card is that of another file; to be raised once the file itself
+            was found sound.
     """
 
     content: bytes
@@ -80,7 +83,8 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
         remedy: How to make it anew.
 
     Raises:
-        InputError: A file is missing, too large or no file; the card is damaged or of another format.
+        InputError: A file is missing, too large or no file; the card is damaged or of another
+            format.
     """
     beside = path.with_suffix(".json")
     for file in (path, beside):
@@ -97,7 +101,10 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
         card = _card(beside, form, remedy)
     if card.pop(HASH, digest) == digest:
         return Pair(content, card)
-    message = f"{path.name} and its card do not belong together: one of them was changed or is another one's"
+    message = (
+        f"{path.name} and its card do not belong together: "
+        f"one of them was changed or is another one's"
+    )
     meant = f"{remedy}; if it was changed on purpose, take '{HASH}' out of the card"
     return Pair(content, card, InputError(message, file=beside, remedy=meant))
 

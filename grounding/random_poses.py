@@ -1,4 +1,4 @@
-"""Random poses of bodies: at rest, on the ground, in the air; T_frame_body, shape (4, 4), metres."""
+"""Random poses of bodies: at rest, on the ground, in the air; T_frame_body (4, 4), metres."""
 
 from __future__ import annotations
 

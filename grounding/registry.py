@@ -89,8 +89,8 @@ def load_model(path: Path, model: str | None = None) -> Model:
         model: Which model to make of it; by default the one that the card names.
 
     Raises:
-        InputError: The file is missing, damaged, or of a model that this version does not know; or the model asked for
-            is not made of such weights.
+        InputError: The file is missing, damaged, or of a model that this version does not know; or
+            the model asked for is not made of such weights.
     """
     weights = read_weights(path)
     trained = str(weights.card.get("model"))
@@ -121,7 +121,8 @@ def shipped_model(relation: str, name: str) -> Model:
     """Load the model of a name, of the weights that ship, or of none where it needs none.
 
     Raises:
-        InputError: An unknown relation or name, or weights that do not ship; then how to train them.
+        InputError: An unknown relation or name, or weights that do not ship; then how to train
+            them.
     """
     if relation not in RELATIONS:
         raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS)
@@ -135,7 +136,8 @@ def shipped_model(relation: str, name: str) -> Model:
     model = VARIANTS.get(name, name)
     if not path.is_file():
         scheme = f" --scheme {name.rpartition('-')[2]}" if name in VARIANTS else ""
-        remedy = f"Train it: tamp-learn train {relation} --model {BORROWED.get(model, model)}{scheme} --out {path}"
+        trained = BORROWED.get(model, model)
+        remedy = f"Train it: tamp-learn train {relation} --model {trained}{scheme} --out {path}"
         raise InputError(f"no weights of '{name}' for '{relation}' are shipped", remedy=remedy)
     return load_model(path, model)
 
@@ -188,8 +190,9 @@ GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
     },
     ANY: {".safetensors": file_grounding},
 }
-"""Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler on=FILE.safetensors` mean.
+"""Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler
+on=FILE.safetensors` mean.
 
-`surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for it says so and how to
-train them.
+`surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for
+it says so and how to train them.
 """

@@ -1,4 +1,6 @@
-"""Trained groundings as the planner calls them: a scene and names in, world poses or a probability out. Numpy only."""
+"""Trained groundings as the planner calls them: a scene and names in, world poses or a probability
+out. Numpy only.
+"""
 
 from __future__ import annotations
 

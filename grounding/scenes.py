@@ -1,4 +1,6 @@
-"""Random scenes to put a body into: a support or container, another support, and bodies on, in and around them."""
+"""Random scenes to put a body into: a support or container, another support, and bodies on, in and
+around them.
+"""
 
 from __future__ import annotations
 

@@ -56,8 +56,8 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     """Compute signed distances along the best of some axes, metres: a lower bound of the distance,
     negative when hulls overlap.
 
-    The axes are both bodies' own, the vertical, and the line between the centres: exact for boxes that stand upright
-    and for cylinders beside each other, a little pessimistic at corners.
+    The axes are both bodies' own, the vertical, and the line between the centres: exact for boxes
+    that stand upright and for cylinders beside each other, a little pessimistic at corners.
 
     Args:
         form: The body that is placed.
@@ -84,8 +84,8 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
 
 
 @njit(
-    "void(float64[:,::1], float64[:,::1], float64[:,:,::1], float64[:,:,::1], int64[::1], float64[:,:,::1],"
-    "float64[:,:,:], float64[:,::1], float64[:,::1], float64[:,::1])",
+    "void(float64[:,::1], float64[:,::1], float64[:,:,::1], float64[:,:,::1], "
+    "int64[::1], float64[:,:,::1], float64[:,:,:], float64[:,::1], float64[:,::1], float64[:,::1])",
     cache=True,
 )
 def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):

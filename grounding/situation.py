@@ -17,7 +17,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Part, Scene, Surface
 
 SURROUNDINGS = 1.0
-"""Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section IV-B), metres."""
+"""Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section
+IV-B), metres.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,10 +51,13 @@ class Region:
 
     Attributes:
         hollow: Whether it is a cavity; else a surface.
-        matrix: T_support_region: the middle of the surface or of the cavity's floor, z up, shape (4, 4).
-        size: x, y and free height in metres, shape (3,); the height above an open surface is infinite.
-        box: The argument's box in the support's frame, low and high corner, shape (2, 3): under a surface all of the
-            support down to its foot; around a cavity the whole container, or its compartment of several.
+        matrix: T_support_region: the middle of the surface or of the cavity's floor, z up, shape
+            (4, 4).
+        size: x, y and free height in metres, shape (3,); the height above an open surface is
+            infinite.
+        box: The argument's box in the support's frame, low and high corner, shape (2, 3): under a
+            surface all of the support down to its foot; around a cavity the whole container, or its
+            compartment of several.
     """
 
     hollow: bool

@@ -1,4 +1,6 @@
-"""Furniture that data are made with: what things stand on, and what they stand in. Training and test pieces differ."""
+"""Furniture that data are made with: what things stand on, and what they stand in. Training and
+test pieces differ.
+"""
 
 from __future__ import annotations
 

@@ -21,11 +21,13 @@ DEPTH = 0.001
 
 
 class SurfaceModel:
-    """Draws as the planner's hand-made sampler does (`tamp.geometric.samplers.placements`), and judges by geometry."""
+    """Draws as the planner's hand-made sampler does (`tamp.geometric.samplers.placements`), and
+    judges by geometry.
+    """
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: a stable face down, flush, whole inside the region where it fits; bodies around
-        are not looked at. None when no stable face fits under the ceiling.
+        """`count` poses, in no order: a stable face down, flush, whole inside the region where it
+        fits; bodies around are not looked at. None when no stable face fits under the ceiling.
         """
         region = situation.region
         faces = [

@@ -24,7 +24,9 @@ from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
 RANKS_FROM = 100
-"""Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md, section 3)."""
+"""Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md,
+section 3).
+"""
 
 NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
 
@@ -53,8 +55,8 @@ class TrainArgs:
         samples: How many scenes of the data set; None for all.
         seed: Of initial weights and batches.
         demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
-        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier or both; None for
-            both.
+        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier
+            or both; None for both.
         iterations: Of the paper's networks; None for the paper's 30,000.
         encoder: Weights of an encoder of clouds, which the models on clouds need.
         state: Where an interrupted training of the paper's networks goes on from, and is saved.
@@ -83,7 +85,8 @@ def train(
         progress: Told how far it is.
 
     Raises:
-        InputError: An unknown model or one that is not trained, an option that it has not, scenes that do not serve.
+        InputError: An unknown model or one that is not trained, an option that it has not, scenes
+            that do not serve.
         ImportError: What it is trained with is not installed.
     """
     check(data.relation, model, args)
@@ -204,7 +207,10 @@ def _certainty(
         if len(labels) < MANY:
             why = no_better_than_chance(labels, fit)
         elif score is not None and score <= max(labels.mean(), 1 - labels.mean()):
-            why = f"on labels that it was not shown it is right about {100 * score:.0f} %, as saying the same always is"
+            why = (
+                f"on labels that it was not shown it is right about {100 * score:.0f} %, "
+                "as saying the same always is"
+            )
     return {"classifies": ranks and why is None, **({REASON: why} if why else {})}
 
 

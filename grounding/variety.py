@@ -39,13 +39,15 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
     rows = np.flatnonzero(holds)
     if not len(rows):
         return [
-            f"'{data.relation}' holds in none of the {used:,} scenes: there is nothing to learn from"
+            f"'{data.relation}' holds in none of the {used:,} scenes: "
+            f"there is nothing to learn from"
         ]
 
     found: list[str] = []
     if holds.all():
         found.append(
-            f"'{data.relation}' holds in every scene ({used:,}): what it is not cannot be learned from them. "
+            f"'{data.relation}' holds in every scene ({used:,}): "
+            f"what it is not cannot be learned from them. "
             f"Say it in some: goal: (not ({data.relation} BODY PLACE))"
         )
     if len(rows) == 1:
@@ -58,7 +60,8 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
         if values is not None:
             shown = ", ".join(f"{value + 0.0:.3g}" for value in np.round(np.atleast_1d(values), 3))
             found.append(
-                f"in all {len(rows):,} scenes in which '{data.relation}' holds {name} is the same ({shown}): "
+                f"in all {len(rows):,} scenes in which '{data.relation}' holds "
+                f"{name} is the same ({shown}): "
                 "whether it matters cannot be learned from them. Vary it"
             )
     return found
@@ -82,7 +85,8 @@ def _key(data: Dataset, row: int) -> bytes:
     names = tuple(data.templates)
     there = np.flatnonzero(a["body"][row] >= 0)
     bodies = [
-        f"{names[a['body'][row, index]]} {_rounded(a['scale'][row, index])} {_rounded(a['pose'][row, index])}"
+        f"{names[a['body'][row, index]]} {_rounded(a['scale'][row, index])} "
+        f"{_rounded(a['pose'][row, index])}"
         for index in there
     ]
     place = [

@@ -1,4 +1,6 @@
-"""Weights on disk: NAME.safetensors with the numbers, NAME.json, the card, which says what they are."""
+"""Weights on disk: NAME.safetensors with the numbers, NAME.json, the card, which says what they
+are.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,8 @@ class Weights:
 
 
 def write_weights(path: Path, weights: Weights) -> None:
-    """Write `path` (.safetensors) and its card beside it; a reader sees the old pair or the new one.
+    """Write `path` (.safetensors) and its card beside it; a reader sees the old pair or the new
+    one.
 
     Raises:
         OSError: The folder cannot be made or written.
@@ -59,7 +62,8 @@ def read_weights(path: Path) -> Weights:
     """Read the weights at `path`.
 
     Raises:
-        InputError: A file is missing, damaged, truncated, or not of this format, or the two do not belong together.
+        InputError: A file is missing, damaged, truncated, or not of this format, or the two do not
+            belong together.
     """
     from safetensors import SafetensorError
     from safetensors.numpy import load

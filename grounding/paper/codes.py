@@ -1,4 +1,6 @@
-"""The features of a whole data set's point clouds, encoded in batches: what a body is turned like is in its code."""
+"""The features of a whole data set's point clouds, encoded in batches: what a body is turned like
+is in its code.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,10 @@
-"""One step of the discriminator: Wasserstein's loss with gradient penalty (equation 2), differentiated by hand.
+"""One step of the discriminator: Wasserstein's loss with gradient penalty (equation 2),
+differentiated by hand.
 
-Nine tenths of the training time are steps of the critic. It is piecewise linear, so its gradient with respect to the
-input is a product of its matrices with the ReLUs' masks, and the penalty's gradient with respect to the matrices is one
-more pass through them; the masks do not move. That takes a third of the time of automatic differentiation twice over.
+Nine tenths of the training time are steps of the critic. It is piecewise linear, so its gradient
+with respect to the input is a product of its matrices with the ReLUs' masks, and the penalty's
+gradient with respect to the matrices is one more pass through them; the masks do not move. That
+takes a third of the time of automatic differentiation twice over.
 """
 
 from __future__ import annotations
@@ -19,10 +21,11 @@ def critic_gradient(
 ) -> None:
     """Add the gradient of the mean loss to the critic's.
 
-    With h the activations, m the masks, u the derivative of each score with respect to a layer's output: the loss of
-    real and fake scenes has the derivative h^T u of a matrix, their rows weighted by -1/B and 1/B. At the points x^
-    between them, g = u_0 W_0^T is the input's gradient, and p = penalty * mean (|g| - 1)^2 has dp/dW_k = v_k^T u_k,
-    where v_0 = dp/dg and v_(k+1) = m_k v_k W_k: the same products with v in place of h.
+    With h the activations, m the masks, u the derivative of each score with respect to a layer's
+    output: the loss of real and fake scenes has the derivative h^T u of a matrix, their rows
+    weighted by -1/B and 1/B. At the points x^ between them, g = u_0 W_0^T is the input's gradient,
+    and p = penalty * mean (|g| - 1)^2 has dp/dW_k = v_k^T u_k, where v_0 = dp/dg and v_(k+1) = m_k
+    v_k W_k: the same products with v in place of h.
 
     Args:
         critic: The discriminators; only `main` layers.

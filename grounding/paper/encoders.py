@@ -1,4 +1,6 @@
-"""Auto-encoders of point clouds (section III-B): three encoders, a fully connected decoder, Chamfer's distance."""
+"""Auto-encoders of point clouds (section III-B): three encoders, a fully connected decoder,
+Chamfer's distance.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ from grounding.torch_layers import dense_layers, run_layers
 from tamp.errors import InputError
 
 SCALINGS = ("one", "each")
-"""(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought to that cube."""
+"""(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought
+to that cube.
+"""
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,9 @@ class Args:
 
 
 class Conv(nn.Module):
-    """1D convolutions with kernel 1, 3-64-128-128-256-128, and the largest of each number over the points."""
+    """1D convolutions with kernel 1, 3-64-128-128-256-128, and the largest of each number over the
+    points.
+    """
 
     def __init__(self, points: int) -> None:
         super().__init__()
@@ -168,7 +174,8 @@ def train_encoder(
             if score < best:
                 best, kept = score, _arrays(encoder)
             progress(
-                f"{kind}, scaling {scaling}: {step} of {args.iterations}, Chamfer distance {score:.3e}"
+                f"{kind}, scaling {scaling}: {step} of {args.iterations}, "
+                f"Chamfer distance {score:.3e}"
             )
     kept["scale"], kept["points"] = np.array(factor, np.float32), np.array(args.points, np.float32)
     return kept, best
@@ -176,7 +183,8 @@ def train_encoder(
 
 @dataclass(frozen=True, eq=False)
 class PosedClouds:
-    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's scale and rotation.
+    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's
+    scale and rotation.
 
     Attributes:
         unit: Shape (templates, points, 3).

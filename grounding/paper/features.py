@@ -1,7 +1,9 @@
-"""The paper's features of a body (section III-B): its bounding boxes, or the code of its point cloud.
+"""The paper's features of a body (section III-B): its bounding boxes, or the code of its point
+cloud.
 
-A situation is seen with argument 0 at the origin (`first_arg`): its position is subtracted from every body's, nothing
-is turned or scaled. Positions are centres of object-aligned boxes, or centroids of clouds; metres.
+A situation is seen with argument 0 at the origin (`first_arg`): its position is subtracted from
+every body's, nothing is turned or scaled. Positions are centres of object-aligned boxes, or
+centroids of clouds; metres.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from grounding.situation import Placed, Situation
 from tamp.geometric.scene.pose import Array
 
 BB = 19
-"""Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own box's corners 6."""
+"""Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own
+box's corners 6.
+"""
 
 PC = 135
 """Numbers a body: centroid 3, quaternion xyzw 4, code of its cloud 128."""
@@ -71,7 +75,9 @@ class Features(Protocol):
 
 
 class BoxFeatures:
-    """BB. The box along the world's axes is that of the posed object-aligned box, in data as in completed proposals."""
+    """BB. The box along the world's axes is that of the posed object-aligned box, in data as in
+    completed proposals.
+    """
 
     size = BB
 
@@ -160,7 +166,8 @@ def completed(seen: Observation, positions: Array, turns: Array) -> Array:
     """Complete argument 1's features when a generator put it at positions (n, 3) and unit
     quaternions (n, 4); shape (n, f).
 
-    Its own box or its code stay as they were seen: a code is not computed again, although its cloud has turned.
+    Its own box or its code stay as they were seen: a code is not computed again, although its cloud
+    has turned.
     """
     argument = seen.arguments[1]
     if len(argument) == BB:

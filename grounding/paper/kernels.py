@@ -1,4 +1,6 @@
-"""Compiled arithmetic of the paper's features: for one proposal numpy's calls would cost more than the numbers."""
+"""Compiled arithmetic of the paper's features: for one proposal numpy's calls would cost more than
+the numbers.
+"""
 
 from __future__ import annotations
 

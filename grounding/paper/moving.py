@@ -1,4 +1,6 @@
-"""The paper's networks as the planner calls them: each moves a body from nearby to a pose that is then laid."""
+"""The paper's networks as the planner calls them: each moves a body from nearby to a pose that is
+then laid.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,14 @@ TOGETHER = 4
 
 
 class Moving(Grounding):
-    """A network that moves a body from where it is, and was taught with bodies around their support.
+    """A network that moves a body from where it is, and was taught with bodies around their
+    support.
 
-    The body that the planner asks about is in the hand or elsewhere in the room, farther away than in any scene of the
-    training data; from there the networks miss the support by decimetres, each time at the same place. So it is shown
-    afloat around the support, each time elsewhere. And since the oracle by which the networks were taught (MCA) asks
-    nothing about orientation, theirs is tens of degrees off: it is read as which of the stable faces is meant.
+    The body that the planner asks about is in the hand or elsewhere in the room, farther away than
+    in any scene of the training data; from there the networks miss the support by decimetres, each
+    time at the same place. So it is shown afloat around the support, each time elsewhere. And since
+    the oracle by which the networks were taught (MCA) asks nothing about orientation, theirs is
+    tens of degrees off: it is read as which of the stable faces is meant.
     """
 
     def propose(

@@ -1,7 +1,9 @@
-"""The paper's networks (section III-C), as ensembles: M models of one shape are trained at the dispatch cost of one.
+"""The paper's networks (section III-C), as ensembles: M models of one shape are trained at the
+dispatch cost of one.
 
-Every tensor has the model first: arguments (M, B, 2 f), others (M, B, K, f), share (M, B, K), the weight of each of the
-others in the mean, 1/k or 0 for padding. Features are those of `grounding.paper.features`, in float32.
+Every tensor has the model first: arguments (M, B, 2 f), others (M, B, K, f), share (M, B, K), the
+weight of each of the others in the mean, 1/k or 0 for padding. Features are those of
+`grounding.paper.features`, in float32.
 """
 
 from __future__ import annotations
@@ -65,7 +67,8 @@ class Ensemble:
     `weights` are views of it by name; `fixed` are the same for those who want no gradient for them.
 
     Args:
-        shapes: Layers by name: inputs and outputs. The layer `scene.0` is given arguments and one of the others.
+        shapes: Layers by name: inputs and outputs. The layer `scene.0` is given arguments and one
+            of the others.
         randoms: One source of randomness a model, for its initial weights.
     """
 
@@ -164,8 +167,9 @@ def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
     """Compute the scene's embedding, the mean over the others of (args, other) -> 64-32-16, shape
     (M, B, 16).
 
-    The first layer's matrix is split, so that the arguments are multiplied once a scene; the last layer is linear, so
-    that it may as well follow the mean. A scene without others has the last layer's bias.
+    The first layer's matrix is split, so that the arguments are multiplied once a scene; the last
+    layer is linear, so that it may as well follow the mean. A scene without others has the last
+    layer's bias.
     """
     models, scenes, others, size = batch.others.shape
     first, bias = weights["scene.0.weight"], weights["scene.0.bias"]

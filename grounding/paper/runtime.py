@@ -35,7 +35,8 @@ NOISE = 4
 
 
 class PaperModel:
-    """A classifier and a generator of the paper: `mlp-bb`, `gnn-bb`, `mlp-pc` or `gnn-pc`, as its arrays say.
+    """A classifier and a generator of the paper: `mlp-bb`, `gnn-bb`, `mlp-pc` or `gnn-pc`, as its
+    arrays say.
 
     Args:
         weights: What `training.train` returned.
@@ -55,7 +56,9 @@ class PaperModel:
         self._sees = bool(self.classifier.scene or self.generator.scene)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: the generator moves argument 1 from where it is, each time by other noise."""
+        """`count` poses, in no order: the generator moves argument 1 from where it is, each time by
+        other noise.
+        """
         seen = self._features.observe(situation, self._sees)
         noise = rng.standard_normal((count, NOISE), dtype=np.float32)
         positions, turns = generated(self.generator, seen, noise)
@@ -73,7 +76,8 @@ class Network:
     """Matrices and biases of a classifier or a generator.
 
     Args:
-        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps `NAME.scene.0.weight`, ...
+        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps
+            `NAME.scene.0.weight`, ...
         name: Which network.
 
     Raises:
@@ -115,11 +119,13 @@ class Network:
 
 
 class NumpyEncoder:
-    """The encoder of 1D convolutions with kernel 1: each point through the layers, the largest of each number.
+    """The encoder of 1D convolutions with kernel 1: each point through the layers, the largest of
+    each number.
 
     Args:
-        arrays: `0.weight` (inputs, outputs), `0.bias`, ..., `scale`, by which metres are multiplied first (0: each
-            cloud is brought to the cube), and `points`, how many of the cloud's points are looked at.
+        arrays: `0.weight` (inputs, outputs), `0.bias`, ..., `scale`, by which metres are multiplied
+            first (0: each cloud is brought to the cube), and `points`, how many of the cloud's
+            points are looked at.
 
     Raises:
         InputError: The arrays are not those of an encoder.
@@ -161,7 +167,8 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
     """Return the features that a classifier is for.
 
     Raises:
-        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
+        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no
+            classifier of them.
     """
     inputs = classifier.main[0][0].shape[0] - (
         classifier.scene[-1][1].shape[0] if classifier.scene else 0
@@ -243,7 +250,8 @@ def _check_generator(network: Network, size: int) -> None:
     wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
     if (inputs, outputs) != (wanted, 7):
         raise InputError(
-            f"the generator is given {inputs} numbers and returns {outputs}; it should be {wanted} and 7",
+            f"the generator is given {inputs} numbers and returns {outputs}; "
+            f"it should be {wanted} and 7",
             remedy=_REMEDY,
         )
 
@@ -260,7 +268,8 @@ def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
         fits = not layers or layers[-1][0].shape[1] == weight.shape[0]
         if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
             raise InputError(
-                f"layer '{dot}{len(layers)}' does not fit: matrix {weight.shape}, bias {bias.shape}",
+                f"layer '{dot}{len(layers)}' does not fit: "
+                f"matrix {weight.shape}, bias {bias.shape}",
                 remedy=_REMEDY,
             )
         layers.append((weight, bias))

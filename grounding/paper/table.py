@@ -22,7 +22,8 @@ class Table:
     Attributes:
         arguments: Of argument 0 and 1, shape (n, 2 f).
         others: Of the surroundings, shape (n, k, f), zero where there are fewer than k.
-        share: Each one's weight in the mean over them, shape (n, k): 1 / their number, or 0 where there is none.
+        share: Each one's weight in the mean over them, shape (n, k): 1 / their number, or 0 where
+            there is none.
         holds: The labels, shape (n,).
     """
 

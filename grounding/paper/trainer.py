@@ -1,8 +1,10 @@
-"""The paper's training (section III-D): the classifier, then the generator against discriminator and classifier.
+"""The paper's training (section III-D): the classifier, then the generator against discriminator
+and classifier.
 
-One run trains an ensemble: any number of pairs of a training set's size and a seed, each as if it were trained alone.
-The classifier that is kept is the one of least loss on a tenth of its training set that it is not trained on (of fewer
-than 100 examples none is spared, and the last is kept); the generator is the last, as in the paper.
+One run trains an ensemble: any number of pairs of a training set's size and a seed, each as if it
+were trained alone. The classifier that is kept is the one of least loss on a tenth of its training
+set that it is not trained on (of fewer than 100 examples none is spared, and the last is kept); the
+generator is the last, as in the paper.
 """
 
 from __future__ import annotations
@@ -15,53 +17,25 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits, softplus
 
 from grounding.paper import networks
 from grounding.paper.critic import critic_gradient
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
+from grounding.paper.random_streams import random_stream, stacked_draws
 from grounding.paper.table import Table
-from tamp.errors import InputError
-from tamp.system.files import write_whole
+from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_state import load_state, save_state
 
 SCHEMES = ("discriminator", "classifier", "both")
 """What teaches the generator: equation 3, equation 4, or both."""
 
 
-@dataclass(frozen=True)
-class Args:
-    """The training options of the networks.
-
-    Attributes:
-        iterations: Of the classifier, and then of the generator.
-        batch: Scenes a step and model.
-        rate: RMSprop's learning rate.
-        penalty: Weight of the critic's gradient penalty, the paper's lambda.
-        critic_steps: Steps of the critic before each of the generator.
-        critic_catches_up: The same for the first `first` steps of the generator, and for every `every`-th.
-        validate_every: Iterations between looks at the validation split.
-        save_every: Iterations between saved states, a multiple of `block`.
-        block: Iterations whose random numbers are drawn together, from seed, size, stage and the first of them.
-    """
-
-    iterations: int = 30_000
-    batch: int = 16
-    rate: float = 1e-3
-    penalty: float = 10.0
-    critic_steps: int = 5
-    critic_catches_up: int = 100
-    first: int = 24
-    every: int = 500
-    validate_every: int = 500
-    save_every: int = 2000
-    block: int = 500
-
-
 AHEAD = 5
-"""Batches that the generator proposes at once for the critic's steps, during which it does not change."""
+"""Batches that the generator proposes at once for the critic's steps, during which it does not
+change.
+"""
 
 VALIDATION = 500
 """Examples of the validation split at most."""
@@ -94,7 +68,8 @@ class Trainer:
         self._share = torch.from_numpy(self.table.share)
         self._labels = torch.from_numpy(self.table.holds.astype(np.float32))
         start = [
-            _random(size, seed, 0, 0) for size, seed in zip(self.sizes, self.seeds, strict=True)
+            random_stream(size, seed, 0, 0)
+            for size, seed in zip(self.sizes, self.seeds, strict=True)
         ]
         self.classifier = Ensemble(networks.classifier_shapes(features, self.scene), start)
         self.critic = Ensemble(networks.critic_shapes(features), start)
@@ -124,7 +99,7 @@ class Trainer:
         torch.set_num_threads(1)  # matrices this small only wait for each other
         try:
             if state is not None and state.is_file():
-                self._load(state)
+                load_state(state, self._tensors(), self._run())
                 progress(f"going on after {int(self._done[0])} + {int(self._done[1])} iterations")
             for stage, (name, block) in enumerate(
                 (("classifier", self._classify), ("generator", self._generate))
@@ -160,10 +135,11 @@ class Trainer:
             if end % self.args.save_every == 0 or end == self.args.iterations:
                 speed = (end - first) / (time.perf_counter() - start)
                 progress(
-                    f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, loss {loss:.3f}"
+                    f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, "
+                    f"loss {loss:.3f}"
                 )
                 if state is not None:
-                    self._save(state)
+                    save_state(state, self._tensors(), self._run())
         if stage == 0:
             self.classifier.flat.copy_(self._best)
 
@@ -211,7 +187,8 @@ class Trainer:
         """
         steps = [self._critic_steps(step) for step in range(start + 1, end + 1)]
         randoms = [
-            _random(size, seed, 2, start) for size, seed in zip(self.sizes, self.seeds, strict=True)
+            random_stream(size, seed, 2, start)
+            for size, seed in zip(self.sizes, self.seeds, strict=True)
         ]
         scenes = self._draw(self._all, 3, start, sum(steps) + end - start)
         positive = self._draw(self._positive, 4, start, sum(steps))
@@ -220,8 +197,8 @@ class Trainer:
             for first in range(done, done + count, AHEAD):
                 some = min(AHEAD, done + count - first)
                 rows = scenes[:, first : first + some].flatten(1)
-                noise = _stack(randoms, torch.randn, (rows.shape[1], NOISE))
-                mixes = _stack(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
+                noise = stacked_draws(randoms, torch.randn, (rows.shape[1], NOISE))
+                mixes = stacked_draws(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
                 fakes = generate(self.generator.fixed, self._batch(rows), noise).split(batch, dim=1)
                 real = self._arguments[positive[:, first : first + some].flatten(1)].split(
                     batch, dim=1
@@ -231,7 +208,9 @@ class Trainer:
                     self.critic.update(self.args.rate)
             done += count
             rows = scenes[:, sum(steps) + last]
-            loss = self._loss(self._batch(rows), _stack(randoms, torch.randn, (batch, NOISE)))
+            loss = self._loss(
+                self._batch(rows), stacked_draws(randoms, torch.randn, (batch, NOISE))
+            )
             loss.backward()
             self.generator.update(self.args.rate)
         return float(loss.detach()) / batch / len(self.sizes)
@@ -259,7 +238,7 @@ class Trainer:
         drawn: list[Tensor] = []
         wanted = count * self.args.batch
         for size, seed, own in zip(self.sizes, self.seeds, rows, strict=True):
-            random = _random(size, seed, stage, start)
+            random = random_stream(size, seed, stage, start)
             rounds = -(-wanted // len(own))
             shuffled = torch.rand((rounds, len(own)), generator=random).argsort(dim=1)
             drawn.append(own[shuffled.flatten()[:wanted]].view(count, self.args.batch))
@@ -283,31 +262,6 @@ class Trainer:
         }
         return {**tensors, "best": self._best, "least": self._least, "done": self._done}
 
-    def _save(self, path: Path) -> None:
-        tensors = self._tensors()
-        write_whole(
-            path,
-            save({name: tensor.detach() for name, tensor in tensors.items()}, {"run": self._run()}),
-        )
-
-    def _load(self, path: Path) -> None:
-        remedy = f"Train from the beginning: delete {path}"
-        try:
-            with safe_open(path, "pt") as file:
-                found = file.metadata() or {}
-                tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
-        except (SafetensorError, OSError, ValueError) as error:
-            raise InputError(f"the state is damaged: {error}", file=path, remedy=remedy) from None
-        if found.get("run") != self._run():
-            raise InputError("the state of another training", file=path, remedy=remedy)
-        wanted = {name: (tensor.shape, tensor.dtype) for name, tensor in self._tensors().items()}
-        if wanted != {name: (tensor.shape, tensor.dtype) for name, tensor in tensors.items()}:
-            raise InputError(
-                "the state is damaged: its arrays are others", file=path, remedy=remedy
-            )
-        for name, tensor in self._tensors().items():
-            tensor.copy_(tensors[name])
-
     def _run(self) -> str:
         """Return the run's identity: what a state must agree in to go on from it."""
         digest = hashlib.blake2b(digest_size=16)
@@ -318,15 +272,3 @@ class Trainer:
 
 
 _NONE = torch.zeros(0)
-
-
-def _random(size: int, seed: int, stage: int, block: int) -> torch.Generator:
-    mixed = np.random.SeedSequence([seed, size, stage, block]).generate_state(1)
-    return torch.Generator().manual_seed(int(mixed[0]))
-
-
-def _stack(
-    randoms: Sequence[torch.Generator], draw: Callable[..., Tensor], shape: tuple[int, ...]
-) -> Tensor:
-    """Stack one draw a model, shape (M, *shape)."""
-    return torch.stack([draw(shape, generator=random) for random in randoms])

@@ -10,7 +10,8 @@ from grounding.paper.codes import coded_table
 from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import NumpyEncoder
 from grounding.paper.table import Table, table_of
-from grounding.paper.trainer import SCHEMES, Args, Trainer
+from grounding.paper.trainer import SCHEMES, Trainer
+from grounding.paper.trainer_options import Args
 from grounding.weights import Weights
 from tamp.errors import InputError
 
@@ -31,7 +32,8 @@ def train(
     state: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Weights]:
-    """Train one model for each pair of a size and a seed, all at once, in one thread's worth of small matrices.
+    """Train one model for each pair of a size and a seed, all at once, in one thread's worth of
+    small matrices.
 
     Args:
         data: The training set.
@@ -46,7 +48,8 @@ def train(
         progress: Told how far it is.
 
     Raises:
-        InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another run's state.
+        InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another
+            run's state.
     """
     _check(data, model, scheme, sizes, seeds, encoder)
     table = table or features_of(data, model, encoder, progress, max(sizes))

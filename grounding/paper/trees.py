@@ -1,4 +1,6 @@
-"""The paper's decision trees (section IV-A): one that classifies, and whose positive leaves are boxes to sample in."""
+"""The paper's decision trees (section IV-A): one that classifies, and whose positive leaves are
+boxes to sample in.
+"""
 
 from __future__ import annotations
 
@@ -28,16 +30,19 @@ LEAF = -1
 """The feature that a leaf differentiates upon."""
 
 NODES = ("feature", "threshold", "left", "right", "positive")
-"""One number a node: what it looks at; `x <= threshold` goes left, the rest right; its share of positive examples."""
+"""One number a node: what it looks at; `x <= threshold` goes left, the rest right; its share of
+positive examples.
+"""
 
 
 class TreeModel:
     """`tree-bb` or `tree-pc`, as its arrays say.
 
     Args:
-        weights: Arrays `tree.feature`, `tree.threshold`, `tree.left`, `tree.right`, `tree.positive`, shape (nodes,),
-            children after their parents; `tree.low`, `tree.high`, shape (f,), the range of argument 1's features in
-            positive examples; for clouds, `encoder.*`.
+        weights: Arrays `tree.feature`, `tree.threshold`, `tree.left`, `tree.right`,
+            `tree.positive`, shape (nodes,), children after their parents; `tree.low`, `tree.high`,
+            shape (f,), the range of argument 1's features in positive examples; for clouds,
+            `encoder.*`.
 
     Raises:
         InputError: The arrays are not those of such a tree.
@@ -135,7 +140,8 @@ class Tree:
         """Compute the limits of argument 1's features in each node, from the root down, shape
         (nodes, f).
 
-        Edges of the box along the world's axes are unlimited at the root: they follow from position and rotation.
+        Edges of the box along the world's axes are unlimited at the root: they follow from position
+        and rotation.
         """
         size = len(least)
         low, high = np.tile(least, (len(self.positive), 1)), np.tile(most, (len(self.positive), 1))
@@ -156,8 +162,9 @@ def position_limits(
     """Compute the limits of argument 1's position, each shape (n, 3), that limits of its features,
     shape (n, f), amount to.
 
-    Of boxes also those of the box along the world's axes, which reaches as far as the rotations, quaternions (n, 4),
-    make it. Limits that contradict each other, for a body of this size, leave the point midway.
+    Of boxes also those of the box along the world's axes, which reaches as far as the rotations,
+    quaternions (n, 4), make it. Limits that contradict each other, for a body of this size, leave
+    the point midway.
     """
     least, most = low[:, :3], high[:, :3]
     if low.shape[1] == BB:

@@ -11,11 +11,16 @@ from tamp.geometric.scene.pose import Array
 from tamp.system.compilation import njit
 
 QUADRATIC: NDArray[np.float64] = np.zeros((16, 9))
-"""R = 1 + (q q^T) QUADRATIC for a unit quaternion xyzw: entries of q q^T row by row to entries of R row by row."""
+"""R = 1 + (q q^T) QUADRATIC for a unit quaternion xyzw: entries of q q^T row by row to entries of R
+row by row.
+"""
 for _row, _column, _first, _second, _factor in (
-    (0, 0, 1, 1, -2), (0, 0, 2, 2, -2), (1, 1, 0, 0, -2), (1, 1, 2, 2, -2), (2, 2, 0, 0, -2), (2, 2, 1, 1, -2),
-    (0, 1, 0, 1, 2), (0, 1, 2, 3, -2), (0, 2, 0, 2, 2), (0, 2, 1, 3, 2), (1, 0, 0, 1, 2), (1, 0, 2, 3, 2),
-    (1, 2, 1, 2, 2), (1, 2, 0, 3, -2), (2, 0, 0, 2, 2), (2, 0, 1, 3, -2), (2, 1, 1, 2, 2), (2, 1, 0, 3, 2),
+    (0, 0, 1, 1, -2), (0, 0, 2, 2, -2), (1, 1, 0, 0, -2), (1, 1, 2, 2, -2),
+    (2, 2, 0, 0, -2), (2, 2, 1, 1, -2),
+    (0, 1, 0, 1, 2), (0, 1, 2, 3, -2), (0, 2, 0, 2, 2), (0, 2, 1, 3, 2),
+    (1, 0, 0, 1, 2), (1, 0, 2, 3, 2),
+    (1, 2, 1, 2, 2), (1, 2, 0, 3, -2), (2, 0, 0, 2, 2), (2, 0, 1, 3, -2),
+    (2, 1, 1, 2, 2), (2, 1, 0, 3, 2),
 ):  # fmt: skip
     QUADRATIC[4 * _first + _second, 3 * _row + _column] = _factor
 

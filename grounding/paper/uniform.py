@@ -1,4 +1,6 @@
-"""The paper's sampler baselines (section IV-A): uniform poses, as they come or until a classifier accepts one."""
+"""The paper's sampler baselines (section IV-A): uniform poses, as they come or until a classifier
+accepts one.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +23,12 @@ ACCEPTED = 0.5
 
 
 class UniformModel:
-    """Positions uniform in argument 0's box grown on each side by half its largest half extent; random rotations.
+    """Positions uniform in argument 0's box grown on each side by half its largest half extent;
+    random rotations.
 
     Args:
-        weights: Of `mlp-bb` or `gnn-bb`, whose classifier accepts or rejects; None takes what comes, and classifies
-            nothing.
+        weights: Of `mlp-bb` or `gnn-bb`, whose classifier accepts or rejects; None takes what
+            comes, and classifies nothing.
 
     Raises:
         InputError: The weights have no classifier of boxes.
@@ -36,7 +39,7 @@ class UniformModel:
         self.classifier = None if weights is None else _box_classifier(weights)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order. Each is the first one accepted, or the last of its 500 tries."""
+        """Propose `count` poses, in no order: the first accepted, or the last of 500 tries."""
         seen = self._features.observe(situation)
         if self.classifier is None:
             return poses_of(seen, *_drawn(seen, count, rng))

@@ -1,8 +1,10 @@
-"""Relational coordinates, learned from a few demonstrations: what they have in common is a residual near zero.
+"""Relational coordinates, learned from a few demonstrations: what they have in common is a residual
+near zero.
 
-Height is measured between that level of the body and that level of the region whose distance varies least over the
-demonstrations; the horizontal position is a share of the room that is left; rotation is which face is down, a small
-tilt and a yaw. What all demonstrations keep (room at the sides, above, around) bounds what is proposed.
+Height is measured between that level of the body and that level of the region whose distance varies
+least over the demonstrations; the horizontal position is a share of the room that is left; rotation
+is which face is down, a small tilt and a yaw. What all demonstrations keep (room at the sides,
+above, around) bounds what is proposed.
 """
 
 from __future__ import annotations
@@ -44,7 +46,8 @@ class Demonstration:
     """One positive example in relational coordinates.
 
     Attributes:
-        coordinates: Horizontal shares x, y, height residual (m), tilt x, y (sines), cosine and sine of yaw: (7,).
+        coordinates: Horizontal shares x, y, height residual (m), tilt x, y (sines), cosine and sine
+            of yaw: (7,).
         face: Descriptor of the face that is down, (4,).
         size: Logarithms of the body's extents, sorted, (3,).
     """
@@ -60,10 +63,11 @@ class Chart:
 
     Attributes:
         level: Of the body: 0 its lowest point, 1 its middle, 2 its highest one.
-        anchor: Of the region: 0 its plane, 1 its ceiling, 2 the foot of the argument's box, 3 the box's middle.
+        anchor: Of the region: 0 its plane, 1 its ceiling, 2 the foot of the argument's box, 3 the
+            box's middle.
         offset: The usual distance between the two, metres.
-        contained: Whether the whole body stays above the rectangle; else its centre of mass.
-        sides, balance, ceiling, apart, steadiness: What no demonstration falls below (metres, radians).
+        contained: Whether the whole body stays above the rectangle; else its centre of mass. sides,
+        balance, ceiling, apart, steadiness: What no demonstration falls below (metres, radians).
     """
 
     level: int
@@ -85,7 +89,8 @@ class Chart:
         finite = np.isfinite(heights).all(axis=0)
         middle = np.median(np.where(finite, heights, 0.0), axis=0)
         spread = np.where(finite, np.median(np.abs(heights - middle), axis=0), np.inf)
-        # Where several keep their distance, as on tables of one height all do, the lowest point above the plane counts.
+        # Where several keep their distance, as on tables of one height all do, the lowest point
+        # above the plane counts.
         level, anchor = (int(v) for v in np.argwhere(spread <= spread.min() + STEADY_LEVEL)[0])
         offset = float(middle[level, anchor])
         sides = np.array([one.sides.min() for one in measured])

@@ -1,4 +1,6 @@
-"""`flow`: coordinates from a learned flow that looks, at every step, at what is around where it is; numpy only."""
+"""`flow`: coordinates from a learned flow that looks, at every step, at what is around where it is;
+numpy only.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ STEPS = 4
 """Of Euler's method from noise to coordinates."""
 
 COORDINATES, CONDITION, AROUND, PAIR, POOLED = 7, 14, 6, 10, 32
-"""Numbers of a pose, of a body over a region, of something around, of it and a sample, and of all that is around."""
+"""Numbers of a pose, of a body over a region, of something around, of it and a sample, and of all
+that is around.
+"""
 
 
 class Flow:
@@ -26,7 +30,8 @@ class Flow:
 
     Args:
         chart: The coordinates.
-        arrays: Networks `face`, `pair`, `velocity`, and `scale`, the size of each coordinate, shape (7,).
+        arrays: Networks `face`, `pair`, `velocity`, and `scale`, the size of each coordinate, shape
+            (7,).
 
     Raises:
         KeyError: There is no scale.
@@ -38,7 +43,8 @@ class Flow:
         self.chart, self._scale = chart, arrays["scale"]
         if self._scale.shape != (COORDINATES,) or not (self._scale > 0.0).all():
             raise ValueError(
-                f"the scale has shape {self._scale.shape}, or no size, not one of {COORDINATES} coordinates"
+                f"the scale has shape {self._scale.shape}, or no size, "
+                f"not one of {COORDINATES} coordinates"
             )
         self._face = layers_of(arrays, "face", CONDITION, 1)
         self._pair = layers_of(arrays, "pair", PAIR, POOLED)

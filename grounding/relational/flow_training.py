@@ -1,4 +1,4 @@
-"""Training of the flow: rectified flow on the positive scenes' coordinates, and which face is down."""
+"""Training of the rectified flow on the positive scenes' coordinates, and which face is down."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ class Args:
         rate: The largest learning rate; it rises and falls once.
         decay: Of the weights.
         hidden: Width of the velocity's layers.
-        average: Share of the running average of the weights that a step keeps; the average is what is used.
+        average: Share of the running average of the weights that a step keeps; the average is what
+            is used.
         seed: Of initial weights, batches and noise.
     """
 

@@ -213,7 +213,8 @@ class Resting:
     Attributes:
         rotations: What turns each down, shape (f, 3, 3).
         steadiness: The tilt that each withstands, radians, shape (f,).
-        descriptors: What distinguishes them: steadiness, height and width against the others', shape (f, 4).
+        descriptors: What distinguishes them: steadiness, height and width against the others',
+            shape (f, 4).
     """
 
     rotations: Array

@@ -1,4 +1,6 @@
-"""A relational grounding: demonstrations or a flow propose, what all demonstrations keep filters, the ranker orders."""
+"""A relational grounding: demonstrations or a flow propose, what all demonstrations keep filters,
+the ranker orders.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +25,17 @@ BEST_OF = 16
 """Candidates of which the best is returned."""
 
 ROUNDS = 5
-"""How often more candidates are drawn, of one pose twice as many each time, when too few keep what all have kept."""
+"""How often more candidates are drawn, of one pose twice as many each time, when too few keep what
+all have kept.
+"""
 
 
 class RelationalModel:
     """A trained grounding in relational coordinates; numpy only.
 
     Args:
-        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations), or `flow.*`, and `rank.*`; the card's
-            `chart`, `ranks` and `classifies`.
+        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations), or `flow.*`, and
+            `rank.*`; the card's `chart`, `ranks` and `classifies`.
 
     Raises:
         KeyError: Something is missing.
@@ -92,7 +96,9 @@ class RelationalModel:
 
 
 STEADY, CLEAR, OVERHANG, SURE = 0.35, 0.01, 0.04, 4.0
-"""A tilt withstood (radians), a distance, an overhang (metres) and a logit beyond which more makes no difference."""
+"""A tilt withstood (radians), a distance, an overhang (metres) and a logit beyond which more makes
+no difference.
+"""
 
 HOPELESS = -1e3
 """The score below which a pose misses what all demonstrations keep."""

@@ -1,4 +1,6 @@
-"""`transfer`: a demonstration with a body of a similar shape, moved to this scene; no generator has to be trained."""
+"""`transfer`: a demonstration with a body of a similar shape, moved to this scene; no generator has
+to be trained.
+"""
 
 from __future__ import annotations
 

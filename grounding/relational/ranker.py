@@ -1,4 +1,6 @@
-"""The relational classifier: how a pose fits its region, and by max pooling what around it is most in the way."""
+"""The relational classifier: how a pose fits its region, and by max pooling what around it is most
+in the way.
+"""
 
 from __future__ import annotations
 

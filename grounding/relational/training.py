@@ -1,4 +1,6 @@
-"""Training of the relational ranker: cross entropy on labelled scenes, the best of a validation split."""
+"""Training of the relational ranker: cross entropy on labelled scenes, the best of a validation
+split.
+"""
 
 from __future__ import annotations
 

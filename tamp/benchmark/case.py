@@ -33,13 +33,14 @@ class Case:
 
     Attributes:
         problem: A shipped problem's name, or a path.
-        sampler: As the user wrote it: NAME, NAME:alone, NAME:mixed, or on=NAME,inside=NAME, or "default"; behind the
-            name of a file stands which one it was: on=mine.py#3f2a9c1b.
+        sampler: As the user wrote it: NAME, NAME:alone, NAME:mixed, or on=NAME,inside=NAME, or
+            "default"; behind the name of a file stands which one it was: on=mine.py#3f2a9c1b.
         seed: Of all randomness; runs of one seed are compared in pairs.
         time: The budget in seconds.
         algorithm: The planner's.
         samplers: Relation to sampler, as `tamp-solve --sampler` takes it.
-        sources: Python files that serve relations, and what stands in them: all runs have the same, wherever they run.
+        sources: Python files that serve relations, and what stands in them: all runs have the same,
+            wherever they run.
     """
 
     problem: str

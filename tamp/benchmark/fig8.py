@@ -9,10 +9,22 @@ from tamp.errors import InputError
 from tamp.geometric.samplers.choice import Registry
 
 FIG8 = (
-    "uniform", "uniform+mlp:alone", "uniform+gnn:alone", "tree-bb:alone", "tree-pc:alone", "mlp-bb:alone",
-    "gnn-bb:alone", "mlp-pc:alone", "gnn-pc:alone", "surface", "transfer", "flow",
-)  # fmt: skip
-"""Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed with it as usual."""
+    "uniform",
+    "uniform+mlp:alone",
+    "uniform+gnn:alone",
+    "tree-bb:alone",
+    "tree-pc:alone",
+    "mlp-bb:alone",
+    "gnn-bb:alone",
+    "mlp-pc:alone",
+    "gnn-pc:alone",
+    "surface",
+    "transfer",
+    "flow",
+)
+"""Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed
+with it as usual.
+"""
 
 
 def chosen(

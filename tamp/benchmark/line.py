@@ -1,4 +1,6 @@
-"""A line of a benchmark's results: read, and each of its fields looked at, before any table is made of it."""
+"""A line of a benchmark's results: read, and each of its fields looked at, before any table is made
+of it.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ def read_line(text: bytes, path: Path, number: int) -> Line:
         number: Of the line, from 1.
 
     Raises:
-        InputError: It is no result of tamp-bench, with the file, the line, and the field that is wrong.
+        InputError: It is no result of tamp-bench, with the file, the line, and the field that is
+            wrong.
     """
     try:
         line = parse_json(text.decode("utf-8"), kind="result")

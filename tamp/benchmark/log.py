@@ -33,7 +33,8 @@ def read_log(path: Path) -> list[Line]:
     """Read all results of a file, the oldest first. A last line that was cut off is left out.
 
     Raises:
-        InputError: It cannot be read, a line of it is no result, or there are none, or some of several settings.
+        InputError: It cannot be read, a line of it is no result, or there are none, or some of
+            several settings.
     """
     lines = _lines(path, _whole(path))
     if not lines:
@@ -46,11 +47,12 @@ class Log:
     """A file of results that is added to, by one process at a time.
 
     Args:
-        path: JSON lines; made if need be. A last line that was cut off, as by a machine that went down, is removed, and
-            its run done again.
+        path: JSON lines; made if need be. A last line that was cut off, as by a machine that went
+            down, is removed, and its run done again.
 
     Raises:
-        InputError: It cannot be read or written, another process adds to it, or it holds something else.
+        InputError: It cannot be read or written, another process adds to it, or it holds something
+            else.
     """
 
     def __init__(self, path: Path) -> None:
@@ -152,10 +154,12 @@ def _settings(line: Line) -> tuple[float, str]:
 
 
 def _check_own(path: Path) -> None:
-    """Refuse to add to, or to mend, what tamp-bench has not written; whole lines are looked at when they are read.
+    """Refuse to add to, or to mend, what tamp-bench has not written; whole lines are looked at when
+    they are read.
 
     Raises:
-        InputError: It is no regular file, or its only line, which may have been cut off, begins as none of ours.
+        InputError: It is no regular file, or its only line, which may have been cut off, begins as
+            none of ours.
     """
     if not os.path.isfile(path):
         raise InputError(

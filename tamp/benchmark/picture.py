@@ -14,8 +14,17 @@ from tamp.errors import InputError
 from tamp.system.outputs import write_whole
 
 COLOURS = (
-    "#4477aa", "#ee6677", "#228833", "#aa3377", "#ccbb44", "#66ccee", "#777777", "#994455", "#225522", "#000000",
-)  # fmt: skip
+    "#4477aa",
+    "#ee6677",
+    "#228833",
+    "#aa3377",
+    "#ccbb44",
+    "#66ccee",
+    "#777777",
+    "#994455",
+    "#225522",
+    "#000000",
+)
 """Paul Tol's bright ones, and darker ones after them: told apart by the colour-blind as well."""
 
 STYLES = ("-", "--", ":")

@@ -51,7 +51,8 @@ class Watch:
         rejected = " REJECTED" if line["solved"] and not succeeded(line) else ""
         text = (
             f"{self._total - left}/{self._total} runs · {self._solved} of {self._done} solved · "
-            f"{minutes}:{seconds:02d} left · {short(config['problem'])} {config['sampler']} seed {config['seed']}: "
+            f"{minutes}:{seconds:02d} left · {short(config['problem'])} "
+            f"{config['sampler']} seed {config['seed']}: "
             f"{line['outcome']}{rejected} {line['planning_s']:.2f} s"
         )
         end = "" if terminal and left else "\n"

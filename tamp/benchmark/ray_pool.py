@@ -1,4 +1,6 @@
-"""Runs on a Ray cluster (`pip install tamp[ray]`). Every machine of it needs this environment, tamp installed."""
+"""Runs on a Ray cluster (`pip install tamp[ray]`). Every machine of it needs this environment, tamp
+installed.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +65,8 @@ class RayCrew:
             raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=REMEDY) from None
         guard.listen()  # Ray has taken SIGTERM for itself
         self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
-        # A lost run is given out again by whoever leads, who knows what was written down: Ray does not retry.
+        # A lost run is given out again by whoever leads, who knows what was written down: Ray does
+        # not retry.
         self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
         self._job = (work, prepare)
         self._under_way: dict[Any, tuple[Case, float]] = {}
@@ -100,7 +103,9 @@ class RayCrew:
         return ended
 
     def close(self) -> None:
-        """Leave the cluster; one of our own ends. In a command that was asked to end, all of that is who guards it."""
+        """Leave the cluster; one of our own ends. In a command that was asked to end, all of that
+        is who guards it.
+        """
         if not guard.asked():
             self._ray.shutdown()
 

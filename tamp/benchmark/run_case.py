@@ -34,7 +34,8 @@ def warm_up() -> None:
 def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
     """Run a case; what comes back is one line of the results. Times in seconds.
 
-    An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on, and shows it.
+    An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on,
+    and shows it.
 
     Args:
         case: What to run.

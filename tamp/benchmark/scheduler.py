@@ -26,7 +26,8 @@ def lead(
         cases: All of them.
         crew: Who does them.
         log: What is known, and where each line is written as soon as its run has ended.
-        ended: Called for each run that has ended, with its line and the number of runs that are still to come.
+        ended: Called for each run that has ended, with its line and the number of runs that are
+            still to come.
     """
     waiting = deque(log.missing(cases))
     losses: Counter[Case] = Counter()

@@ -30,7 +30,8 @@ class Summary:
         p95: The same, 95th percentile.
         par2: Mean planning time; a run without a plan counts as twice the budget.
         cpu: Median processor time of all runs.
-        speedup: Median over the paired seeds of the baseline's time by this one's, both as for PAR-2; or None.
+        speedup: Median over the paired seeds of the baseline's time by this one's, both as for
+            PAR-2; or None.
         parts: Mean time by part, and None when no run tells.
     """
 

@@ -8,13 +8,17 @@ from typing import Any, Protocol
 from tamp.benchmark.case import Case
 
 Work = Callable[[Case], dict[str, Any]]
-"""Does a run and returns its line. It is sent to other processes: a function of a module, or a partial of one."""
+"""Does a run and returns its line. It is sent to other processes: a function of a module, or a
+partial of one.
+"""
 
 Ended = tuple[Case, dict[str, Any] | None]
 """A run with its line, or None when its worker was lost on the way."""
 
 GRACE = 120.0
-"""Seconds beyond its budget after which a run is given up and its process ended: loading, verifying, a busy machine."""
+"""Seconds beyond its budget after which a run is given up and its process ended: loading,
+verifying, a busy machine.
+"""
 
 
 class Crew(Protocol):

@@ -60,8 +60,8 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         registry: The learned groundings, for their opinion of the goal and for planning anew.
 
     Raises:
-        InputError: The plan file is malformed, of another version, or what it was made from has changed; a sampler
-            that it needs for planning anew is not to be had.
+        InputError: The plan file is malformed, of another version, or what it was made from has
+            changed; a sampler that it needs for planning anew is not to be had.
     """
     check(options)
     chosen = sampler_choices(options.sampler)

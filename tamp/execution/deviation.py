@@ -37,7 +37,9 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Deviation:
-    """One thing that is not as expected: its kind of KINDS, the body, a sentence, metres and radians."""
+    """One thing that is not as expected: its kind of KINDS, the body, a sentence, metres and
+    radians.
+    """
 
     kind: str
     body: str

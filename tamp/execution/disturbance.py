@@ -51,7 +51,9 @@ class Happening:
 
 @dataclass(frozen=True)
 class Scheduled:
-    """A disturbance at a share of the time of a segment of an action; `happen` does it and says what was done."""
+    """A disturbance at a share of the time of a segment of an action; `happen` does it and says
+    what was done.
+    """
 
     action: int
     segment: int

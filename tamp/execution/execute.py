@@ -76,8 +76,9 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours, or out of the
-            robot's ranges; a goal that needs a relation not to hold that has no classifier.
+        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for
+            hours, or out of the robot's ranges; a goal that needs a relation not to hold that has
+            no classifier.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()

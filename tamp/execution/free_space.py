@@ -19,7 +19,9 @@ APART = 0.005
 
 
 class Room:
-    """A copy of the world without time and robot, in which places are tried. Use it as a context manager."""
+    """A copy of the world without time and robot, in which places are tried. Use it as a context
+    manager.
+    """
 
     def __init__(self, world: Actuated) -> None:
         self._scene = world.scene

@@ -37,8 +37,8 @@ def judged(
     """Evaluate each part of the goal, by the geometry; and what the classifiers of its relations
     say.
 
-    Classifiers of the user's own relations decide about these. Others than them, `on` and `inside` hold as the plan has
-    them for bodies that are where the plan put them.
+    Classifiers of the user's own relations decide about these. Others than them, `on` and `inside`
+    hold as the plan has them for bodies that are where the plan put them.
     """
     facts = {(name, *row) for name, rows in expected.state.facts.items() for row in rows if name not in FLUENTS}
     facts |= {("hand-empty",)} if held is None else set()

@@ -18,7 +18,9 @@ FELT = 1.0
 
 @dataclass(frozen=True)
 class Touch:
-    """Two things that should not touch: names of a link or body and a body, and the most that was felt, newtons."""
+    """Two things that should not touch: names of a link or body and a body, and the most that was
+    felt, newtons.
+    """
 
     first: str
     second: str
@@ -57,8 +59,8 @@ class Watch:
     def unwanted(self) -> tuple[Touch, ...]:
         """Return the unwanted contacts at the action's end.
 
-        A body may touch what it touches before or after the action: that is what it rests on. The hand may touch
-        what it handles.
+        A body may touch what it touches before or after the action: that is what it rests on. The
+        hand may touch what it handles.
         """
         resting = self._before | frozenset(self.world.touches())
         robot = self.world.robot_links

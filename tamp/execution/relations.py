@@ -31,7 +31,8 @@ class Own:
 
     Attributes:
         asked: Those with a classifier: the relation, what the classifier is called, and itself.
-        trusted: Those on which the goal rests without one: what the plan certified holds while its bodies are there.
+        trusted: Those on which the goal rests without one: what the plan certified holds while its
+            bodies are there.
     """
 
     asked: Mapping[str, tuple[Relation, str, Classifier]]
@@ -116,7 +117,8 @@ def named_classifiers(
     """Load the classifiers of the user's own relations: of files that the plan or the command line
     names, and of objects.
 
-    What the plan names and is not there any more is left out; what the command line names must be there.
+    What the plan names and is not there any more is left out; what the command line names must be
+    there.
 
     Args:
         stored: The plan.

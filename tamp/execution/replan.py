@@ -1,4 +1,6 @@
-"""Planning from what is seen: whether the rest of a plan still holds, and a new one when it does not."""
+"""Planning from what is seen: whether the rest of a plan still holds, and a new one when it does
+not.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.initial_state import apart
 
 SAME = (0.003, 0.04)
-"""Metres and radians by which a body that is still to be grasped may stand elsewhere for the old grasp to serve."""
+"""Metres and radians by which a body that is still to be grasped may stand elsewhere for the old
+grasp to serve.
+"""
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,9 @@ class Done:
 
 @dataclass(frozen=True)
 class GoalFact:
-    """A part of the goal: whether it holds by the bodies' geometry, why not, and what a classifier says."""
+    """A part of the goal: whether it holds by the bodies' geometry, why not, and what a classifier
+    says.
+    """
 
     fact: str
     holds: bool
@@ -78,7 +80,8 @@ class Execution:
         kept: How often the rest of the plan was good enough after a deviation.
         disturbance: What was done to the scene, and when.
         explanation: Why the goal was not reached.
-        on_trust: Relations of the goal without a classifier: they hold where the plan put their bodies, as it says.
+        on_trust: Relations of the goal without a classifier: they hold where the plan put their
+            bodies, as it says.
         simulated: Seconds in physics.
         notes: What was not done as the plan says.
         seconds: Seconds that it took.

@@ -83,7 +83,8 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     """Format trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which
     they are to be sent.
 
-    `time_from_start` counts from the message's own start. Beside each message stands what it belongs to.
+    `time_from_start` counts from the message's own start. Beside each message stands what it
+    belongs to.
     """
     messages = [
         {

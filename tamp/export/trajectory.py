@@ -12,7 +12,9 @@ from tamp.plan.read import PlanFile
 from tamp.plan.read import Segment as StoredSegment
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
-"""What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the yaw are kept."""
+"""What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the
+yaw are kept.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +94,8 @@ def rates(times: Array, positions: Array) -> Array:
     """Differentiate samples of a motion from rest to rest: velocities (n, d), the mean of the
     slopes before and after each one.
 
-    Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that the slopes keep
-    are kept.
+    Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that
+    the slopes keep are kept.
 
     Args:
         times: Shape (n,), seconds, increasing.

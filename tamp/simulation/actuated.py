@@ -20,17 +20,22 @@ RATE = 240
 """Steps a second."""
 
 FORCE = 50.0
-"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N for a moment."""
+"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N
+for a moment.
+"""
 
 TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
 """The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
 
 ROLLING = 0.001
-"""Metres: rolling and spinning friction of bodies, without which a can that lies would never come to rest."""
+"""Metres: rolling and spinning friction of bodies, without which a can that lies would never come
+to rest.
+"""
 
 SLEEPY = 0.003
-"""Metres and radians a second: a body that was slower for two seconds is left out of the computation until something
-touches it. With seven bodies at rest a step costs a quarter of what it costs otherwise."""
+"""Metres and radians a second: a body that was slower for two seconds is left out of the
+computation until something touches it. With seven bodies at rest a step costs a quarter of what it
+costs otherwise."""
 
 NEAR = 0.004
 """Metres from both fingers within which a body counts as between them."""
@@ -40,7 +45,8 @@ FINGER_SPEED = 0.05
 
 
 class Actuated(World):
-    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies have mass and fall.
+    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
+    have mass and fall.
 
     Attributes:
         conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
@@ -191,7 +197,9 @@ class Actuated(World):
         self.pass_through(body, True)
 
     def unbind(self) -> None:
-        """Undo `bind`; the robot still passes through the body until `pass_through` says otherwise."""
+        """Undo `bind`; the robot still passes through the body until `pass_through`
+        says otherwise.
+        """
         if self.bound is not None:
             self._bullet.removeConstraint(self._constraint, physicsClientId=self.client)
             self.bound = None
@@ -211,7 +219,9 @@ class Actuated(World):
             self._bullet.resetBaseVelocity(solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
 
     def become(self, scene: Scene) -> None:
-        """Take bodies away that a scene does not have, and add those that only it has, where it says."""
+        """Take bodies away that a scene does not have, and add those that only it has, where it
+        says.
+        """
         for name in self.scene.bodies.keys() - scene.bodies.keys():
             if self.bound == name:
                 self.unbind()
@@ -226,7 +236,9 @@ class Actuated(World):
         self.attend(self.bound)
 
     def attend(self, body: str | None) -> None:
-        """Wake all bodies; this one, which is handled, stays awake when it is at rest in the hand."""
+        """Wake all bodies; this one, which is handled, stays awake when it is at rest
+        in the hand.
+        """
         bullet = self._bullet
         for name in self.scene.movable:
             state = (

@@ -1,4 +1,5 @@
-"""Drop tests by the thousand: one engine, shapes made once, one body at a time let go among bodies that stand still.
+"""Drop tests by the thousand: one engine, shapes made once, one body at a time let go among bodies
+that stand still.
 
 Measured (tests/simulation/test_drop.py): compounds give the same distances as their pieces alone.
 """
@@ -75,7 +76,9 @@ class Drops:
         self._bullet.disconnect(physicsClientId=self.client)
 
     def set_up(self, body: Item, obstacles: Sequence[tuple[Item, Array]]) -> None:
-        """Replace the scene: a body that can fall, and obstacles that stand still at their T_world_obstacle (4, 4)."""
+        """Replace the scene: a body that can fall, and obstacles that stand still at their
+        T_world_obstacle (4, 4).
+        """
         for handle, _ in [*self._obstacles, *([self._body] if self._body else [])]:
             self._bullet.removeBody(handle, physicsClientId=self.client)
         self._obstacles = [(self._add(item, matrix, fixed=True), item) for item, matrix in obstacles]
@@ -102,7 +105,9 @@ class Drops:
         return found
 
     def drop(self, T_world_body: Array, seconds: float) -> Array:
-        """Let the body go at rest; T_world_body (4, 4) afterwards. Ends early when it has come to rest."""
+        """Let the body go at rest; T_world_body (4, 4) afterwards. Ends early when it has come to
+        rest.
+        """
         handle, item = self._placed(T_world_body)
         bullet, client = self._bullet, self.client
         for step in range(math.ceil(seconds / STEP)):

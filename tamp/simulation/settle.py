@@ -24,7 +24,8 @@ class Settled:
 
 
 def settle(scene: Scene, poses: Mapping[str, Pose], seconds: float = 2.0) -> dict[str, Settled]:
-    """Let the movable bodies go at given poses and say how far each went after some time under gravity.
+    """Let the movable bodies go at given poses and say how far each went after some time under
+    gravity.
 
     Args:
         scene: Movable bodies that `poses` leaves out stand at their starts.

@@ -1,4 +1,6 @@
-"""Extents, volumes and surface points of convex shapes. The simulation's own: shared with nothing that plans."""
+"""Extents, volumes and surface points of convex shapes. The simulation's own: shared with nothing
+that plans.
+"""
 
 from __future__ import annotations
 
@@ -81,8 +83,8 @@ def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
     """Return position (m) and quaternion (xyzw) of a link's frame from pybullet's state of the
     link.
 
-    pybullet tells the frame of a link in single precision, that of its centre of mass in double: far from the world's
-    origin (0.06 mm at 1 km) the frame is taken from the latter.
+    pybullet tells the frame of a link in single precision, that of its centre of mass in double:
+    far from the world's origin (0.06 mm at 1 km) the frame is taken from the latter.
     """
     if max(abs(state[4][0]), abs(state[4][1])) < _SINGLE:
         return (*state[4], *state[5])

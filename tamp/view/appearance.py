@@ -18,7 +18,9 @@ BASE_COLOUR = (0.25, 0.3, 0.38, 1.0)
 ROBOT_COLOUR = (0.93, 0.93, 0.95, 1.0)
 
 CELL = 0.006
-"""Metres: details of the robot that are smaller are not drawn; a third of the Panda's triangles stay."""
+"""Metres: details of the robot that are smaller are not drawn; a third of the Panda's triangles
+stay.
+"""
 
 LARGE = 20_000
 """Triangles of a body's mesh above which it is drawn with details of a hundredth of its size."""

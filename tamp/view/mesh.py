@@ -26,7 +26,9 @@ ROUND = 40
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles of one colour: vertices (n, 3) in metres, faces (m, 3), counter-clockwise from outside."""
+    """Triangles of one colour: vertices (n, 3) in metres, faces (m, 3), counter-clockwise from
+    outside.
+    """
 
     vertices: Array
     faces: NDArray[np.integer]

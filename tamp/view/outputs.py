@@ -65,7 +65,8 @@ class Wishes:
         """Refuse what cannot be done before time is spent.
 
         Raises:
-            InputError: An output that cannot be written, an ending or a number that is not possible, no browser.
+            InputError: An output that cannot be written, an ending or a number that is not
+                possible, no browser.
         """
         from tamp.view.server import check_browser
 
@@ -84,7 +85,8 @@ class Wishes:
             raise InputError(f"--speed: {self.speed:g} is not between 0 and 1000")
         if self.size is not None and not all(16 <= side <= MOST_PIXELS for side in self.size):
             raise InputError(
-                f"--size: {self.size[0]}x{self.size[1]} is not between 16x16 and {MOST_PIXELS}x{MOST_PIXELS}"
+                f"--size: {self.size[0]}x{self.size[1]} is not between "
+                f"16x16 and {MOST_PIXELS}x{MOST_PIXELS}"
             )
         if self.view and self.browser:
             check_browser()

@@ -1,4 +1,6 @@
-"""One HTML file that shows a scene or plays a plan: everything is in it, it asks for nothing from anywhere."""
+"""One HTML file that shows a scene or plays a plan: everything is in it, it asks for nothing from
+anywhere.
+"""
 
 from __future__ import annotations
 

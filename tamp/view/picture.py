@@ -6,7 +6,6 @@ import io
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,28 +18,16 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array
 from tamp.system.outputs import write_whole
 from tamp.view.appearance import body_meshes, robot_meshes
-from tamp.view.mesh import Mesh, simplified, unit
+from tamp.view.mesh import Mesh, simplified
 from tamp.view.rasterizer import Camera, Triangles, render, triangles
-from tamp.view.timeline import Film, holding, tool_path
+from tamp.view.timeline import Film
+from tamp.view.trails import trails
 from tamp.view.video_formats import MOVING, check_suffix
 
 if TYPE_CHECKING:
     from PIL import Image
 
 FLOOR_COLOURS = ((0.86, 0.85, 0.83, 1.0), (0.83, 0.82, 0.8, 1.0))
-EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (
-    (0.2, 0.45, 0.85, 1.0),
-    (0.95, 0.45, 0.1, 1.0),
-    (0.3, 0.3, 0.35, 1.0),
-)
-"""Of the hand's path, empty and with a body in it, and of the base's."""
-
-THICK = 0.006
-"""Half the thickness of a path's line, metres."""
-
-STEP = 0.02
-"""A path's line leaves out points that are nearer to each other, metres."""
-
 VIEW = np.array([0.28, -0.86, 0.62])
 """Where from the scene's middle the eye is."""
 
@@ -64,21 +51,6 @@ MOST_TRIANGLES = 1_000_000
 
 TILES = 100
 """Of the floor, on each side at most."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Trail:
-    """The line of a path, and when each of its triangles is passed, shape (n,), increasing."""
-
-    line: Triangles
-    passed: Array
-
-    def until(self, time: float) -> Triangles:
-        """Return the triangles that were passed by then."""
-        count = int(np.searchsorted(self.passed, time, side="right"))
-        return Triangles(
-            self.line.corners[:count], self.line.normals[:count], self.line.colours[:count]
-        )
 
 
 class Studio:
@@ -107,7 +79,7 @@ class Studio:
             for name, some in meshes.items()
         }
         self._floor = _floor(film)
-        self._trails = _trails(film, self._kinematics)
+        self._trails = trails(film, self._kinematics)
 
     def frame(self, time: float) -> NDArray[np.uint8]:
         """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
@@ -177,7 +149,8 @@ def write_video(
     pauses that were cut.
 
     Raises:
-        InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it cannot be written.
+        InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it
+            cannot be written.
     """
     from PIL import Image
 
@@ -191,7 +164,10 @@ def write_video(
     deep = 1 if suffix == ".gif" else 3
     most = MOST_BYTES // (size[0] * size[1] * deep)
     if len(moments) > most:
-        what = f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, and {most:,} are the most"
+        what = (
+            f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, "
+            f"and {most:,} are the most"
+        )
         faster = math.ceil(speed * len(moments) / most)
         raise InputError(
             what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room"
@@ -268,45 +244,6 @@ def _floor(film: Film) -> list[Triangles]:
         ]
         tiles.append(triangles(Mesh(np.array(vertices), np.array(faces), colour)))
     return tiles
-
-
-def _trails(film: Film, kinematics: Kinematics) -> list[_Trail]:
-    full = np.array([*holding(film), False])
-    tool = tool_path(film, kinematics)
-    base = np.column_stack([film.rows[:, :2], np.full(len(film.rows), 0.01)])
-    lines = [
-        (tool, ~full, EMPTY_COLOUR),
-        (tool, full, FULL_COLOUR),
-        (base, np.full(len(full), True), DRIVE_COLOUR),
-    ]
-    trails = [_trail(points, film.times, shown, colour) for points, shown, colour in lines]
-    return [trail for trail in trails if len(trail.passed)]
-
-
-def _trail(
-    points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]
-) -> _Trail:
-    """Make three-sided rods along the stretches of a polyline that are shown."""
-    kept = [0]
-    for i in range(1, len(points)):
-        if np.linalg.norm(points[i] - points[kept[-1]]) >= STEP or shown[i] != shown[kept[-1]]:
-            kept.append(i)
-    ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(
-        -1, 2
-    )
-    starts, stops = points[ends[:, 0]], points[ends[:, 1]]
-    along = stops - starts
-    steep = np.abs(along[:, 2]) > 0.9 * np.linalg.norm(along, axis=1)
-    side = unit(np.cross(along, np.where(steep[:, None], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])))
-    up = unit(np.cross(side, along))
-    turns = np.array([0.5, 2.6, 4.7])[:, None, None]
-    ring = THICK * (np.cos(turns) * side + np.sin(turns) * up)
-    vertices = np.concatenate([starts + ring, stops + ring]).transpose(1, 0, 2).reshape(-1, 3)
-    rod = [(i, j, 3 + j) for i, j in ((0, 1), (1, 2), (2, 0))] + [
-        (i, 3 + j, 3 + i) for i, j in ((0, 1), (1, 2), (2, 0))
-    ]
-    faces = (6 * np.arange(len(ends))[:, None, None] + np.array(rod)).reshape(-1, 3)
-    return _Trail(triangles(Mesh(vertices, faces, colour)), np.repeat(times[ends[:, 1]], len(rod)))
 
 
 def _three(vector: Array) -> tuple[float, float, float]:

@@ -1,4 +1,6 @@
-"""Triangles to pixels, without a window, a graphics card or a driver: a depth buffer, a light and its shadows."""
+"""Triangles to pixels, without a window, a graphics card or a driver: a depth buffer, a light and
+its shadows.
+"""
 
 from __future__ import annotations
 
@@ -139,7 +141,9 @@ def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
 
 @njit(cache=True)
 def _fill(screen, perspective, depth, ids, weights):
-    """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the eye are left out."""
+    """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the
+    eye are left out.
+    """
     rows, columns = depth.shape
     for n in range(screen.shape[0]):
         ax, ay, az = screen[n, 0, 0], screen[n, 0, 1], screen[n, 0, 2]

@@ -112,7 +112,8 @@ def check_browser() -> None:
     except webbrowser.Error:
         raise InputError(
             "no browser was found to open",
-            remedy="Write a page with --html FILE or a picture with --png FILE, or serve with tamp-view --no-browser",
+            remedy="Write a page with --html FILE or a picture with --png FILE, "
+            "or serve with tamp-view --no-browser",
         ) from None
 
 

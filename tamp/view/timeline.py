@@ -18,7 +18,8 @@ from tamp.symbolic.pddl.structs import Fact
 
 @dataclass(frozen=True)
 class Shown:
-    """An action: its name, the scene's objects among its arguments, when it starts and ends (seconds).
+    """An action: its name, the scene's objects among its arguments, when it starts and ends
+    (seconds).
 
     `where` says from where a body is taken, or where it is put, as far as the plan's facts tell.
     """
@@ -55,7 +56,8 @@ class Film:
         robot: Of the scene.
         actions: In order; none without a plan.
         times: Seconds, shape (n,), not decreasing.
-        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in between.
+        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in
+            between.
         stays: Where each movable body is, one after the other.
     """
 
