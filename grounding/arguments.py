@@ -171,7 +171,9 @@ def parsed(arguments: list[str]) -> Arguments:
             found=command,
             choices=COMMANDS,
         )
+
     complaint = io.StringIO()
+
     try:
         with contextlib.redirect_stderr(complaint):
             chosen = tyro.extras.subcommand_cli_from_dict(
@@ -185,6 +187,7 @@ def parsed(arguments: list[str]) -> Arguments:
         ) from None
     except BrokenPipeError:
         raise unread() from None
+
     _check(chosen)
     return chosen
 
@@ -195,14 +198,17 @@ def _check(chosen: Arguments) -> None:
         and chosen.relation not in RELATIONS
     ):
         _check_own(chosen)
+
     for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
         number = vars(chosen).get(name)
         if number is not None and number < 1:
             raise InputError(f"--{name} must be positive, not {number}")
+
     if isinstance(chosen, Generate | Explore) and not 0.0 < chosen.mesh_scale < math.inf:
         raise InputError(f"--mesh-scale must be positive, not {chosen.mesh_scale}")
     if not isinstance(chosen, Collect) and not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
+
     for name, suffix in (
         ("out", ".npz" if isinstance(chosen, Generate | Explore | Collect) else ".safetensors"),
         ("data", ".npz"),

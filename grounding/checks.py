@@ -77,6 +77,7 @@ def check_card(card: Mapping[str, Any]) -> None:
         or len(relation) > 200
     ):
         raise InputError(f"'relation' of the card is {_shown(relation)}, not a name")
+
     for name in ("kinds", "templates"):
         found = card.get(name)
         if (
@@ -85,6 +86,7 @@ def check_card(card: Mapping[str, Any]) -> None:
             or not all(isinstance(one, str) for one in found)
         ):
             raise InputError(f"'{name}' of the card is {_shown(found)}, not a list of names")
+
     if len(set(card["templates"])) != len(card["templates"]):
         raise InputError("'templates' of the card has a name twice")
     for name in ("count", "seed"):
@@ -92,6 +94,7 @@ def check_card(card: Mapping[str, Any]) -> None:
             not isinstance(card[name], int) or isinstance(card[name], bool) or card[name] < 0
         ):
             raise InputError(f"'{name}' of the card is {_shown(card[name])}, not a number")
+
     if not isinstance(card.get("split", ""), str):
         raise InputError(f"'split' of the card is {_shown(card['split'])}, not a name")
     if not isinstance(card.get("by type", {}), dict):

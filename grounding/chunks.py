@@ -112,6 +112,7 @@ def make_dataset(
     for found, choices in ((job.relation, RELATIONS), (job.split, SPLITS)):
         if found not in choices:
             raise InputError(f"unknown relation or split '{found}'", found=found, choices=choices)
+
     if job.count < 1:
         raise InputError(f"the number of scenes must be positive, not {job.count}")
     object_templates(job.split, job.folder)  # a bad mesh is said before processes start
@@ -126,6 +127,7 @@ def make_dataset(
         write_whole(files[number], content)
         done += 1
         progress(min(done * CHUNK, job.count), job.count)
+
     data = _merged(job, [*files.values()])
     write_dataset(out, data)
     shutil.rmtree(parts)
@@ -221,6 +223,7 @@ def _arrays(
         arrays["body"][row, :bodies] = [names[name] for name in one.names]
         arrays["scale"][row, :bodies] = one.scales
         arrays["pose"][row, :bodies] = one.poses
+
     return arrays
 
 
@@ -229,6 +232,7 @@ def _merged(job: Job, files: Sequence[Path]) -> Dataset:
     for file in files:
         with np.load(file, allow_pickle=False) as archive:
             loaded.append({name: archive[name] for name in archive.files})
+
     arrays = {name: np.concatenate([one[name] for one in loaded]) for name in loaded[0]}
     supports = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     objects = object_templates(job.split, job.folder)

@@ -81,6 +81,7 @@ def _run(arguments: list[str]) -> int:
         _SHOWN.end()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+
     return DONE
 
 
@@ -135,6 +136,7 @@ def _encoder(chosen: Encoder) -> None:
         from grounding.paper.encoders import Args, train_encoder
     except ImportError as error:
         raise _missing(error) from None
+
     args = Args(seed=chosen.seed)
     args = replace(
         args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points

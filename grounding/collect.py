@@ -76,6 +76,7 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
                 templates[body.parts] = f"{name}#{taken + 1}" if taken else name
             placed.append((numbers[body.parts], body.pose.matrix))
         rows.append((one.holds, region, placed))
+
     if not rows:
         raise InputError(f"no demonstrations of '{relation}'")
     arrays = _arrays(rows)
@@ -93,6 +94,7 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
         places = f"{sources[first]} and {sources[second]}"
         what = f"'{relation}' is said to hold and not to hold in the same situation: {places}"
         raise InputError(what, remedy="Take one of the two away")
+
     return data
 
 
@@ -121,6 +123,7 @@ def unsteady(data: Dataset) -> list[str]:
             entry = (example.names[1], what)
             found[entry] += 1
             first.setdefault(entry, data.sources[row] if data.sources else f"row {row}")
+
     return [
         f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): "
         f"no plan will put it down so"
@@ -155,11 +158,13 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
                 except InputError as found:
                     raise found.at(path, group.place.line) from None
                 said.append(demonstration)
+
         if not said:
             remedy = f"goal: ({relation} BODY PLACE), or goal: (not ({relation} BODY PLACE))"
             raise InputError(
                 f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy
             )
+
         yield from said
 
 
@@ -239,4 +244,5 @@ def _arrays(
     for row, (_, _, placed) in enumerate(rows):
         arrays["body"][row, : len(placed)] = [number for number, _ in placed]
         arrays["pose"][row, : len(placed)] = [matrix for _, matrix in placed]
+
     return arrays

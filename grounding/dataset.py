@@ -179,6 +179,7 @@ def read_dataset(path: Path) -> Dataset:
         check_card(card)
     except InputError as error:
         raise InputError(error.message, file=path.with_suffix(".json"), remedy=remedy) from None
+
     try:
         arrays = read_npz(pair.content)
         check_arrays(arrays, card)
@@ -190,6 +191,7 @@ def read_dataset(path: Path) -> Dataset:
         ) from None
     except (ValueError, ArithmeticError) as error:  # a hull that is none
         raise InputError(f"the data set is damaged: {error}", file=path, remedy=remedy) from None
+
     if pair.stranger is not None:
         raise pair.stranger
     return Dataset(arrays, templates, card.pop("kinds"), card)
@@ -227,9 +229,11 @@ def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
             else:
                 vertices.append(shape.vertices)
                 faces.append(np.asarray(shape.faces, dtype=np.int64))
+
             counts = (len(vertices[-1]), len(faces[-1])) if isinstance(shape, Hull) else (0, 0)
             pose = (*part.pose.position, *part.pose.quaternion)
             rows.append((number, _SHAPES.index(type(shape)), size, pose, *counts))
+
     columns = [np.array(column) for column in zip(*rows, strict=True)]
     return dict(
         zip(_GEOMETRY, [*columns, np.concatenate(vertices), np.concatenate(faces)], strict=True)
@@ -255,7 +259,9 @@ def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
                 arrays["vertices"][vertex : vertex + count],
                 arrays["faces"][face : face + triangles],
             )
+
         vertex, face = vertex + count, face + triangles
         qx, qy, qz, qw = quaternion
         templates[number].append(Part(shape, Pose((x, y, z), (qx, qy, qz, qw))))
+
     return [tuple(parts) for parts in templates]

@@ -70,6 +70,7 @@ def evaluate(
     papers: Counter[str] = Counter()
     feasible, times = 0, []
     items = ItemOf()
+
     with Drops() as drops:
         for done, index in enumerate(order):
             situation = data[int(index)].situation
@@ -83,7 +84,9 @@ def evaluate(
             feasible += known or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
+
     count = len(order)
+
     return Evaluation(
         count,
         papers[Verdict.HOLDS] / count,

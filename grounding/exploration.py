@@ -214,17 +214,20 @@ class Explorer:
             items(scene.body),
             [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)],
         )
+
         for verdict, pose in zip(verdicts, poses, strict=True):
             if verdict in falling and all(
                 one.distance > -0.0005 for one in self._drops.contacts(pose)
             ):
                 rests.append(self._drops.drop(pose, SECONDS))
                 stayed.append(verdict is Verdict.HOLDS)
+
         found: list[tuple[str, Array]] = []
         after = settled(situation, np.stack(rests), self._drops, items) if rests else []
         for verdict, pose, there in zip(after, rests, stayed, strict=True):
             if verdict is Verdict.HOLDS and len(free(pose[None], scene)):
                 found.append((STAYED if there else RESTED, pose))
+
         failed = [one for one in tried if one[0] != Verdict.HOLDS]
         return failed + found
 

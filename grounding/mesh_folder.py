@@ -77,8 +77,10 @@ def read_folder(folder: MeshFolder) -> Loaded:
             else ""
         )
         raise InputError(what, file=folder.path, remedy=remedy)
+
     found: dict[str, tuple[Part, ...]] = {}
     warnings: list[str] = []
+
     for name, file in files.items():
         try:
             mesh = load_mesh(file, (folder.scale, folder.scale, folder.scale))
@@ -90,6 +92,7 @@ def read_folder(folder: MeshFolder) -> Loaded:
             found[name] = mesh.parts
         else:
             warnings.append(f"{file}: left out, {reason}")
+
     if not found:
         raise InputError(f"none of its meshes can be used: {warnings[-1]}", file=folder.path)
     return Loaded(found, tuple(warnings))

@@ -44,6 +44,7 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
             too large. The message names the array.
     """
     _check_end(content)
+
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.infolist()
@@ -53,6 +54,7 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
                     f"its arrays take {total / 1e6:,.0f} MB, "
                     f"at most {MOST_BYTES / 1e6:,.0f} are read"
                 )
+
             return dict(_member(archive, member) for member in members)
     except (
         OSError,
@@ -105,6 +107,7 @@ def _header(stream: Any, name: str) -> Header:
             if version == (1, 0)
             else np.lib.format.read_array_header_2_0
         )
+
         shape, _, dtype = reader(stream)
         return Header(shape, dtype, stream.tell())
     except (

@@ -51,6 +51,7 @@ def object_templates(
     for name, make in SHAPES.items():
         for number in range(HOUSEHOLD[split]):
             found[f"{name}_{split}_{number}"] = make(rng)
+
     if split == "test":
         found |= YCB
     paths = {
@@ -64,6 +65,7 @@ def object_templates(
     for path, scale in MESHES[split].items():
         mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
         found[Path(path).stem] = mesh.parts
+
     if folder is not None:
         found |= read_folder(folder).templates
     return {name: parts for name, parts in found.items() if unusable(parts) is None}

@@ -84,6 +84,7 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
         least, most = -region.size[:2] / 2, region.size[:2] / 2
         too_low, too_high = low[:, 2] < -NEAR, low[:, 2] > NEAR
         within = (np.abs((low + high)[:, :2] / 2) <= most).all(axis=1)
+
     overlaps = (low[:, :2] < most).all(axis=1) & (high[:, :2] > least).all(axis=1)
     free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
     failed = {

@@ -36,6 +36,7 @@ def random_rest(
     else:
         outline = face.outline @ turn.T
         low, high = outline.min(axis=0), outline.max(axis=0)
+
     least, most = -half - low, half - high
     if (least > most).any():
         return None

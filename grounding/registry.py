@@ -102,6 +102,7 @@ def load_model(path: Path, model: str | None = None) -> Model:
             found=trained,
             choices=choices,
         )
+
     name = model or trained
     if name not in MODELS and name not in UNTRAINED:
         raise InputError(f"unknown model '{name}'", found=name, choices=MODELS)
@@ -109,6 +110,7 @@ def load_model(path: Path, model: str | None = None) -> Model:
         raise InputError(
             f"these are weights of '{trained}'; '{name}' is not made of them", file=path
         )
+
     try:
         return MODELS[name](weights)
     except InputError as error:

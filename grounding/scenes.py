@@ -143,6 +143,7 @@ class Scenes:
             found = self._distractor(crowded, number, stand, support, others, rng)
             if found is not None:
                 others.append(found)
+
         return Drawn(
             (name, body_name),
             (scale, body_scale),

@@ -106,6 +106,7 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
                 )
                 points[v, k] = at
                 least[k], most[k] = min(least[k], at), max(most[k], at)
+
         for m in range(len(sizes)):
             best = max(least[2] - high[m, 2], low[m, 2] - most[2])  # the vertical
             for k in range(3):  # the obstacle's axes
@@ -115,6 +116,7 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
                     at = x * points[v, 0] + y * points[v, 1] + z * points[v, 2]
                     first, last = min(first, at), max(last, at)
                 best = max(best, first - spans[m, k, 1], spans[m, k, 0] - last)
+
             for k in range(3):  # the body's axes
                 x, y, z = pose[0, k], pose[1, k], pose[2, k]
                 first, last = np.inf, -np.inf
@@ -123,6 +125,7 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
                     first, last = min(first, at), max(last, at)
                 origin = x * pose[0, 3] + y * pose[1, 3] + z * pose[2, 3]
                 best = max(best, origin + box[0, k] - last, first - origin - box[1, k])
+
             # the horizontal line between the centres
             x = (least[0] + most[0] - low[m, 0] - high[m, 0]) / 2
             y = (least[1] + most[1] - low[m, 1] - high[m, 1]) / 2

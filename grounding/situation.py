@@ -154,6 +154,7 @@ def _region(parts: tuple[Part, ...], alone: bool, place: Surface | Cavity) -> Re
             if alone
             else np.array([[-half[0], -half[1], 0.0], [*half, height]])
         )
+
     return Region(
         isinstance(place, Cavity),
         place.pose.matrix,

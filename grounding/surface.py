@@ -26,8 +26,9 @@ class SurfaceModel:
     """
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: a stable face down, flush, whole inside the region where it
-        fits; bodies around are not looked at. None when no stable face fits under the ceiling.
+        """Propose `count` poses, in no order: a stable face down, flush, whole inside the region
+        where it fits; bodies around are not looked at. None when no stable
+        face fits under the ceiling.
         """
         region = situation.region
         faces = [

@@ -70,6 +70,7 @@ def coded_table(
         features[rows, 7:] = encode(template[rows], scale[rows, None, None] * rotations[rows])
         if start // batch % 200 == 199:
             progress(f"codes of {start + batch} of {len(placed)} clouds")
+
     sizes = np.array([2 + len(others) for others in around])
     first = np.cumsum(sizes) - sizes
     features[:, :3] = middle - np.repeat(middle[first], sizes, axis=0)

@@ -44,12 +44,14 @@ def critic_gradient(
         hidden = torch.baddbmm(bias, inputs[-1], weight).relu_()
         inputs.append(hidden)
         masks.append(hidden.sign())
+
     slopes = [_weighted(scenes, inputs[0])]
     for weight, mask in zip(weights[:0:-1], masks[::-1], strict=True):
         slopes.insert(0, torch.bmm(slopes[0], weight.transpose(1, 2)).mul_(mask))
     gradient = torch.bmm(slopes[0][:, 2 * scenes :], weights[0].transpose(1, 2))
     norm = torch.linalg.vector_norm(gradient, dim=2, keepdim=True)
     change = gradient.mul_((1 - 1 / norm.clamp_(min=1e-12)).mul_(2 * penalty / scenes))
+
     for number, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
         slope, values = slopes[number], inputs[number]
         values[:, 2 * scenes :] = change

@@ -34,7 +34,7 @@ class Moving(Grounding):
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
-        """`count` world poses of body `arguments[0]` on or in `arguments[1]`, in no order."""
+        """Propose `count` world poses of body `arguments[0]` on or in `arguments[1]`, unordered."""
         support = situation_of(scene, arguments).support
         poses: list[Pose] = []
         while len(poses) < count:
@@ -54,9 +54,9 @@ def laid(form: Form, pose: Array) -> Array:
     """
     if not form.faces:
         return pose
-    ups = np.array(
-        [face.rotation[2] for face in form.faces]
-    )  # the world's up in the body's frame, were it on that face
+
+    # the world's up in the body's frame, were it on that face
+    ups = np.array([face.rotation[2] for face in form.faces])
     up = ups[np.argmax(ups @ pose[2, :3])]
     before = pose[2, :3]
     axis, cosine = np.cross(up, before), float(up @ before)

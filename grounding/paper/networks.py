@@ -87,6 +87,7 @@ class Ensemble:
             (count, rows, outputs) for inputs, outputs in shapes.values() for rows in (inputs, 1)
         ]  # a matrix and a bias each
         keys = [f"{name}.{key}" for name in shapes for key in ("weight", "bias")]
+
         for key, tensor, gradient in zip(
             keys, self.parts(self.flat), self.parts(self.gradient), strict=True
         ):
@@ -96,6 +97,7 @@ class Ensemble:
                     tensor[model].uniform_(-bound, bound, generator=random)
             self.weights[key] = tensor.detach().requires_grad_()
             self.weights[key].grad = gradient
+
         self.fixed = {name: tensor.detach() for name, tensor in self.weights.items()}
 
     def parts(self, flat: Tensor) -> list[Tensor]:

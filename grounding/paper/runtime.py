@@ -56,8 +56,8 @@ class PaperModel:
         self._sees = bool(self.classifier.scene or self.generator.scene)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: the generator moves argument 1 from where it is, each time by
-        other noise.
+        """Propose `count` poses, in no order: the generator moves argument 1 from where it is, each
+        time by other noise.
         """
         seen = self._features.observe(situation, self._sees)
         noise = rng.standard_normal((count, NOISE), dtype=np.float32)
@@ -178,6 +178,7 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
         raise InputError(
             f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY
         )
+
     _check_scene(classifier, inputs // 2)
     if inputs == 2 * BB:
         return BoxFeatures()
@@ -188,6 +189,7 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
             if "encoder." in name
         }
         return CloudFeatures(NumpyEncoder(encoder))
+
     raise InputError(
         f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)"
     )

@@ -193,6 +193,7 @@ class Trainer:
         scenes = self._draw(self._all, 3, start, sum(steps) + end - start)
         positive = self._draw(self._positive, 4, start, sum(steps))
         done, loss, batch = 0, torch.zeros(()), self.args.batch
+
         for count, last in zip(steps, range(end - start), strict=True):
             for first in range(done, done + count, AHEAD):
                 some = min(AHEAD, done + count - first)
@@ -206,6 +207,7 @@ class Trainer:
                 for one, other, mix in zip(real, fakes, mixes, strict=True):
                     critic_gradient(self.critic, one, other, mix, self.args.penalty)
                     self.critic.update(self.args.rate)
+
             done += count
             rows = scenes[:, sum(steps) + last]
             loss = self._loss(
@@ -213,6 +215,7 @@ class Trainer:
             )
             loss.backward()
             self.generator.update(self.args.rate)
+
         return float(loss.detach()) / batch / len(self.sizes)
 
     def _loss(self, batch: Batch, noise: Tensor) -> Tensor:

@@ -62,6 +62,7 @@ def train(
         if _clouds(model) and encoder
         else {}
     )
+
     return [
         Weights(
             {**arrays, **extra},
@@ -118,6 +119,7 @@ def _check(
         raise InputError(f"unknown scheme '{scheme}'", found=scheme, choices=SCHEMES)
     if len(sizes) != len(seeds) or not sizes:
         raise InputError(f"{len(sizes)} sizes for {len(seeds)} seeds; each model has one of each")
+
     if min(sizes) < 2 or max(sizes) > len(data):
         raise InputError(
             f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible"

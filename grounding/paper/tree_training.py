@@ -56,11 +56,13 @@ def train_tree(
             "the demonstrations are all positive or all negative",
             remedy="Add some of the other kind.",
         )
+
     table = features_of(data, model, encoder, progress, samples)
     progress(f"a tree of {samples} scenes")
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if encoder else {}
     arrays = grown(table, samples, seed)
     why = _chance(table, samples, seed) if samples < MANY else None
+
     return Weights(
         {**arrays, **extra},
         {

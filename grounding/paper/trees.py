@@ -53,7 +53,7 @@ class TreeModel:
         self.tree = Tree(weights.arrays, self._features.size)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, each from a random positive leaf; none when the tree has no such leaf."""
+        """Propose `count` poses, each from a random positive leaf; none when the tree has none."""
         if not len(self.tree.leaves):
             return np.zeros((0, 4, 4))
         seen = self._observe(situation)
@@ -102,6 +102,7 @@ class Tree:
             or not len(columns[0])
         ):
             raise _refused("nodes that do not fit each other")
+
         self._feature, self._left, self._right = (
             columns[index].astype(np.intp) for index in (0, 2, 3)
         )

@@ -62,6 +62,7 @@ def _turn(matrices, turns):
         for k in range(2, -1, -1):  # of equal ones the first
             if r[k, k] >= most:
                 most, i = r[k, k], k
+
         if i == 3:
             q[0], q[1], q[2], q[3] = (
                 r[2, 1] - r[1, 2],
@@ -73,6 +74,7 @@ def _turn(matrices, turns):
             j, k = (i + 1) % 3, (i + 2) % 3
             q[i], q[3] = 1 - trace + 2 * r[i, i], r[k, j] - r[j, k]
             q[j], q[k] = r[j, i] + r[i, j], r[k, i] + r[i, k]
+
         length = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
         if q[3] < 0:
             length = -length

@@ -173,6 +173,7 @@ class Chart:
                 still.centre[:, :2],
                 np.broadcast_to(view.region.size[:2] / 2, (len(face), 2)),
             )
+
         positions = np.empty((len(face), 3))
         positions[:, :2] = (
             np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle

@@ -53,7 +53,7 @@ class Flow:
         )
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
-        """`count` poses, measured."""
+        """Draw `count` poses, measured."""
         conditions = condition(view)
         logits = dense(self._face, conditions)[:, 0].astype(float)
         logits = np.where(

@@ -122,6 +122,7 @@ def train_flow(
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
         net = FlowNet(args.hidden)
+
     average = {name: value.detach().clone() for name, value in net.named_parameters()}
     steps = min(args.iterations, max(1000, 4 * len(positive)))
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
@@ -129,6 +130,7 @@ def train_flow(
         optimizer, args.rate, total_steps=steps, pct_start=0.1
     )
     total = 0.0
+
     for step in range(1, steps + 1):
         rows = torch.randint(len(data), (min(args.batch, len(data)),), generator=random)
         noise = torch.randn((len(rows), COORDINATES), generator=random)
@@ -145,10 +147,12 @@ def train_flow(
         with torch.no_grad():
             for name, value in net.named_parameters():
                 average[name].lerp_(value, 1 - keep)
+
         total += float(loss.detach())
         if step % max(1, steps // 20) == 0:
             progress(step, steps, total / max(1, steps // 20))
             total = 0.0
+
     net.load_state_dict(average)
     return {**net.arrays(), "scale": scale}
 

@@ -56,7 +56,7 @@ class Transfer:
         return cls(chart, *(np.stack(column) for column in columns))
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
-        """`count` poses, measured."""
+        """Draw `count` poses, measured."""
         faces, coordinates = self.choose(view, count, rng)
         return self.chart.decode(view, faces, coordinates)
 

@@ -85,12 +85,14 @@ def train_ranker(
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
         net = RankerNet(args.hidden, args.pooled)
+
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
     steps = min(args.iterations, max(600, 2 * len(labels)))
     schedule = torch.optim.lr_scheduler.OneCycleLR(
         optimizer, args.rate, total_steps=steps, pct_start=0.1
     )
     best, kept = -1.0, net.arrays()
+
     for step in range(1, steps + 1):
         rows = chosen[
             torch.randint(len(chosen), (min(args.batch, len(chosen)),), generator=generator)
@@ -109,6 +111,7 @@ def train_ranker(
             if accuracy >= best:
                 best, kept = accuracy, net.arrays()
             progress(step, steps, accuracy)
+
     return kept, best
 
 

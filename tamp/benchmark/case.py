@@ -180,6 +180,7 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
             maker(relation, choice, known)()
             served[relation] = choice.text
         return served
+
     name = sampler.partition(":")[0]
     able = [relation for relation in known if name in known[relation]]
     if not able:
@@ -192,8 +193,10 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
         raise InputError(
             f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names), remedy=remedy
         )
+
     made: dict[str, str] = {}
     missing: list[InputError] = []
+
     for relation in able:
         choice = parse_choice(relation, sampler, known)
         try:
@@ -201,6 +204,7 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
             made[relation] = choice.text
         except InputError as error:
             missing.append(error)
+
     if not made:
         raise missing[0]
     return made

@@ -67,6 +67,7 @@ class Log:
             raise InputError(
                 f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE
             ) from None
+
         try:
             self._lock()
             whole = _whole(path)
@@ -76,6 +77,7 @@ class Log:
         except BaseException:
             self._close()
             raise
+
         self._known = {key(line["config"]) for line in self.lines}
 
     def __enter__(self) -> Log:

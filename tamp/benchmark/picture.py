@@ -209,6 +209,7 @@ def _parts(sheet: _Sheet) -> None:
                 label=part,
             )
             bottom = [low + height for low, height in zip(bottom, heights, strict=True)]
+
         axes.set_xticks(
             places, [one.sampler for one in found], rotation=35, ha="right", rotation_mode="anchor"
         )

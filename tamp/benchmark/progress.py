@@ -45,6 +45,7 @@ class Watch:
         terminal = self._stream.isatty()
         if self._quiet or (not terminal and left and now - self._last < SELDOM):
             return
+
         self._last = now
         minutes, seconds = divmod(round((now - self._started) / self._done * left), 60)
         config = line["config"]
@@ -55,5 +56,6 @@ class Watch:
             f"{config['sampler']} seed {config['seed']}: "
             f"{line['outcome']}{rejected} {line['planning_s']:.2f} s"
         )
+
         end = "" if terminal and left else "\n"
         print(f"\r{text}\x1b[K" if terminal else text, end=end, file=self._stream, flush=True)

@@ -53,8 +53,10 @@ class RayCrew:
             raise InputError(
                 "--ray needs Ray, which is not installed", remedy="pip install 'tamp[ray]'"
             ) from None
+
         self._ray: Any = ray
         quiet = {"log_to_driver": False, "logging_level": "error"}
+
         try:
             if address == LOCAL:
                 ray.init(address=LOCAL, num_cpus=size, include_dashboard=False, **quiet)
@@ -63,6 +65,7 @@ class RayCrew:
         except Exception as error:  # Ray says it in many ways
             said = str(error).strip().splitlines() or [type(error).__name__]
             raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=REMEDY) from None
+
         guard.listen()  # Ray has taken SIGTERM for itself
         self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
         # A lost run is given out again by whoever leads, who knows what was written down: Ray does
@@ -94,12 +97,14 @@ class RayCrew:
                 self._ray.exceptions.RayError
             ):  # its process, its machine or the way to it is gone
                 ended.append((case, None))
+
         for reference in pending:
             case, since = self._under_way[reference]
             if time.monotonic() - since > case.time + GRACE + STARTING:
                 self._ray.cancel(reference, force=True)
                 del self._under_way[reference]
                 ended.append((case, None))
+
         return ended
 
     def close(self) -> None:

@@ -95,6 +95,7 @@ def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
             "motion_s": solution.duration,
         }
         line |= _verdict(solution)
+
     return line
 
 

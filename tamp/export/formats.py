@@ -56,6 +56,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     writer.writerow(
         ("time", "number", "action", "part", "holding", *joints, *(f"v_{name}" for name in joints))
     )
+
     for number, action in enumerate(actions, start=1):
         for stretch in action.stretches:
             moving = [column[name] for name in stretch.joints]
@@ -76,6 +77,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
                         *numbers,
                     )
                 )
+
     return file.getvalue()
 
 
@@ -101,6 +103,7 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
         for number, action in enumerate(actions, start=1)
         for stretch in action.stretches
     ]
+
     return (
         json.dumps(
             {"format": "tamp-ros", "version": 1, "robot": plan.robot, "trajectories": messages}

@@ -119,6 +119,7 @@ def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
         distance = float(np.max(np.abs(seen[:, :2]) / reach - seen[:, 2:]))
         plane = seen[:, :2] / (seen[:, 2:] + distance)
         target = target + (plane.min(axis=0) + plane.max(axis=0)) / 2 * distance @ frame[:2]
+
     return Camera(_three(target - ahead * distance), _three(target), angle)
 
 

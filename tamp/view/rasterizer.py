@@ -156,6 +156,7 @@ def _fill(screen, perspective, depth, ids, weights):
             continue
         left, right = max(0, int(min(ax, bx, cx))), min(columns - 1, int(max(ax, bx, cx)))
         top, bottom = max(0, int(min(ay, by, cy))), min(rows - 1, int(max(ay, by, cy)))
+
         for row in range(top, bottom + 1):
             y = row + 0.5
             for column in range(left, right + 1):
@@ -171,6 +172,7 @@ def _fill(screen, perspective, depth, ids, weights):
                     u, v, w = u * z, v * z, w * z
                 else:
                     z = u * az + v * bz + w * cz
+
                 if z < depth[row, column]:
                     depth[row, column] = z
                     ids[row, column] = n
@@ -208,7 +210,9 @@ def _shade(
             if n < 0:
                 pixels[row, column] = background
                 continue
+
             facing, length, lit = 0.0, 0.0, 0.0
+
             for axis in range(3):
                 point[axis], normal[axis] = 0.0, 0.0
                 for corner in range(3):
@@ -216,6 +220,7 @@ def _shade(
                     normal[axis] += weights[row, column, corner] * normals[n, corner, axis]
                 facing += normal[axis] * (eye[axis] - point[axis])
                 length += normal[axis] * normal[axis]
+
             sign = (1.0 if facing >= 0.0 else -1.0) / max(
                 np.sqrt(length), 1e-9
             )  # the inside of what is open shows, too
@@ -233,6 +238,7 @@ def _shade(
                         c, r = min(max(int(x + across), 0), last), min(max(int(y + along), 0), last)
                         light += 0.25 * (SHADOW if z - BIAS > shadows[r, c] else 1.0)
                 lit *= light
+
             brightness = 0.5 + 0.12 * sign * normal[2] + 0.45 * max(lit, 0.0)
             for axis in range(3):
                 pixels[row, column, axis] = min(max(colours[n, axis] * brightness, 0.0), 1.0)

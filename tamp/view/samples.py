@@ -88,6 +88,7 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
     what = f"grasp of {body}" if grasp else " ".join([f"{body} by {stream}", *places])
     verdict = "in the plan" if used else "rejected" if refusals else "accepted"
     words = {word.lower() for _, why, _ in refusals for word in re.findall(r"[\w-]+", why)}
+
     return Shot(
         kind="grasp" if grasp else "placement",
         body=body,

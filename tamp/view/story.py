@@ -67,6 +67,7 @@ def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
         (words, numbers[name].number(0.0)) for name, words in COUNTS.items() if name in numbers
     ]
     texts = [f"{count:,.0f} {words[0] if count == 1 else words[1]}" for words, count in counts]
+
     return Story(
         head=_head(root, seconds),
         why=tuple(

@@ -68,6 +68,7 @@ def _trail(
             or shown[i] != shown[kept[-1]]
         ):
             kept.append(i)
+
     ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(
         -1, 2
     )
