@@ -31,8 +31,8 @@ class Generate:
     out: Path | None = None
     """The file; by default data/RELATION_SPLIT.npz."""
     meshes: Path | None = None
-    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
-    For training and test take different ones."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes:
+    they join the objects. For training and test take different ones."""
     mesh_scale: float = 1.0
     """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
@@ -41,21 +41,25 @@ class Generate:
 
 @dataclass(frozen=True)
 class Explore:
-    """Make labelled scenes by trying poses out in physics; an interrupted run goes on where it was."""
+    """Make labelled scenes by trying poses in physics; an interrupted run goes on where it was."""
 
     relation: Annotated[str, tyro.conf.Positional]
     """on or inside."""
     count: int = 1000
     """Scenes; in half of them the relation came to hold."""
     model: Path | None = None
-    """Weights of a grounding that proposes half of the poses, moved at random; by default all poses are random."""
+    """Weights of a grounding that proposes half of the poses, moved at random; by default all poses
+    are random.
+    """
     seed: int = 0
     """Of all randomness: the same seed gives the same bytes."""
     out: Path | None = None
-    """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION --data FILE."""
+    """The file; by default data/RELATION_explored.npz. Train on it: tamp-learn train RELATION
+    --data FILE.
+    """
     meshes: Path | None = None
-    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes: they join the objects.
-    For training and test take different ones."""
+    """A folder of one's own meshes (OBJ, STL, PLY, URDF), one a subfolder as the YCB set comes:
+    they join the objects. For training and test take different ones."""
     mesh_scale: float = 1.0
     """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
@@ -69,14 +73,16 @@ class Collect:
     relation: Annotated[str, tyro.conf.Positional]
     """Any name."""
     files: Annotated[tuple[Path, ...], tyro.conf.Positional]
-    """Problem files, or folders of them. Their goals say what holds in them: (RELATION BODY PLACE), or (not (...))."""
+    """Problem files, or folders of them. Their goals say what holds in them: (RELATION BODY PLACE),
+    or (not (...)).
+    """
     out: Path | None = None
     """The file; by default data/RELATION_train.npz."""
 
 
 @dataclass(frozen=True)
 class Encoder:
-    """Train an encoder of point clouds, which the models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
+    """Train an encoder of point clouds, as models on clouds (mlp-pc, gnn-pc, tree-pc) need."""
 
     relation: Annotated[str, tyro.conf.Positional]
     """on or inside, or one's own."""
@@ -105,7 +111,9 @@ class Train:
     model: str = "transfer"
     """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
     scheme: str | None = None
-    """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by default both."""
+    """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by
+    default both.
+    """
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -127,7 +135,9 @@ class Evaluate:
     weights: Annotated[str, tyro.conf.Positional]
     """A weight file (.safetensors), or RELATION=NAME of what ships, such as on=surface."""
     model: str | None = None
-    """What to make of the weights; by default what they were trained as. uniform+mlp is made of those of mlp-bb."""
+    """What to make of the weights; by default what they were trained as. uniform+mlp is made of
+    those of mlp-bb.
+    """
     data: Path | None = None
     """The data set; by default data/RELATION_test.npz of the weights' relation."""
     scenes: int | None = None
@@ -149,39 +159,56 @@ COMMANDS = {
 
 
 def parsed(arguments: list[str]) -> Arguments:
-    """What the words of a command line say.
+    """Parse the words of a command line.
 
     Raises:
         InputError: Something that the command does not know.
     """
     command = arguments[0] if arguments else ""
     if command not in (*COMMANDS, "-h", "--help"):
-        raise InputError(f"unknown command '{command}'" if command else "no command", found=command, choices=COMMANDS)
+        raise InputError(
+            f"unknown command '{command}'" if command else "no command",
+            found=command,
+            choices=COMMANDS,
+        )
+
     complaint = io.StringIO()
+
     try:
         with contextlib.redirect_stderr(complaint):
-            chosen = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="tamp-learn", args=arguments)
+            chosen = tyro.extras.subcommand_cli_from_dict(
+                COMMANDS, prog="tamp-learn", args=arguments
+            )
     except SystemExit as end:
         if not end.code:  # --help
             raise
-        raise InputError(sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help") from None
+        raise InputError(
+            sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help"
+        ) from None
     except BrokenPipeError:
         raise unread() from None
+
     _check(chosen)
     return chosen
 
 
 def _check(chosen: Arguments) -> None:
-    if isinstance(chosen, Generate | Explore | Encoder | Train) and chosen.relation not in RELATIONS:
+    if (
+        isinstance(chosen, Generate | Explore | Encoder | Train)
+        and chosen.relation not in RELATIONS
+    ):
         _check_own(chosen)
+
     for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
         number = vars(chosen).get(name)
         if number is not None and number < 1:
             raise InputError(f"--{name} must be positive, not {number}")
+
     if isinstance(chosen, Generate | Explore) and not 0.0 < chosen.mesh_scale < math.inf:
         raise InputError(f"--mesh-scale must be positive, not {chosen.mesh_scale}")
     if not isinstance(chosen, Collect) and not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
+
     for name, suffix in (
         ("out", ".npz" if isinstance(chosen, Generate | Explore | Collect) else ".safetensors"),
         ("data", ".npz"),
@@ -192,14 +219,18 @@ def _check(chosen: Arguments) -> None:
 
 
 def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
-    """A relation of one's own has data of one's own."""
+    """Check that a relation of one's own has data of one's own."""
     relation = chosen.relation
-    if isinstance(chosen, Encoder | Train) and (chosen.data is not None or data_file(relation, "train").is_file()):
+    if isinstance(chosen, Encoder | Train) and (
+        chosen.data is not None or data_file(relation, "train").is_file()
+    ):
         return
     remedy = f"Of one's own: tamp-learn collect {relation} FILES makes its data"
-    raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS, remedy=remedy)
+    raise InputError(
+        f"unknown relation '{relation}'", found=relation, choices=RELATIONS, remedy=remedy
+    )
 
 
 def data_file(relation: str, split: str) -> Path:
-    """Where a relation's data are unless it is said."""
+    """Return the default path of a relation's data."""
     return Path("data") / f"{relation}_{split}.npz"

@@ -1,4 +1,6 @@
-"""Whether a trained classifier says more than chance: one that does not must not pass for one that knows."""
+"""Check that a trained classifier does better than chance: one that does not must not pass for one
+that knows.
+"""
 
 from __future__ import annotations
 
@@ -25,14 +27,16 @@ REASON = "cannot tell"
 
 
 def cannot_tell(card: Mapping[str, Any]) -> str | None:
-    """Why weights have no classifier yet, by their card; None when they have one."""
+    """Return why weights have no classifier yet, by their card; None when they have one."""
     if card.get("classifies", True):
         return None
-    return str(card.get(REASON) or f"it was trained on {card.get('samples', 'few')} labels; {_needed()}")
+    return str(
+        card.get(REASON) or f"it was trained on {card.get('samples', 'few')} labels; {_needed()}"
+    )
 
 
 def too_few(holds: Labels) -> str | None:
-    """Why labels are too few, or too much of one kind, to learn from them where a relation holds; else None."""
+    """Return why labels are too few, or too unbalanced, to learn a classifier from; else None."""
     count, positive = len(holds), int(holds.sum())
     negative = count - positive
     if count >= ENOUGH and min(positive, negative) >= EACH:
@@ -43,14 +47,18 @@ def too_few(holds: Labels) -> str | None:
     return f"{said}; {_needed()}"
 
 
-def no_better_than_chance(holds: Labels, fit: Callable[[NDArray[np.intp], NDArray[np.intp]], Labels]) -> str | None:
-    """Why a classifier knows no more than chance does, by two-fold cross-validation; None when it knows more.
+def no_better_than_chance(
+    holds: Labels, fit: Callable[[NDArray[np.intp], NDArray[np.intp]], Labels]
+) -> str | None:
+    """Cross-validate a classifier in two folds; return why it knows no more than chance does, or
+    None.
 
     The mean of both kinds' recall has to be two standard errors of guessing above a half.
 
     Args:
         holds: The labels, shape (n,).
-        fit: Trains on the rows of its first argument, and returns what it says of those of the second one.
+        fit: Trains on the rows of its first argument, and returns what it says of those of the
+            second one.
     """
     said = np.zeros(len(holds), dtype=bool)
     fold = np.zeros(len(holds), dtype=np.intp)
@@ -64,7 +72,9 @@ def no_better_than_chance(holds: Labels, fit: Callable[[NDArray[np.intp], NDArra
 
 
 def chance(holds: Labels, said: Labels) -> str | None:
-    """Why answers are no better than guesses; None when they are. Both shape (n,)."""
+    """Test answers against chance; return why they are no better than guesses, or None. Both shape
+    (n,).
+    """
     if said.all() or not said.any():
         return f"it says {'yes' if said.all() else 'no'} to everything"
     recalls = (float(said[holds].mean()), float((~said[~holds]).mean()))
@@ -72,7 +82,10 @@ def chance(holds: Labels, said: Labels) -> str | None:
     if np.mean(recalls) > 0.5 + 2 * error:
         return None
     yes, no = (f"{100 * share:.0f} %" for share in recalls)
-    return f"it is no better than chance: right about {yes} of the positive labels and {no} of the negative ones"
+    return (
+        f"it is no better than chance: right about {yes} of the positive labels "
+        f"and {no} of the negative ones"
+    )
 
 
 def _needed() -> str:

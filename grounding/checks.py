@@ -1,4 +1,6 @@
-"""Whether the arrays of a data set are one: every row, type, shape and range, before anything is made of them."""
+"""Validation of a data set's arrays: every row, type, shape and range, before anything is made of
+them.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "size": ("f", (3,)),
     "box": ("f", (2, 3)),
 }
-"""Of each array with a row a scene: b for truth values, i for integers, f for numbers, and the shape of a row."""
+"""Of each array with a row a scene: b for truth values, i for integers, f for numbers, and the
+shape of a row.
+"""
 
 PARTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "part_template": ("i", ()),
@@ -44,7 +48,10 @@ PARTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
 }
 """The same of those with a row a part of a body."""
 
-POINTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {"vertices": ("f", (3,)), "faces": ("i", (3,))}
+POINTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
+    "vertices": ("f", (3,)),
+    "faces": ("i", (3,)),
+}
 """The same of the hulls' corners and triangles."""
 
 BLOCK = 4096
@@ -63,17 +70,31 @@ def check_card(card: Mapping[str, Any]) -> None:
         InputError: Which entry, and what it should be.
     """
     relation = card.get("relation")
-    if not isinstance(relation, str) or not relation or not relation.isprintable() or len(relation) > 200:
+    if (
+        not isinstance(relation, str)
+        or not relation
+        or not relation.isprintable()
+        or len(relation) > 200
+    ):
         raise InputError(f"'relation' of the card is {_shown(relation)}, not a name")
+
     for name in ("kinds", "templates"):
         found = card.get(name)
-        if not isinstance(found, list) or not found or not all(isinstance(one, str) for one in found):
+        if (
+            not isinstance(found, list)
+            or not found
+            or not all(isinstance(one, str) for one in found)
+        ):
             raise InputError(f"'{name}' of the card is {_shown(found)}, not a list of names")
+
     if len(set(card["templates"])) != len(card["templates"]):
         raise InputError("'templates' of the card has a name twice")
     for name in ("count", "seed"):
-        if name in card and (not isinstance(card[name], int) or isinstance(card[name], bool) or card[name] < 0):
+        if name in card and (
+            not isinstance(card[name], int) or isinstance(card[name], bool) or card[name] < 0
+        ):
             raise InputError(f"'{name}' of the card is {_shown(card[name])}, not a number")
+
     if not isinstance(card.get("split", ""), str):
         raise InputError(f"'split' of the card is {_shown(card['split'])}, not a name")
     if not isinstance(card.get("by type", {}), dict):
@@ -98,9 +119,15 @@ def check_arrays(arrays: Arrays, card: Mapping[str, Any]) -> None:
         bodies = arrays["body"].shape[1]
     if scenes == 0:
         raise InputError("it has no scene")
-    for names, length in ((COLUMNS, scenes), (PARTS, _length(arrays, "part_template")), (POINTS, None)):
+    for names, length in (
+        (COLUMNS, scenes),
+        (PARTS, _length(arrays, "part_template")),
+        (POINTS, None),
+    ):
         for name, (kind, row) in names.items():
-            _check(name, arrays[name], kind, tuple(bodies if n == "b" else int(n) for n in row), length)
+            _check(
+                name, arrays[name], kind, tuple(bodies if n == "b" else int(n) for n in row), length
+            )
     for name, array in arrays.items():
         if name not in (*COLUMNS, *PARTS, *POINTS) and (array.ndim == 0 or len(array) != scenes):
             rows = len(array) if array.ndim else 1
@@ -117,7 +144,11 @@ def check_arrays(arrays: Arrays, card: Mapping[str, Any]) -> None:
 def _check_scenes(arrays: Arrays, kinds: int, templates: int) -> None:
     kind, body, size, box = (arrays[name] for name in ("kind", "body", "size", "box"))
     _refuse("kind", (kind < 0) | (kind >= kinds), f"is none of the card's {kinds} kinds")
-    _refuse("body", (body < -1) | (body >= templates), f"is none of the card's {templates} templates, nor -1 for none")
+    _refuse(
+        "body",
+        (body < -1) | (body >= templates),
+        f"is none of the card's {templates} templates, nor -1 for none",
+    )
     if body.shape[1] < 2:
         raise InputError("array 'body' has no room for two arguments")
     _refuse("body", body[:, :2] < 0, "is missing: a scene has two arguments")
@@ -133,8 +164,14 @@ def _check_scenes(arrays: Arrays, kinds: int, templates: int) -> None:
 
 
 def _check_parts(arrays: Arrays, templates: int) -> None:
-    template, shape, size, pose = (arrays[f"part_{name}"] for name in ("template", "shape", "size", "pose"))
-    _refuse("part_template", (template < 0) | (template >= templates), f"is none of the card's {templates} templates")
+    template, shape, size, pose = (
+        arrays[f"part_{name}"] for name in ("template", "shape", "size", "pose")
+    )
+    _refuse(
+        "part_template",
+        (template < 0) | (template >= templates),
+        f"is none of the card's {templates} templates",
+    )
     without = np.setdiff1d(np.arange(templates), template)
     if len(without):
         raise InputError(f"array 'part_template': template {without[0]} of the card has no part")
@@ -143,7 +180,11 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
     used = np.arange(3) < lengths[:, None]
     _refuse("part_size", used & ~((size > 0.0) & (size <= LARGEST)), "is no length")
     _refuse("part_pose", ~(np.abs(pose[:, :3]) <= FAR), "is not finite")
-    _refuse("part_pose", ~(np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1.0) <= RIGID), "is no unit quaternion")
+    _refuse(
+        "part_pose",
+        ~(np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1.0) <= RIGID),
+        "is no unit quaternion",
+    )
 
     hull = shape == HULL
     counts = {name: arrays[f"part_{name}"] for name in ("vertices", "faces")}
@@ -152,21 +193,30 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
         rows = len(arrays[name])
         _refuse(f"part_{name}", count > rows, f"is more than the {rows:,} rows of '{name}'")
         if int(count.sum()) != rows:
-            raise InputError(f"array 'part_{name}' counts {int(count.sum()):,}, '{name}' has {rows:,} rows")
+            raise InputError(
+                f"array 'part_{name}' counts {int(count.sum()):,}, '{name}' has {rows:,} rows"
+            )
     _refuse("part_vertices", hull & (counts["vertices"] < 4), "says fewer corners than a solid has")
     _refuse("part_faces", hull & (counts["faces"] < 4), "says fewer triangles than a solid has")
     _refuse("vertices", ~(np.abs(arrays["vertices"]) <= FAR), "is not finite")
     most = np.repeat(counts["vertices"], counts["faces"])[:, None]
-    _refuse("faces", (arrays["faces"] < 0) | (arrays["faces"] >= most), "is none of its hull's corners")
+    _refuse(
+        "faces", (arrays["faces"] < 0) | (arrays["faces"] >= most), "is none of its hull's corners"
+    )
 
 
-def _check(name: str, array: NDArray[Any], kind: str, row: Sequence[int], length: int | None) -> None:
+def _check(
+    name: str, array: NDArray[Any], kind: str, row: Sequence[int], length: int | None
+) -> None:
     allowed = {"b": "biu", "i": "iu", "f": "f"}[kind]
     if array.dtype.kind not in allowed:
         raise InputError(f"array '{name}' holds '{array.dtype}', not {WORDS[kind]}")
     if array.ndim != 1 + len(row) or array.shape[1:] != tuple(row):
         wanted = "rows" if not row else f"rows of shape {'x'.join(map(str, row))}"
-        raise InputError(f"array '{name}' has shape {'x'.join(map(str, array.shape)) or 'of one number'}, not {wanted}")
+        raise InputError(
+            f"array '{name}' has shape {'x'.join(map(str, array.shape)) or 'of one number'}, "
+            f"not {wanted}"
+        )
     if length is not None and len(array) != length:
         other = "holds" if name in COLUMNS else "part_template"
         raise InputError(f"array '{name}' has {len(array):,} rows, '{other}' has {length:,}")
@@ -179,8 +229,10 @@ def _check(name: str, array: NDArray[Any], kind: str, row: Sequence[int], length
 
 
 def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
-    """T_world_body or T_body_region, shape (..., 4, 4)."""
-    _refuse(name, np.asarray(~(np.abs(matrices[..., :3, 3]) <= FAR).all(axis=-1)), "is too far away")
+    """Check that T_world_body or T_body_region, shape (..., 4, 4), are rigid transforms."""
+    _refuse(
+        name, np.asarray(~(np.abs(matrices[..., :3, 3]) <= FAR).all(axis=-1)), "is too far away"
+    )
     wrong = np.zeros(matrices.shape[:-2], dtype=bool)
     for start in range(0, len(matrices), BLOCK):
         some = matrices[start : start + BLOCK]
@@ -195,7 +247,7 @@ def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
 
 
 def _refuse(name: str, wrong: NDArray[np.bool_], what: str) -> None:
-    """Name the first entry that is wrong."""
+    """Raise an error that names the first entry that is wrong."""
     if wrong.any():
         row, *rest = (int(index) for index in np.argwhere(wrong)[0])
         where = f"row {row}" + (f", entry {', '.join(map(str, rest))}" if rest else "")

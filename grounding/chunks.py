@@ -1,4 +1,6 @@
-"""Data sets made by many processes, a chunk at a time: resumable, and the same bytes for the same job."""
+"""Data sets made by many processes, a chunk at a time: resumable, and the same bytes for the same
+job.
+"""
 
 from __future__ import annotations
 
@@ -38,59 +40,65 @@ Progress = Callable[[int, int], None]
 
 
 class Job(Protocol):
-    """What is to be made; a process gets it as a whole, so it must be one that can be sent there."""
+    """The specification of what is to be made; a process gets it as a whole, so it must be one that
+    can be sent there.
+    """
 
     @property
     def relation(self) -> str:
-        """Is "on" or "inside"."""
+        """Return the relation, "on" or "inside"."""
         ...
 
     @property
     def split(self) -> str:
-        """Is "train" or "test"; they share no object and no support."""
+        """Return the split, "train" or "test"; they share no object and no support."""
         ...
 
     @property
     def count(self) -> int:
-        """Scenes."""
+        """Return the number of scenes."""
         ...
 
     @property
     def seed(self) -> int:
-        """Of all randomness."""
+        """Return the seed of all randomness."""
         ...
 
     @property
     def folder(self) -> MeshFolder | None:
-        """Of one's own meshes."""
+        """Return the folder of one's own meshes."""
         ...
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The types of samples."""
+        """Return the types of samples."""
         ...
 
     @property
     def key(self) -> str:
-        """What must be the same for the chunks of an interrupted run to be used, the number of scenes aside."""
+        """Return the key that chunks of an interrupted run must share to be used again, the number
+        of scenes aside.
+        """
         ...
 
     def chunk(self, number: int, start: int, size: int) -> Sequence[Made]:
-        """`size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
+        """Make `size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
 
-        They depend on nothing else but the job, and not on the size: it only says after how many to stop.
+        They depend on nothing else but the job, and not on the size: it only says after how many to
+        stop.
         """
         ...
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """What the card says beside the rest."""
+        """Return the card's own entries."""
         ...
 
 
 def make_dataset(
     job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
 ) -> Dataset:
-    """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made is used.
+    """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made
+    is used.
 
     Args:
         job: What to make.
@@ -104,6 +112,7 @@ def make_dataset(
     for found, choices in ((job.relation, RELATIONS), (job.split, SPLITS)):
         if found not in choices:
             raise InputError(f"unknown relation or split '{found}'", found=found, choices=choices)
+
     if job.count < 1:
         raise InputError(f"the number of scenes must be positive, not {job.count}")
     object_templates(job.split, job.folder)  # a bad mesh is said before processes start
@@ -118,6 +127,7 @@ def make_dataset(
         write_whole(files[number], content)
         done += 1
         progress(min(done * CHUNK, job.count), job.count)
+
     data = _merged(job, [*files.values()])
     write_dataset(out, data)
     shutil.rmtree(parts)
@@ -125,13 +135,17 @@ def make_dataset(
 
 
 def _size(job: Job, number: int) -> int:
-    """Scenes of a chunk; the last one may be smaller."""
+    """Return the number of scenes of a chunk; the last one may be smaller."""
     return min(CHUNK, job.count - number * CHUNK)
 
 
 def _claim(parts: Path, name: str) -> None:
     mark = parts / "job.json"
-    if parts.is_dir() and not mark.is_file() and any(UNFINISHED.match(one.name) is None for one in parts.iterdir()):
+    if (
+        parts.is_dir()
+        and not mark.is_file()
+        and any(UNFINISHED.match(one.name) is None for one in parts.iterdir())
+    ):
         what = "this folder is in the way, and tamp-learn has not made it"
         raise InputError(what, file=parts, remedy="Move it, or choose another --out")
     if parts.is_dir() and (not mark.is_file() or mark.read_text() != name):
@@ -142,7 +156,9 @@ def _claim(parts: Path, name: str) -> None:
 def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
     count = min(workers or os.cpu_count() or 1, len(waiting))
     if count <= 1:
-        yield from ((number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting)
+        yield from (
+            (number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting
+        )
         return
     from concurrent.futures import ProcessPoolExecutor
     from concurrent.futures import wait as wait_for
@@ -150,11 +166,14 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 
     resource_tracker.ensure_running()  # which would let signals through while it starts
     before = active_children()
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent)
+    pool = ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent
+    )
     try:
         with guard.Held():
             futures = {
-                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number for number in waiting
+                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number
+                for number in waiting
             }
         while futures:
             if guard.asked():  # what it raised was dropped
@@ -171,16 +190,20 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 
 
 def _packed(job: Job, number: int, start: int, size: int) -> bytes:
-    """The scenes of one chunk, as the bytes of an npz."""
+    """Serialize the scenes of one chunk as the bytes of an npz."""
     tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
-    names = {name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])}
+    names = {
+        name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])
+    }
     arrays: dict[str, Any] = _arrays(job.chunk(number, start, size), names, job.kinds)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()
 
 
-def _arrays(made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+def _arrays(
+    made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]
+) -> dict[str, NDArray[Any]]:
     count = len(made)
     arrays: dict[str, NDArray[Any]] = {
         "holds": np.array([one.holds for one in made]),
@@ -200,6 +223,7 @@ def _arrays(made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...])
         arrays["body"][row, :bodies] = [names[name] for name in one.names]
         arrays["scale"][row, :bodies] = one.scales
         arrays["pose"][row, :bodies] = one.poses
+
     return arrays
 
 
@@ -208,6 +232,7 @@ def _merged(job: Job, files: Sequence[Path]) -> Dataset:
     for file in files:
         with np.load(file, allow_pickle=False) as archive:
             loaded.append({name: archive[name] for name in archive.files})
+
     arrays = {name: np.concatenate([one[name] for one in loaded]) for name in loaded[0]}
     supports = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     objects = object_templates(job.split, job.folder)

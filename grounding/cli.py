@@ -3,24 +3,39 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
 
-from grounding.arguments import Collect, Encoder, Evaluate, Explore, Generate, Train, data_file, parsed
+from grounding.arguments import (
+    Collect,
+    Encoder,
+    Evaluate,
+    Explore,
+    Generate,
+    Train,
+    data_file,
+    parsed,
+)
 from grounding.certainty import cannot_tell
+from grounding.cli_files import (
+    check_out,
+    encoder_file,
+    files_below,
+    mesh_files,
+    read_data,
+    with_card,
+)
 from grounding.dataset import FORMAT as DATA
-from grounding.dataset import Dataset, read_dataset, write_dataset
+from grounding.dataset import write_dataset
 from grounding.mesh_folder import MeshFolder, read_folder
 from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
 from tamp.system.distribution import install_command
-from tamp.system.outputs import check_outputs, check_writable
 from tamp.system.progress import Progress
 from tamp.system.terminal import spoken
 
@@ -67,6 +82,7 @@ def _run(arguments: list[str]) -> int:
         _SHOWN.end()
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+
     return DONE
 
 
@@ -74,9 +90,11 @@ def _generate(chosen: Generate) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
-    _check_out(out, DATA, _mesh_files(chosen))
+    check_out(out, DATA, mesh_files(chosen))
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
-    data = generate(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
+    data = generate(
+        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+    )
     _show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
@@ -85,18 +103,25 @@ def _explore(chosen: Explore) -> None:
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
-    _check_out(out, DATA, [*_mesh_files(chosen), *_with_card(chosen.model)])
+    check_out(out, DATA, [*mesh_files(chosen), *with_card(chosen.model)])
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
-    data = explore(job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes"))
+    data = explore(
+        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+    )
     _show("", last=True)
-    print(f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}")
+    print(
+        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, "
+        f"{data.card['by type']}"
+    )
 
 
 def _collect(chosen: Collect) -> None:
     from grounding.collect import collect, read_demonstrations, unsteady
 
     out = chosen.out or data_file(chosen.relation, "train")
-    _check_out(out, DATA, [file for path in chosen.files for file in (path, *_below(path, "*.yaml"))])
+    check_out(
+        out, DATA, [file for path in chosen.files for file in (path, *files_below(path, "*.yaml"))]
+    )
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
     for text in (*unsteady(data), *monotony(data)):
         print(f"warning: {text}", file=sys.stderr)
@@ -105,15 +130,18 @@ def _collect(chosen: Collect) -> None:
 
 
 def _encoder(chosen: Encoder) -> None:
-    out = chosen.out or _encoder_file(chosen.relation)
-    _check_out(out, WEIGHTS, _with_card(chosen.data or data_file(chosen.relation, "train")))
-    data = _data(chosen.data, chosen.relation, "train")
+    out = chosen.out or encoder_file(chosen.relation)
+    check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
+    data = read_data(chosen.data, chosen.relation, "train")
     try:
         from grounding.paper.encoders import Args, train_encoder
     except ImportError as error:
         raise _missing(error) from None
+
     args = Args(seed=chosen.seed)
-    args = replace(args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points)
+    args = replace(
+        args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
+    )
     arrays, score = train_encoder(data, chosen.kind, chosen.scaling, args, _show)
     _show("", last=True)
     card = {
@@ -135,8 +163,12 @@ def _train(chosen: Train) -> None:
 
     out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
     encoder = chosen.encoder
-    if encoder is None and chosen.model in OPTIONS["encoder"] and _encoder_file(chosen.relation).is_file():
-        encoder = _encoder_file(chosen.relation)
+    if (
+        encoder is None
+        and chosen.model in OPTIONS["encoder"]
+        and encoder_file(chosen.relation).is_file()
+    ):
+        encoder = encoder_file(chosen.relation)
     args = TrainArgs(
         samples=chosen.samples,
         seed=chosen.seed,
@@ -147,9 +179,9 @@ def _train(chosen: Train) -> None:
         commit=_commit(),
     )
     check(chosen.relation, chosen.model, args)
-    read = [*_with_card(chosen.data or data_file(chosen.relation, "train")), *_with_card(encoder)]
-    _check_out(out, WEIGHTS, read, args.state)
-    data = _data(chosen.data, chosen.relation, "train")
+    read = [*with_card(chosen.data or data_file(chosen.relation, "train")), *with_card(encoder)]
+    check_out(out, WEIGHTS, read, args.state)
+    data = read_data(chosen.data, chosen.relation, "train")
     file = chosen.data or data_file(chosen.relation, "train")
     for text in monotony(data, chosen.samples):
         print(f"warning: {file}: {text}", file=sys.stderr)
@@ -181,10 +213,20 @@ def _evaluate(chosen: Evaluate) -> None:
     else:
         model = load_model(Path(chosen.weights), chosen.model)
         relation = str(read_weights(Path(chosen.weights)).card.get("relation"))
-    data = _data(chosen.data, relation, "test")
-    found = evaluate(model, data, chosen.scenes, chosen.seed, lambda done, total: _show(f"{done} of {total} scenes"))
+    data = read_data(chosen.data, relation, "test")
+    found = evaluate(
+        model,
+        data,
+        chosen.scenes,
+        chosen.seed,
+        lambda done, total: _show(f"{done} of {total} scenes"),
+    )
     _show("", last=True)
-    for name, share in (("settled", found.settled), ("MCA", found.mca), ("feasible", found.feasible)):
+    for name, share in (
+        ("settled", found.settled),
+        ("MCA", found.mca),
+        ("feasible", found.feasible),
+    ):
         low, high = wilson(share, found.scenes)
         print(f"{name:9} {share:.4f}  [{low:.4f}, {high:.4f}]")
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
@@ -193,7 +235,7 @@ def _evaluate(chosen: Evaluate) -> None:
 
 
 def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
-    """The folder of one's own meshes, with what there is to say of them."""
+    """Read the folder of one's own meshes, and say what there is to say of them."""
     if chosen.meshes is None:
         return None
     folder = MeshFolder(chosen.meshes, chosen.mesh_scale)
@@ -202,60 +244,20 @@ def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
     return folder
 
 
-def _data(path: Path | None, relation: str, split: str) -> Dataset:
-    path = path or data_file(relation, split)
-    data = read_dataset(path)
-    if data.relation != relation:
-        raise InputError(f"the data are about '{data.relation}', not '{relation}'", file=path)
-    return data
-
-
-def _with_card(path: Path | None) -> list[Path]:
-    """A file of data or weights, and what says what it is."""
-    return [] if path is None else [path, path.with_suffix(".json")]
-
-
-def _below(folder: Path, pattern: str) -> list[Path]:
-    return sorted(folder.rglob(pattern)) if os.path.isdir(folder) else []
-
-
-def _mesh_files(chosen: Generate | Explore) -> list[Path]:
-    return [] if chosen.meshes is None else [file for file in _below(chosen.meshes, "*") if os.path.isfile(file)]
-
-
-def _check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:
-    """Refuse an output that cannot be written, or that (or whose card) would take the place of something else.
-
-    Raises:
-        InputError: As for `check_writable` and `check_outputs`, or the .json beside it is no card of this form.
-    """
-    card = out.with_suffix(".json")
-    for path in (out, card):
-        check_writable(path)
-    try:
-        found = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {"format": form}
-    except (OSError, ValueError, RecursionError):
-        found = None  # no card at all
-    if not isinstance(found, dict) or found.get("format") != form:
-        what = f"the card of {out.name} would overwrite it"
-        raise InputError(what, file=card, remedy="Choose another name with --out")
-    check_outputs({"--out": out, "the card of --out": card, "what is kept to go on": state}, read)
-
-
-def _encoder_file(relation: str) -> Path:
-    return Path("weights") / f"{relation}_encoder.safetensors"
-
-
 def _missing(error: ImportError) -> InputError:
     return InputError(f"training needs {error.name}", remedy=install_command("learn"))
 
 
 def _commit() -> str:
-    """The commit of the checkout that this runs from; empty outside one."""
+    """Return the commit of the checkout that this runs from; empty outside one."""
     folder = Path(__file__).resolve().parent
     try:
         said = subprocess.run(
-            ["git", "rev-parse", "--short", "HEAD"], cwd=folder, capture_output=True, text=True, check=False
+            ["git", "rev-parse", "--short", "HEAD"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
         )
     except OSError:
         return ""
@@ -267,7 +269,7 @@ _SHOWN = Progress(quiet=False)
 
 
 def _show(text: str, *, last: bool = False) -> None:
-    """How far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
+    """Show progress, on a line that a terminal rewrites; elsewhere printed now and then."""
     if last:
         _SHOWN.clear()
     else:

@@ -1,4 +1,6 @@
-"""Demonstrations of a relation of one's own: scenes as problem files, with what holds in them as their goal."""
+"""Demonstrations of a relation of one's own: scenes as problem files, with what holds in them as
+their goal.
+"""
 
 from __future__ import annotations
 
@@ -48,15 +50,15 @@ class Demonstration:
 
 
 def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
-    """A data set of demonstrations, for `tamp-learn train` and `grounding.train.train`.
+    """Collect demonstrations into a data set, for `tamp-learn train` and `grounding.train.train`.
 
     Args:
         relation: Its name.
         demonstrations: In the order in which `--samples` takes them.
 
     Raises:
-        InputError: There are none, arguments that are not a body and a surface or container of another one, or the
-            same situation is said to hold and not to hold.
+        InputError: There are none, arguments that are not a body and a surface or container of
+            another one, or the same situation is said to hold and not to hold.
     """
     sources: list[str] = []
     rows: list[tuple[bool, Region, list[tuple[int, Array]]]] = []
@@ -74,22 +76,31 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
                 templates[body.parts] = f"{name}#{taken + 1}" if taken else name
             placed.append((numbers[body.parts], body.pose.matrix))
         rows.append((one.holds, region, placed))
+
     if not rows:
         raise InputError(f"no demonstrations of '{relation}'")
     arrays = _arrays(rows)
     by_type = {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(KINDS)}
-    card = {"relation": relation, "split": "train", "count": len(rows), "by type": by_type, "feasible": 1.0}
+    card = {
+        "relation": relation,
+        "split": "train",
+        "count": len(rows),
+        "by type": by_type,
+        "feasible": 1.0,
+    }
     data = Dataset(arrays, {name: parts for parts, name in templates.items()}, KINDS, card)
     data.sources = tuple(sources)
     for first, second in contradictions(data):
         places = f"{sources[first]} and {sources[second]}"
         what = f"'{relation}' is said to hold and not to hold in the same situation: {places}"
         raise InputError(what, remedy="Take one of the two away")
+
     return data
 
 
 def unsteady(data: Dataset) -> list[str]:
-    """Warnings of bodies for which the relation holds where no plan will put them, each with its first place.
+    """Return warnings of bodies for which the relation holds where no plan will put them, each with
+    its first place.
 
     They stand on none of their stable faces, hang in the air, or are sunk into the place.
     """
@@ -112,22 +123,25 @@ def unsteady(data: Dataset) -> list[str]:
             entry = (example.names[1], what)
             found[entry] += 1
             first.setdefault(entry, data.sources[row] if data.sources else f"row {row}")
+
     return [
-        f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): no plan will put it down so"
+        f"{first[name, what]}: {name} {what} ({count} scene{'s' * (count > 1)}): "
+        f"no plan will put it down so"
         for (name, what), count in found.items()
     ]
 
 
 def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demonstration]:
-    """What problem files show: every `(RELATION body place)` and `(not (RELATION body place))` in their goals.
+    """Read demonstrations from problem files: every `(RELATION body place)` and `(not (RELATION
+    body place))` in their goals.
 
     Args:
         relation: Its name.
         files: Problem files; of a folder all its .yaml files.
 
     Raises:
-        InputError: A file is no problem, or its goal says nothing of the relation, or what it says is not about a body
-            and a surface or container.
+        InputError: A file is no problem, or its goal says nothing of the relation, or what it says
+            is not about a body and a surface or container.
     """
     for path in _files(files):
         loaded = load_scene(path)
@@ -136,15 +150,21 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
         for form in read(goal.text, path, line_offset=goal.line - 1, column_offset=goal.column - 1):
             for group, holds in _facts(form, relation.lower()):
                 where = f"{path}:{group.place.line}:{group.place.column}"
-                demonstration = Demonstration(loaded.scene, _names(group, loaded.scene), holds, where)
+                demonstration = Demonstration(
+                    loaded.scene, _names(group, loaded.scene), holds, where
+                )
                 try:
                     _bodies(demonstration)
                 except InputError as found:
                     raise found.at(path, group.place.line) from None
                 said.append(demonstration)
+
         if not said:
             remedy = f"goal: ({relation} BODY PLACE), or goal: (not ({relation} BODY PLACE))"
-            raise InputError(f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy)
+            raise InputError(
+                f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy
+            )
+
         yield from said
 
 
@@ -160,7 +180,7 @@ def _files(files: Sequence[Path]) -> Iterator[Path]:
 
 
 def _facts(form: Node, relation: str, holds: bool = True) -> Iterator[tuple[Group, bool]]:
-    """The relation's facts in a formula, and whether they are said or denied."""
+    """Yield the relation's facts in a formula, and whether they are asserted or denied."""
     if isinstance(form, Symbol):
         return
     if form.head == relation:
@@ -177,30 +197,41 @@ def _names(group: Group, scene: Scene) -> tuple[str, str]:
         raise error(group.place, "a demonstration names a body, and a surface or container")
     for word in words:
         if word.text not in known:
-            raise error(word, f"unknown object '{word.written}'", found=word.written, choices=known.values())
+            raise error(
+                word, f"unknown object '{word.written}'", found=word.written, choices=known.values()
+            )
     return known[words[0].text], known[words[1].text]
 
 
 def _bodies(one: Demonstration) -> tuple[list[str], Region]:
-    """The bodies of a scene, what the place is of first, then the body, then the others; and the place."""
+    """Return the bodies of a scene, what the place is of first, then the body, then the others; and
+    the place.
+    """
     scene, (name, place_name) = one.scene, one.arguments
     if name not in scene.bodies:
         raise InputError(f"'{name}' is no body", found=name, choices=scene.bodies)
     place = scene.surfaces.get(place_name) or scene.cavities.get(place_name)
     if place is None:
         choices = (*scene.surfaces, *scene.cavities)
-        raise InputError(f"'{place_name}' is no surface or container", found=place_name, choices=choices)
+        raise InputError(
+            f"'{place_name}' is no surface or container", found=place_name, choices=choices
+        )
     if place.body == name:
         raise InputError(f"'{place_name}' is a part of '{name}' itself")
     others = [other for other in scene.bodies if other not in (name, place.body)]
     return [place.body, name, *others], region_of(scene.bodies[place.body], place)
 
 
-def _arrays(rows: Sequence[tuple[bool, Region, list[tuple[int, Array]]]]) -> dict[str, NDArray[Any]]:
+def _arrays(
+    rows: Sequence[tuple[bool, Region, list[tuple[int, Array]]]],
+) -> dict[str, NDArray[Any]]:
     count, most = len(rows), max(len(placed) for _, _, placed in rows)
     arrays: dict[str, NDArray[Any]] = {
         "holds": np.array([holds for holds, _, _ in rows]),
-        "kind": np.array([KINDS.index("holds" if holds else "does not hold") for holds, _, _ in rows], dtype=np.int8),
+        "kind": np.array(
+            [KINDS.index("holds" if holds else "does not hold") for holds, _, _ in rows],
+            dtype=np.int8,
+        ),
         "feasible": np.ones(count, dtype=bool),
         "body": np.full((count, most), -1, dtype=np.int16),
         "scale": np.ones((count, most)),
@@ -213,4 +244,5 @@ def _arrays(rows: Sequence[tuple[bool, Region, list[tuple[int, Array]]]]) -> dic
     for row, (_, _, placed) in enumerate(rows):
         arrays["body"][row, : len(placed)] = [number for number, _ in placed]
         arrays["pose"][row, : len(placed)] = [matrix for _, matrix in placed]
+
     return arrays

@@ -1,6 +1,7 @@
 """Labelled situations on disk: NAME.npz with the scenes, NAME.json, the card, with what is in them.
 
-A data set is self-contained: it carries the geometry of its bodies, so that nothing else is needed to train on it.
+A data set is self-contained: it carries the geometry of its bodies, so that nothing else is needed
+to train on it.
 """
 
 from __future__ import annotations
@@ -54,14 +55,16 @@ class Dataset:
     """A sequence of examples, made when they are asked for.
 
     Args:
-        examples: As many rows of each array: `holds`, `kind`, `body` (n, b), -1 for none, `scale` (n, b), `pose`
-            (n, b, 4, 4), and the region's `hollow`, `region` (n, 4, 4), `size` (n, 3), `box` (n, 2, 3).
+        examples: As many rows of each array: `holds`, `kind`, `body` (n, b), -1 for none, `scale`
+            (n, b), `pose` (n, b, 4, 4), and the region's `hollow`, `region` (n, 4, 4), `size` (n,
+            3), `box` (n, 2, 3).
         templates: Name to the parts of a body of scale 1.
         kinds: The names of the types of samples.
         card: Relation, seed, commit, counts, splits.
 
     Attributes:
-        sources: Where each row is from, for messages, as far as that is known: "lying.yaml:9"; it is not written.
+        sources: Where each row is from, for messages, as far as that is known: "lying.yaml:9"; it
+            is not written.
     """
 
     def __init__(
@@ -71,19 +74,24 @@ class Dataset:
         kinds: Sequence[str],
         card: Mapping[str, Any],
     ) -> None:
-        self.arrays, self.templates, self.kinds, self.card = dict(examples), dict(templates), tuple(kinds), dict(card)
+        self.arrays, self.templates, self.kinds, self.card = (
+            dict(examples),
+            dict(templates),
+            tuple(kinds),
+            dict(card),
+        )
         self.sources: tuple[str, ...] = ()
         self._names = tuple(templates)
         self._forms: dict[str, Form] = {}
 
     @property
     def relation(self) -> str:
-        """The relation that the labels are about."""
+        """Return the relation that the labels are about."""
         return str(self.card["relation"])
 
     @cached_property
     def holds(self) -> NDArray[np.bool_]:
-        """The labels, shape (n,)."""
+        """Return the labels, shape (n,)."""
         return self.arrays["holds"].astype(bool)
 
     def __len__(self) -> int:
@@ -101,7 +109,9 @@ class Dataset:
             Placed(self._form(name, scale), a["pose"][index, row])
             for name, scale, row in zip(names, scales, rows, strict=True)
         ]
-        region = Region(bool(a["hollow"][index]), a["region"][index], a["size"][index], a["box"][index])
+        region = Region(
+            bool(a["hollow"][index]), a["region"][index], a["size"][index], a["box"][index]
+        )
         return Example(
             near(placed[0], region, placed[1], placed[2:]),
             bool(self.holds[index]),
@@ -111,13 +121,19 @@ class Dataset:
         )
 
     def take(self, indices: NDArray[np.intp] | Sequence[int]) -> Dataset:
-        """The examples at these indices."""
+        """Return the examples at these indices."""
         chosen = np.asarray(indices)
-        return Dataset({k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card)
+        return Dataset(
+            {k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card
+        )
 
     def form(self, row: int, body: int) -> Form:
-        """The geometry of a scene's body: 0 for what the place is of, 1 for the relation's body, then the others."""
-        return self._form(self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body]))
+        """Return the geometry of a scene's body: 0 for what the place is of, 1 for the relation's
+        body, then the others.
+        """
+        return self._form(
+            self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body])
+        )
 
     def _form(self, name: str, scale: float) -> Form:
         if name not in self._forms:
@@ -131,7 +147,12 @@ def write_dataset(path: Path, data: Dataset) -> None:
     Raises:
         OSError: The folder cannot be made or written.
     """
-    card = {"format": FORMAT, **data.card, "kinds": list(data.kinds), "templates": list(data.templates)}
+    card = {
+        "format": FORMAT,
+        **data.card,
+        "kinds": list(data.kinds),
+        "templates": list(data.templates),
+    }
     arrays = {**data.arrays, **_packed(tuple(data.templates.values()))}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -145,11 +166,11 @@ def write_dataset(path: Path, data: Dataset) -> None:
 
 
 def read_dataset(path: Path) -> Dataset:
-    """The data set at `path`.
+    """Read the data set at `path`.
 
     Raises:
-        InputError: A file is missing, damaged or of another format, the two do not belong together, or an array is not
-            what it should be; then with the array and its row.
+        InputError: A file is missing, damaged or of another format, the two do not belong together,
+            or an array is not what it should be; then with the array and its row.
     """
     remedy = "Generate it again: tamp-learn generate --help, or collect it again"
     pair = read_pair(path, FORMAT, what="data set", most=MOST_BYTES, remedy=remedy)
@@ -158,15 +179,19 @@ def read_dataset(path: Path) -> Dataset:
         check_card(card)
     except InputError as error:
         raise InputError(error.message, file=path.with_suffix(".json"), remedy=remedy) from None
+
     try:
         arrays = read_npz(pair.content)
         check_arrays(arrays, card)
         geometry = _unpacked({name: arrays.pop(name) for name in _GEOMETRY})
         templates = dict(zip(card.pop("templates"), geometry, strict=True))
     except InputError as error:
-        raise InputError(f"the data set is damaged: {error.message}", file=path, remedy=remedy) from None
+        raise InputError(
+            f"the data set is damaged: {error.message}", file=path, remedy=remedy
+        ) from None
     except (ValueError, ArithmeticError) as error:  # a hull that is none
         raise InputError(f"the data set is damaged: {error}", file=path, remedy=remedy) from None
+
     if pair.stranger is not None:
         raise pair.stranger
     return Dataset(arrays, templates, card.pop("kinds"), card)
@@ -186,7 +211,9 @@ _SHAPES = (Box, Cylinder, Sphere, Hull)
 
 
 def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
-    """Parts as arrays: whose, which shape, its sizes, T_body_part, and how many rows of `vertices` and `faces`."""
+    """Flatten parts into arrays: whose, which shape, its sizes, T_body_part, and how many rows of
+    `vertices` and `faces`.
+    """
     rows: list[tuple[Any, ...]] = []
     vertices, faces = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)]
     for number, parts in enumerate(templates):
@@ -202,15 +229,19 @@ def _packed(templates: Sequence[tuple[Part, ...]]) -> dict[str, NDArray[Any]]:
             else:
                 vertices.append(shape.vertices)
                 faces.append(np.asarray(shape.faces, dtype=np.int64))
+
             counts = (len(vertices[-1]), len(faces[-1])) if isinstance(shape, Hull) else (0, 0)
             pose = (*part.pose.position, *part.pose.quaternion)
             rows.append((number, _SHAPES.index(type(shape)), size, pose, *counts))
+
     columns = [np.array(column) for column in zip(*rows, strict=True)]
-    return dict(zip(_GEOMETRY, [*columns, np.concatenate(vertices), np.concatenate(faces)], strict=True))
+    return dict(
+        zip(_GEOMETRY, [*columns, np.concatenate(vertices), np.concatenate(faces)], strict=True)
+    )
 
 
 def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
-    """The inverse of `_packed`."""
+    """Rebuild the parts from arrays, the inverse of `_packed`."""
     templates: list[list[Part]] = [[] for _ in range(int(arrays["part_template"].max()) + 1)]
     vertex = face = 0
     for row, number in enumerate(arrays["part_template"]):
@@ -224,8 +255,13 @@ def _unpacked(arrays: Mapping[str, NDArray[Any]]) -> list[tuple[Part, ...]]:
         elif kind is Sphere:
             shape = Sphere(a)
         else:
-            shape = Hull(arrays["vertices"][vertex : vertex + count], arrays["faces"][face : face + triangles])
+            shape = Hull(
+                arrays["vertices"][vertex : vertex + count],
+                arrays["faces"][face : face + triangles],
+            )
+
         vertex, face = vertex + count, face + triangles
         qx, qy, qz, qw = quaternion
         templates[number].append(Part(shape, Pose((x, y, z), (qx, qy, qz, qw))))
+
     return [tuple(parts) for parts in templates]

@@ -1,4 +1,6 @@
-"""Labelled scenes from physics: the paper's sample types (section III-E), settled and checked against true geometry."""
+"""Labelled scenes from physics: the paper's sample types (section III-E), settled and checked
+against true geometry.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,31 @@ Kinds = Mapping[str, float]
 
 KINDS: Mapping[str, Kinds] = {
     "on": {
-        "alone": 0.1, "among others": 0.4, "afloat": 0.075, "on the ground": 0.05, "above": 0.075, "sunken": 0.05,
-        "in the middle": 0.075, "on another support": 0.05, "colliding": 0.125,
+        "alone": 0.1,
+        "among others": 0.4,
+        "afloat": 0.075,
+        "on the ground": 0.05,
+        "above": 0.075,
+        "sunken": 0.05,
+        "in the middle": 0.075,
+        "on another support": 0.05,
+        "colliding": 0.125,
     },
     "inside": {
-        "alone": 0.1, "among others": 0.4, "afloat": 0.05, "on the ground": 0.05, "above": 0.075, "sunken": 0.075,
-        "on another support": 0.05, "colliding": 0.1, "sticking out": 0.1,
+        "alone": 0.1,
+        "among others": 0.4,
+        "afloat": 0.05,
+        "on the ground": 0.05,
+        "above": 0.075,
+        "sunken": 0.075,
+        "on another support": 0.05,
+        "colliding": 0.1,
+        "sticking out": 0.1,
     },
-}  # fmt: skip
-"""The share of each type of sample (LEARNING.md, section 1); the first two hold, the others do not."""
+}
+"""The share of each type of sample (LEARNING.md, section 1); the first two hold, the
+others do not.
+"""
 
 POSITIVE = ("alone", "among others")
 
@@ -47,11 +65,13 @@ class Maker:
         folder: Of one's own meshes.
     """
 
-    def __init__(self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None) -> None:
+    def __init__(
+        self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None
+    ) -> None:
         self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
 
     def make(self, kind: str, rng: Random) -> Made:
-        """A scene of this kind; tries until one is found."""
+        """Sample a scene of this kind; tries until one is found."""
         while True:
             made = self._try(kind, rng)
             if made is not None:
@@ -59,13 +79,20 @@ class Maker:
 
     def _try(self, kind: str, rng: Random) -> Made | None:
         scene = self._scenes.draw(rng, crowded=kind != "alone")
-        pose = self._positive(scene, rng) if kind in POSITIVE else _NEGATIVES[kind](self, scene, rng)
+        pose = (
+            self._positive(scene, rng) if kind in POSITIVE else _NEGATIVES[kind](self, scene, rng)
+        )
         if pose is None:
             return None
-        holds = settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0] is Verdict.HOLDS
+        holds = (
+            settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0]
+            is Verdict.HOLDS
+        )
         if holds != (kind in POSITIVE):
             return None
-        return scene.made(pose, kind, holds, holds or self._split == "train" or self._feasible(scene, rng))
+        return scene.made(
+            pose, kind, holds, holds or self._split == "train" or self._feasible(scene, rng)
+        )
 
     # The argument
 
@@ -132,7 +159,10 @@ class Maker:
         if tall and rng.random() < 0.5:
             face = tall[int(rng.integers(len(tall)))]
             x, y = rng.uniform(-0.5, 0.5, 2) * region.size[:2] * 0.6
-            return scene.T_world_region @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
+            return (
+                scene.T_world_region
+                @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
+            )
         pose = random_rest(body, (*region.size[:2], math.inf), True, rng)
         if pose is None:
             return None

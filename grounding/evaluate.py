@@ -1,4 +1,6 @@
-"""How good a grounding is on scenes with bodies it never saw: classifier accuracy, MCA, settled success, time."""
+"""Evaluation of a grounding on scenes with bodies it never saw: classifier accuracy, MCA, settled
+success, time.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,8 @@ class Evaluation:
         scenes: How many.
         mca: Success by the paper's oracle, of the one pose returned.
         settled: Success in physics.
-        feasible: The share of scenes in which a placement was found at all, by the data's maker or by the model.
+        feasible: The share of scenes in which a placement was found at all, by the data's maker or
+            by the model.
         accuracy: Of the classifier, at the scenes' own poses; None when it has none.
         failures: How the failures failed in physics, shares by verdict.
         mca_failures: How they failed by the paper's oracle.
@@ -51,7 +54,8 @@ def evaluate(
     seed: int = 0,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Evaluation:
-    """Ask for one pose in each scene, and judge it by both oracles; the planner's collision test takes no part.
+    """Ask for one pose in each scene, and judge it by both oracles; the planner's collision test
+    takes no part.
 
     Args:
         model: The grounding.
@@ -66,6 +70,7 @@ def evaluate(
     papers: Counter[str] = Counter()
     feasible, times = 0, []
     items = ItemOf()
+
     with Drops() as drops:
         for done, index in enumerate(order):
             situation = data[int(index)].situation
@@ -79,7 +84,9 @@ def evaluate(
             feasible += known or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
+
     count = len(order)
+
     return Evaluation(
         count,
         papers[Verdict.HOLDS] / count,
@@ -93,7 +100,8 @@ def evaluate(
 
 
 def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int = 0) -> float | None:
-    """The share of scenes that the classifier is right about, at their own poses; None when there is no classifier.
+    """Return the share of scenes that the classifier is right about, at their own poses; None when
+    there is no classifier.
 
     Args:
         model: The grounding.
@@ -113,14 +121,20 @@ def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int =
 
 
 def _failures(verdicts: Counter[str]) -> dict[str, float]:
-    """Shares of all."""
+    """Return each failure's share of all."""
     count = verdicts.total()
-    return {name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS}
+    return {
+        name: number / count for name, number in sorted(verdicts.items()) if name != Verdict.HOLDS
+    }
 
 
 def wilson(share: float, count: int) -> tuple[float, float]:
-    """The 95 % interval of a share of `count` (Wilson 1927)."""
+    """Compute the 95 % confidence interval of a share of `count` (Wilson 1927)."""
     z = 1.96
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    half = (
+        z
+        / (1 + z * z / count)
+        * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    )
     return max(0.0, middle - half), min(1.0, middle + half)

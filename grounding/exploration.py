@@ -1,9 +1,10 @@
-"""Data from exploration: poses proposed without knowing what holds, tried in physics, labelled by what happened.
+"""Data from exploration: poses proposed without knowing what holds, tried in physics, labelled by
+what happened.
 
-A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is let go at each: it
-stays, or it falls and may come to rest where the relation holds after all. What came to rest is then moved a little or
-a lot, or slid elsewhere, and tried again, which finds where the relation ends. One trial of a scene is kept, success
-and failure in turn.
+A scene is tried out in three steps. Poses are drawn, at random or by a grounding, and the body is
+let go at each: it stays, or it falls and may come to rest where the relation holds after all. What
+came to rest is then moved a little or a lot, or slid elsewhere, and tried again, which finds where
+the relation ends. One trial of a scene is kept, success and failure in turn.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.drop import Drops
 
 STAYED, RESTED = "stayed", "came to rest"
-"""How a relation can come to hold: the body stayed where it was put, or it fell and lies where it holds too."""
+"""How a relation can come to hold: the body stayed where it was put, or it fell and lies where it
+holds too.
+"""
 
 KINDS = (STAYED, RESTED, *(verdict.value for verdict in Verdict if verdict is not Verdict.HOLDS))
 """The types of samples: the failures are those of `settled`."""
@@ -44,13 +47,19 @@ DRAWN, MOVED, SLID = 12, 6, 8
 """Poses that are drawn in a scene, that one which was found is moved to, and that it is slid to."""
 
 CROWDED = 0.8
-"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive samples)."""
+"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive
+samples).
+"""
 
 FARTHEST, STEEPEST = 0.3, 1.0
-"""Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as likely."""
+"""Metres and radians by which a pose is moved at most; all magnitudes down to a hundredth are as
+likely.
+"""
 
 HARD = 0.75
-"""The share of failures that are taken from poses near one that was found: they show where the relation ends."""
+"""The share of failures that are taken from poses near one that was found: they show where the
+relation ends.
+"""
 
 SECONDS = 2.5
 """For how long a body may fall until it counts as come to rest."""
@@ -58,7 +67,7 @@ SECONDS = 2.5
 
 @dataclass(frozen=True)
 class Exploration:
-    """What is to be explored; a `grounding.chunks.Job`.
+    """The specification of an exploration; a `grounding.chunks.Job`.
 
     Attributes:
         relation: "on" or "inside".
@@ -76,34 +85,39 @@ class Exploration:
 
     @property
     def split(self) -> str:
-        """Exploration is for training."""
+        """Return "train": exploration is for training."""
         return "train"
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """What can happen."""
+        """Return the outcomes: what can happen."""
         return KINDS
 
     @property
     def key(self) -> str:
-        """All but the count; of the weights what they are, not where."""
+        """Return the key of all but the count; of the weights what they are, not where."""
         digest = None if self.weights is None else sha256(self.weights.read_bytes()).hexdigest()
-        return json.dumps(["explored", self.relation, self.seed, self.folder and self.folder.key, digest])
+        return json.dumps(
+            ["explored", self.relation, self.seed, self.folder and self.folder.key, digest]
+        )
 
     def chunk(self, number: int, start: int, size: int) -> list[Made]:
-        """The first `size` scenes of chunk `number`."""
+        """Make the first `size` scenes of chunk `number`."""
         explorer = _explorer(self.relation, self.weights, self.folder)
         rng = np.random.default_rng([self.seed, RELATIONS.index(self.relation), number, len(KINDS)])
         return [explorer.make(row % 2 == 0, rng) for row in range(size)]
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """How often a body was let go, and who drew."""
+        """Return the card's entries: how often a body was let go, and who drew."""
         drawn = None if self.weights is None else dict(read_weights(self.weights).card)
         return {"trials": int(arrays["trials"].sum()), "drawn by": drawn or "random"}
 
 
 def explore(
-    job: Exploration, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+    job: Exploration,
+    out: Path,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
 ) -> Dataset:
     """Make a data set by exploration and write it, see `make_dataset`.
 
@@ -114,7 +128,9 @@ def explore(
         load_model(job.weights)
         relation = read_weights(job.weights).card.get("relation")
         if relation != job.relation:
-            raise InputError(f"these are weights for '{relation}', not '{job.relation}'", file=job.weights)
+            raise InputError(
+                f"these are weights for '{relation}', not '{job.relation}'", file=job.weights
+            )
     return make_dataset(job, out, workers, progress)
 
 
@@ -131,13 +147,19 @@ class Explorer:
         self._scenes, self._drops, self._model = scenes, drops, model
 
     def make(self, holds: bool, rng: Random) -> Made:
-        """A scene where the relation came to hold, or where it did not; explores until there is one."""
+        """Make a scene where the relation came to hold, or where it did not; explores until there
+        is one.
+        """
         trials, near = 0, not holds and rng.random() < HARD
         while True:
             scene = self._scenes.draw(rng, crowded=rng.random() < CROWDED)
             tried, count = self.explore(scene, rng)
             trials += count
-            kept = [one for one in tried if (one[0] in (STAYED, RESTED)) == holds and (one[2] or not near)]
+            kept = [
+                one
+                for one in tried
+                if (one[0] in (STAYED, RESTED)) == holds and (one[2] or not near)
+            ]
             kinds = sorted({one[0] for one in kept})
             if kinds and not holds:  # a rare way to fail is kept as often as a frequent one
                 kind = kinds[int(rng.integers(len(kinds)))]
@@ -147,10 +169,11 @@ class Explorer:
                 return scene.made(pose, kind, holds, True, {"trials": trials})
 
     def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array, bool]], int]:
-        """What happened in a scene, and how often the body was let go.
+        """Explore a scene: return what happened in it, and how often the body was let go.
 
         Returns:
-            Kinds, poses T_world_body, and whether it was tried because of one that was found; and the number.
+            Kinds, poses T_world_body, and whether it was tried because of one that was found; and
+            the number.
         """
         drawn = np.stack([uniform(scene, rng) for _ in range(DRAWN)])
         if self._model is not None:
@@ -161,40 +184,58 @@ class Explorer:
         trials = len(drawn)
         if found:
             chosen = found[int(rng.integers(len(found)))]
-            poses = [moved(chosen, rng) for _ in range(MOVED)] + [slid(scene, chosen, rng) for _ in range(SLID)]
+            poses = [moved(chosen, rng) for _ in range(MOVED)] + [
+                slid(scene, chosen, rng) for _ in range(SLID)
+            ]
             tried += [(kind, pose, True) for kind, pose in self._try(scene, np.stack(poses))]
             trials += len(poses)
         return tried, trials
 
     def _try(self, scene: Drawn, poses: Array) -> list[tuple[str, Array]]:
-        """Let the body go at each pose: the failures, and where it came to rest so that the relation holds.
+        """Let the body go at each pose: the failures, and where it came to rest so that the
+        relation holds.
 
-        What came to rest against other bodies is neither: it stays, but is no place to put something.
+        What came to rest against other bodies is neither: it stays, but is no place to put
+        something.
         """
         situation, items = scene.situation(poses[0]), self._scenes.items
         verdicts = settled(situation, poses, self._drops, items)
         tried = [(verdict.value, pose) for verdict, pose in zip(verdicts, poses, strict=True)]
         # what is lower than the region, or in another body, cannot come to rest in it
-        falling = (Verdict.HOLDS, Verdict.TOO_HIGH, Verdict.OUTSIDE, Verdict.OVERLAPPING, Verdict.TIPS)
+        falling = (
+            Verdict.HOLDS,
+            Verdict.TOO_HIGH,
+            Verdict.OUTSIDE,
+            Verdict.OVERLAPPING,
+            Verdict.TIPS,
+        )
         rests, stayed = [], []
         self._drops.set_up(
-            items(scene.body), [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)]
+            items(scene.body),
+            [(items(one.form), one.matrix) for one in (scene.stand, *situation.others)],
         )
+
         for verdict, pose in zip(verdicts, poses, strict=True):
-            if verdict in falling and all(one.distance > -0.0005 for one in self._drops.contacts(pose)):
+            if verdict in falling and all(
+                one.distance > -0.0005 for one in self._drops.contacts(pose)
+            ):
                 rests.append(self._drops.drop(pose, SECONDS))
                 stayed.append(verdict is Verdict.HOLDS)
+
         found: list[tuple[str, Array]] = []
         after = settled(situation, np.stack(rests), self._drops, items) if rests else []
         for verdict, pose, there in zip(after, rests, stayed, strict=True):
             if verdict is Verdict.HOLDS and len(free(pose[None], scene)):
                 found.append((STAYED if there else RESTED, pose))
+
         failed = [one for one in tried if one[0] != Verdict.HOLDS]
         return failed + found
 
 
 def uniform(scene: Drawn, rng: Random) -> Array:
-    """T_world_body: anywhere in argument 0's box, grown by half its largest half extent, turned in any way; (4, 4)."""
+    """Sample T_world_body uniformly: anywhere in argument 0's box, grown by half its largest half
+    extent, turned in any way; (4, 4).
+    """
     low, high = scene.support.region.box
     margin = GROWTH * float((high - low).max()) / 2
     pose = random_turn(rng)
@@ -203,7 +244,9 @@ def uniform(scene: Drawn, rng: Random) -> Array:
 
 
 def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
-    """T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned by any angle; (4, 4)."""
+    """Sample T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned
+    by any angle; (4, 4).
+    """
     low, high = scene.support.region.box
     place = scene.stand.matrix[:3, :3] @ rng.uniform(low, high) + scene.stand.matrix[:3, 3]
     result = Pose.from_xyz_yaw(0.0, 0.0, 0.0, rng.uniform(-math.pi, math.pi)).matrix @ pose
@@ -212,8 +255,8 @@ def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
 
 
 def moved(pose: Array, rng: Random) -> Array:
-    """T_world_body moved by FARTHEST and turned by STEEPEST at most; half of them only sideways, half of them only
-    about the vertical, by any angle. Shape (4, 4).
+    """Perturb T_world_body by FARTHEST and STEEPEST at most; half of them only sideways, half of
+    them only about the vertical, by any angle. Shape (4, 4).
     """
     result = pose.copy()
     far, steep = (most * 10.0 ** -rng.uniform(0.0, 2.0) for most in (FARTHEST, STEEPEST))

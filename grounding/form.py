@@ -15,7 +15,9 @@ from tamp.geometric.stability.hulls import body_hull, centre_of_mass
 from tamp.geometric.stability.stable_poses import Face, stable_faces
 
 DIRECTIONS = 128
-"""Directions in which a hull's extreme vertices are kept; more vertices would change no decision."""
+"""Directions in which a hull's extreme vertices are kept; more vertices would change no
+decision.
+"""
 
 FEW = 42
 """The same where speed counts."""
@@ -23,7 +25,7 @@ FEW = 42
 
 @lru_cache(maxsize=512)
 def form_of(parts: tuple[Part, ...]) -> Form:
-    """The form of these parts, worked out once."""
+    """Return the form of these parts, worked out once."""
     return Form(parts)
 
 
@@ -40,7 +42,9 @@ class Form:
         self._unit: Form = self
 
     def scaled(self, factor: float) -> Form:
-        """The form made larger about its frame's origin; what is known of this one is not worked out again."""
+        """Scale the form about its frame's origin; what is known of this one is not worked out
+        again.
+        """
         if factor == 1.0:
             return self
         form = Form(tuple(scale_part(part, factor * self.scale) for part in self._unit.parts))
@@ -49,19 +53,21 @@ class Form:
 
     @property
     def unit(self) -> Form:
-        """The form of scale 1 that this one was made of."""
+        """Return the form of scale 1 that this one was made of."""
         return self._unit
 
     @cached_property
     def corners(self) -> Array:
-        """The box around it along its own axes: the low and the high corner, shape (2, 3)."""
+        """Return the bounding box along its own axes: the low and the high corner, shape (2, 3)."""
         if self._unit is not self:
             return self._unit.corners * self.scale
         return np.stack(bounds(self.parts, Pose()))
 
     @cached_property
     def vertices(self) -> Array:
-        """Corners of its convex hull, the outermost ones in DIRECTIONS directions, shape (v, 3)."""
+        """Return corners of its convex hull, the outermost ones in DIRECTIONS directions, shape (v,
+        3).
+        """
         if self._unit is not self:
             return self._unit.vertices * self.scale
         points, triangles = body_hull(self._body)
@@ -71,7 +77,9 @@ class Form:
 
     @cached_property
     def outer(self) -> Array:
-        """Fewer of `vertices`, the outermost ones in FEW directions and along its axes, shape (v, 3)."""
+        """Return fewer of `vertices`, the outermost ones in FEW directions and along its axes,
+        shape (v, 3).
+        """
         if self._unit is not self:
             return self._unit.outer * self.scale
         directions = np.concatenate([sphere(FEW), np.eye(3), -np.eye(3)])
@@ -80,45 +88,57 @@ class Form:
 
     @cached_property
     def radius(self) -> float:
-        """Of the sphere about the frame's origin that contains it, metres."""
+        """Return the radius of the sphere about the frame's origin that contains it, metres."""
         return (
-            float(np.linalg.norm(self.vertices, axis=1).max()) if self._unit is self else self._unit.radius * self.scale
+            float(np.linalg.norm(self.vertices, axis=1).max())
+            if self._unit is self
+            else self._unit.radius * self.scale
         )
 
     @cached_property
     def outer_box(self) -> Array:
-        """`corners` of `outer` alone, shape (2, 3)."""
+        """Return the bounding box of `outer` alone, shape (2, 3)."""
         if self._unit is not self:
             return self._unit.outer_box * self.scale
         return np.stack([self.outer.min(axis=0), self.outer.max(axis=0)])
 
     @cached_property
     def centre_of_mass(self) -> Array:
-        """Of uniform density, shape (3,)."""
-        return self._unit.centre_of_mass * self.scale if self._unit is not self else centre_of_mass(self._body)
+        """Return the centre of mass at uniform density, shape (3,)."""
+        return (
+            self._unit.centre_of_mass * self.scale
+            if self._unit is not self
+            else centre_of_mass(self._body)
+        )
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """The ways in which it can rest, the steadiest first."""
+        """Return the stable faces, the ways in which it can rest, the steadiest first."""
         if self._unit is self:
             return tuple(sorted(stable_faces(self._body), key=lambda face: -face.angle))
         s = self.scale
         return tuple(
-            replace(face, height=face.height * s, extent=face.extent * s, outline=face.outline * s, base=face.base * s,
-                    centre=face.centre * s)
+            replace(
+                face,
+                height=face.height * s,
+                extent=face.extent * s,
+                outline=face.outline * s,
+                base=face.base * s,
+                centre=face.centre * s,
+            )
             for face in self._unit.faces
-        )  # fmt: skip
+        )
 
     @cached_property
     def piece_boxes(self) -> Array:
-        """The box around each part along the form's axes, shape (parts, 2, 3)."""
+        """Return the bounding box of each part along the form's axes, shape (parts, 2, 3)."""
         if self._unit is not self:
             return self._unit.piece_boxes * self.scale
         return np.array([piece.corners for piece in self.pieces]).reshape(-1, 2, 3)
 
     @cached_property
     def pieces(self) -> tuple[Form, ...]:
-        """Each part as a form of its own."""
+        """Return each part as a form of its own."""
         if self._unit is not self:
             return tuple(piece.scaled(self.scale) for piece in self._unit.pieces)
         return tuple(Form((part,)) for part in self.parts)
@@ -129,7 +149,7 @@ class Form:
 
 
 def sphere(count: int) -> Array:
-    """Unit vectors spread evenly (Fibonacci's lattice), shape (count, 3)."""
+    """Return unit vectors spread evenly (Fibonacci's lattice), shape (count, 3)."""
     z = 1 - 2 * (np.arange(count) + 0.5) / count
     angle = np.pi * (3 - np.sqrt(5)) * np.arange(count)
     ring = np.sqrt(1 - z * z)

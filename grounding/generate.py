@@ -1,4 +1,6 @@
-"""Data sets of demonstrations: the paper's sample types in their shares, half of the scenes positive."""
+"""Data sets of demonstrations: the paper's sample types in their shares, half of the scenes
+positive.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ from tamp.simulation.drop import Drops
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be generated.
+    """The specification of scenes to generate; a `grounding.chunks.Job`.
 
     Attributes:
         relation: "on" or "inside".
@@ -40,35 +42,43 @@ class Job:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The relation's types of samples."""
+        """Return the relation's types of samples."""
         return tuple(KINDS[self.relation])
 
     @property
     def key(self) -> str:
-        """All but the count."""
+        """Return the key of all but the count."""
         return json.dumps([self.relation, self.split, self.seed, self.folder and self.folder.key])
 
     def chunk(self, number: int, start: int, size: int) -> list[Made]:
-        """The first `size` scenes of chunk `number`."""
+        """Make the first `size` scenes of chunk `number`."""
         maker = _maker(self.relation, self.split, self.folder)
         kinds = kinds_of(self.relation, start + size)[start:]
-        rng = np.random.default_rng([self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number])
+        rng = np.random.default_rng(
+            [self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number]
+        )
         return [maker.make(kind, rng) for kind in kinds]
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """Nothing more."""
+        """Return no further entries of the card."""
         return {}
 
 
-def generate(job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None) -> Dataset:
+def generate(
+    job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+) -> Dataset:
     """Make a data set of demonstrations and write it, see `make_dataset`."""
     return make_dataset(job, out, workers, progress)
 
 
 def kinds_of(relation: str, count: int) -> list[str]:
-    """The type of each of `count` scenes: their shares hold in every run of 40, positives and negatives in turn."""
+    """Return the type of each of `count` scenes: their shares hold in every run of 40, positives
+    and negatives in turn.
+    """
     shares = KINDS[relation]
-    sides = [[kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)]
+    sides = [
+        [kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)
+    ]
     owed = dict.fromkeys(shares, 0.0)
     chosen: list[str] = []
     for number in range(count):

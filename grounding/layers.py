@@ -14,9 +14,12 @@ Layers = Sequence[tuple[Floats, Floats]]
 
 
 def layers_of(
-    arrays: Mapping[str, NDArray[Any]], name: str, inputs: int | None = None, outputs: int | None = None
+    arrays: Mapping[str, NDArray[Any]],
+    name: str,
+    inputs: int | None = None,
+    outputs: int | None = None,
 ) -> Layers:
-    """The layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ...
+    """Read the layers that are kept as `NAME.0.weight`, `NAME.0.bias`, `NAME.1.weight`, ...
 
     Raises:
         ValueError: They do not fit each other, or have other numbers of inputs or outputs.
@@ -26,7 +29,12 @@ def layers_of(
         row = len(layers)
         weight, bias = arrays[f"{name}.{row}.weight"], arrays.get(f"{name}.{row}.bias")
         wanted = layers[-1][0].shape[1] if layers else inputs
-        if weight.ndim != 2 or bias is None or bias.shape != weight.shape[1:] or wanted not in (None, len(weight)):
+        if (
+            weight.ndim != 2
+            or bias is None
+            or bias.shape != weight.shape[1:]
+            or wanted not in (None, len(weight))
+        ):
             raise ValueError(f"layer '{name}.{row}' does not fit")
         layers.append((weight, bias))
     if not layers or outputs not in (None, layers[-1][0].shape[1]):
@@ -35,7 +43,7 @@ def layers_of(
 
 
 def dense(layers: Layers, x: NDArray[Any]) -> Floats:
-    """ReLU after every layer but the last; (..., in) to (..., out)."""
+    """Apply dense layers, ReLU after every layer but the last; (..., in) to (..., out)."""
     for row, (weight, bias) in enumerate(layers):
         x = x @ weight + bias
         if row < len(layers) - 1:
@@ -44,5 +52,7 @@ def dense(layers: Layers, x: NDArray[Any]) -> Floats:
 
 
 def sigmoid(x: NDArray[Any]) -> NDArray[Any]:
-    """Stable for large arguments."""
-    return np.where(x >= 0, 1.0 / (1.0 + np.exp(-np.abs(x))), np.exp(-np.abs(x)) / (1.0 + np.exp(-np.abs(x))))
+    """Compute the logistic sigmoid, stable for large arguments."""
+    return np.where(
+        x >= 0, 1.0 / (1.0 + np.exp(-np.abs(x))), np.exp(-np.abs(x)) / (1.0 + np.exp(-np.abs(x)))
+    )

@@ -1,4 +1,6 @@
-"""A folder of one's own meshes, one a subfolder as the YCB set comes, or one a file: objects to make data with."""
+"""A folder of one's own meshes, one a subfolder as the YCB set comes, or one a file: objects to
+make data with.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,14 @@ SMALLEST, LARGEST = 0.02, 0.28
 """Metres: what is smaller or larger is not moved by a hand."""
 
 SUFFIXES = (".urdf", ".obj", ".stl", ".ply")
-"""Of meshes; where a subfolder has several, the first of these, since a PLY may be a cloud of points."""
+"""Of meshes; where a subfolder has several, the first of these, since a PLY may be a cloud of
+points.
+"""
 
 
 @dataclass(frozen=True)
 class MeshFolder:
-    """Where one's own meshes are.
+    """A folder of one's own meshes, and their unit.
 
     Attributes:
         path: The folder.
@@ -35,7 +39,7 @@ class MeshFolder:
 
     @property
     def key(self) -> str:
-        """What its objects depend on: the meshes' contents."""
+        """Return the hash of the meshes' contents: what its objects depend on."""
         content = sha256(repr(self.scale).encode())
         for name, file in _files(self.path).items():
             content.update(name.encode() + file.read_bytes())
@@ -44,7 +48,7 @@ class MeshFolder:
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """What a folder holds.
+    """The objects of a mesh folder.
 
     Attributes:
         templates: Name to parts in metres; of the usable ones.
@@ -57,18 +61,26 @@ class Loaded:
 
 @lru_cache(maxsize=4)
 def read_folder(folder: MeshFolder) -> Loaded:
-    """One object for each subfolder, named after it, of its first mesh at any depth; and for each mesh beside them.
+    """Read one object for each subfolder, named after it, of its first mesh at any depth; and for
+    each mesh beside them.
 
     Raises:
-        InputError: There is no such folder, it has no meshes, one of them is no mesh, or none is usable.
+        InputError: There is no such folder, it has no meshes, one of them is no mesh, or none is
+            usable.
     """
     files = _files(folder.path)
     if not files:
         what = "no meshes in this folder" if folder.path.is_dir() else "no such folder"
-        remedy = f"One of {', '.join(SUFFIXES)} in a subfolder for each object" if folder.path.is_dir() else ""
+        remedy = (
+            f"One of {', '.join(SUFFIXES)} in a subfolder for each object"
+            if folder.path.is_dir()
+            else ""
+        )
         raise InputError(what, file=folder.path, remedy=remedy)
+
     found: dict[str, tuple[Part, ...]] = {}
     warnings: list[str] = []
+
     for name, file in files.items():
         try:
             mesh = load_mesh(file, (folder.scale, folder.scale, folder.scale))
@@ -80,22 +92,28 @@ def read_folder(folder: MeshFolder) -> Loaded:
             found[name] = mesh.parts
         else:
             warnings.append(f"{file}: left out, {reason}")
+
     if not found:
         raise InputError(f"none of its meshes can be used: {warnings[-1]}", file=folder.path)
     return Loaded(found, tuple(warnings))
 
 
 def unusable(parts: tuple[Part, ...]) -> str | None:
-    """Why no data are made with a body of these parts; None when it is of a hand's size and rests on some face."""
+    """Return why no data are made with a body of these parts; None when it is of a hand's size and
+    rests on some face.
+    """
     form = Form(parts)
     size = float(np.ptp(form.corners, axis=0).max())
     if not SMALLEST < size < LARGEST:
-        return f"it is {size:.3g} m large, and not between {SMALLEST} and {LARGEST} m; --mesh-scale makes it metres"
+        return (
+            f"it is {size:.3g} m large, and not between {SMALLEST} and {LARGEST} m; "
+            f"--mesh-scale makes it metres"
+        )
     return None if form.faces else "it rests on no face"
 
 
 def _files(folder: Path) -> dict[str, Path]:
-    """Name to mesh."""
+    """Return the meshes by name."""
     found: dict[str, Path] = {}
     for place in sorted(folder.iterdir()) if folder.is_dir() else []:
         files = [file for file in place.rglob("*") if file.is_file()] if place.is_dir() else [place]
@@ -107,6 +125,14 @@ def _files(folder: Path) -> dict[str, Path]:
 
 
 def _with_option(error: InputError, file: Path) -> InputError:
-    """A mistake of units is mended by an option here, where a problem file has a key."""
+    """Reword a mistake of units, which is mended by an option here, where a problem file has a
+    key.
+    """
     remedy = error.remedy.replace("say scale: ", "say --mesh-scale ")
-    return InputError(error.message, file=error.file or file, line=error.line, choices=error.choices, remedy=remedy)
+    return InputError(
+        error.message,
+        file=error.file or file,
+        line=error.line,
+        choices=error.choices,
+        remedy=remedy,
+    )

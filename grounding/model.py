@@ -1,4 +1,4 @@
-"""What every grounding is once it is trained: numpy only, for one relation."""
+"""The interface of a trained grounding: numpy only, for one relation."""
 
 from __future__ import annotations
 
@@ -11,20 +11,25 @@ from tamp.geometric.scene.pose import Array
 
 
 class Model(Protocol):
-    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n, 4, 4)."""
+    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n,
+    4, 4).
+    """
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """At most `count` poses, the best first, shape (n, 4, 4); none when it knows of no way.
+        """Propose at most `count` poses, the best first, shape (n, 4, 4); none when it knows of no
+        way.
 
         Args:
-            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models, where it starts.
+            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models,
+                where it starts.
             count: How many are wanted.
             rng: The only source of randomness.
         """
         ...
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """The probability that the relation holds with argument 1 at each of the poses, shape (n,).
+        """Return the probability that the relation holds with argument 1 at each of the poses,
+        shape (n,).
 
         Not a number from a model that is a generator only.
 

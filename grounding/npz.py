@@ -1,4 +1,6 @@
-"""Arrays out of a .npz file that is not to be trusted: sizes and types are looked at before anything is unpacked."""
+"""Arrays out of a .npz file that is not to be trusted: sizes and types are looked at before
+anything is unpacked.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,7 @@ _END = b"PK\x05\x06"
 
 
 class Header(NamedTuple):
-    """What the beginning of an array's file says: its shape, its type, and the bytes that it takes itself."""
+    """The header of an array's file: its shape, its type, and the bytes that it takes itself."""
 
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
@@ -38,18 +40,31 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
     """Unpack the arrays of a .npz file, as `numpy.savez` writes it.
 
     Raises:
-        InputError: It is none; an array is of objects or text, claims what is not there, or all are too large. The
-            message names the array.
+        InputError: It is none; an array is of objects or text, claims what is not there, or all are
+            too large. The message names the array.
     """
     _check_end(content)
+
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.infolist()
             total = sum(member.file_size for member in members)
             if total > MOST_BYTES:
-                raise InputError(f"its arrays take {total / 1e6:,.0f} MB, at most {MOST_BYTES / 1e6:,.0f} are read")
+                raise InputError(
+                    f"its arrays take {total / 1e6:,.0f} MB, "
+                    f"at most {MOST_BYTES / 1e6:,.0f} are read"
+                )
+
             return dict(_member(archive, member) for member in members)
-    except (OSError, ValueError, KeyError, EOFError, NotImplementedError, RuntimeError, MemoryError) as error:
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+        MemoryError,
+    ) as error:
         raise InputError(f"it is damaged: {error}") from None
     except (zipfile.BadZipFile, zlib.error, struct.error) as error:
         raise InputError(f"it is damaged: {error}") from None
@@ -75,7 +90,9 @@ def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> tuple[str, NDA
         if header.dtype.kind not in KINDS:
             raise InputError(f"array '{name}' holds {_kind(header.dtype)}, not numbers")
         if any(length < 0 for length in header.shape) or claimed != member.file_size:
-            raise InputError(f"array '{name}' claims {claimed:,} bytes, {member.file_size:,} are there")
+            raise InputError(
+                f"array '{name}' claims {claimed:,} bytes, {member.file_size:,} are there"
+            )
     with archive.open(member) as stream:
         return name, np.lib.format.read_array(stream, allow_pickle=False)
 
@@ -85,12 +102,28 @@ def _header(stream: Any, name: str) -> Header:
         version = np.lib.format.read_magic(stream)
         if version not in ((1, 0), (2, 0)):
             raise ValueError(f"its version is {version}")
-        reader = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        reader = (
+            np.lib.format.read_array_header_1_0
+            if version == (1, 0)
+            else np.lib.format.read_array_header_2_0
+        )
+
         shape, _, dtype = reader(stream)
         return Header(shape, dtype, stream.tell())
-    except (ValueError, TypeError, SyntaxError, RecursionError, OverflowError, MemoryError) as error:
-        raise InputError(f"array '{name}' is damaged: {str(error).splitlines()[0] if str(error) else error}") from None
+    except (
+        ValueError,
+        TypeError,
+        SyntaxError,
+        RecursionError,
+        OverflowError,
+        MemoryError,
+    ) as error:
+        raise InputError(
+            f"array '{name}' is damaged: {str(error).splitlines()[0] if str(error) else error}"
+        ) from None
 
 
 def _kind(dtype: np.dtype[Any]) -> str:
-    return {"U": "text", "S": "text", "O": "objects", "c": "complex numbers"}.get(dtype.kind, f"'{dtype}'")
+    return {"U": "text", "S": "text", "O": "objects", "c": "complex numbers"}.get(
+        dtype.kind, f"'{dtype}'"
+    )

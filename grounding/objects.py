@@ -1,5 +1,5 @@
-"""The objects that data are made with: household shapes, pybullet's meshes, a folder of one's own. Training and test
-objects are disjoint.
+"""The objects that data are made with: household shapes, pybullet's meshes, a folder of one's own.
+Training and test objects are disjoint.
 """
 
 from __future__ import annotations
@@ -21,7 +21,12 @@ HOUSEHOLD = {"train": 7, "test": 3}
 RANDOM = {"train": range(0, 60), "test": range(500, 520)}
 """Which of pybullet's random shapes."""
 MESHES: Mapping[str, Mapping[str, float]] = {
-    "train": {"duck_vhacd.urdf": 1.0, "lego/lego.urdf": 1.5, "jenga/jenga.urdf": 1.0, "domino/domino.urdf": 1.0},
+    "train": {
+        "duck_vhacd.urdf": 1.0,
+        "lego/lego.urdf": 1.5,
+        "jenga/jenga.urdf": 1.0,
+        "domino/domino.urdf": 1.0,
+    },
     "test": {"objects/mug.urdf": 0.85, "teddy_vhacd.urdf": 1.0},
 }
 """Meshes of pybullet_data and the factors that make them a hand's size."""
@@ -29,8 +34,10 @@ _SEED = 20261125
 
 
 @lru_cache(maxsize=4)
-def object_templates(split: str, folder: MeshFolder | None = None) -> Mapping[str, tuple[Part, ...]]:
-    """The objects of a split by name, parts in metres; deterministic.
+def object_templates(
+    split: str, folder: MeshFolder | None = None
+) -> Mapping[str, tuple[Part, ...]]:
+    """Return the objects of a split by name, parts in metres; deterministic.
 
     Args:
         split: "train" or "test".
@@ -44,13 +51,21 @@ def object_templates(split: str, folder: MeshFolder | None = None) -> Mapping[st
     for name, make in SHAPES.items():
         for number in range(HOUSEHOLD[split]):
             found[f"{name}_{split}_{number}"] = make(rng)
+
     if split == "test":
         found |= YCB
-    paths = {f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf" for number in RANDOM[split]}
-    found |= {name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts for name, path in paths.items()}
+    paths = {
+        f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf"
+        for number in RANDOM[split]
+    }
+    found |= {
+        name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts
+        for name, path in paths.items()
+    }
     for path, scale in MESHES[split].items():
         mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
         found[Path(path).stem] = mesh.parts
+
     if folder is not None:
         found |= read_folder(folder).templates
     return {name: parts for name, parts in found.items() if unusable(parts) is None}

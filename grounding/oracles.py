@@ -31,7 +31,7 @@ SLACK = 0.002
 
 
 class Verdict(StrEnum):
-    """What the judges say; all but `HOLDS` are failures, in the order in which they are looked for.
+    """The judges' verdict; all but `HOLDS` are failures, in the order in which they are looked for.
 
     The paper's knows neither `PENETRATES` nor `TIPS`.
     """
@@ -47,18 +47,22 @@ class Verdict(StrEnum):
 
 
 def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
-    """The paper's manual classification accuracy (section IV-B) of poses T_world_body, shape (n, 4, 4).
+    """Judge poses T_world_body, shape (n, 4, 4), by the paper's manual classification accuracy
+    (section IV-B).
 
-    `on`: the bottom of the box around the body within NEAR of the surface, the box's centre above the surface.
-    `inside`: the box around the body, along the container's axes, in the container's box up to SLACK. Both: no
-    collision with the surrounding bodies, for which the paper asks a simulator and we their convex hulls.
+    `on`: the bottom of the box around the body within NEAR of the surface, the box's centre above
+    the surface. `inside`: the box around the body, along the container's axes, in the container's
+    box up to SLACK. Both: no collision with the surrounding bodies, for which the paper asks a
+    simulator and we their convex hulls.
     """
-    return np.array([verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool)
+    return np.array(
+        [verdict is Verdict.HOLDS for verdict in paper_verdicts(situation, poses)], dtype=bool
+    )
 
 
 def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
-    """What `paper_oracle` says, and of failures the type (the paper's figure 6): the first that is true of too low, too
-    high, outside (with or without overlap, seen from above), collides.
+    """Judge as `paper_oracle` does, with the type of each failure (the paper's figure 6): the first
+    that is true of too low, too high, outside (with or without overlap, seen from above), collides.
     """
     region, form = situation.region, situation.body.form
     frame = situation.support.matrix if region.hollow else situation.T_world_region
@@ -66,13 +70,21 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
     points = form.vertices @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
     low, high = points.min(axis=1), points.max(axis=1)
     if region.hollow:
-        floor, top, least, most = region.box[0, 2], region.box[1, 2], region.box[0, :2], region.box[1, :2]
+        floor, top, least, most = (
+            region.box[0, 2],
+            region.box[1, 2],
+            region.box[0, :2],
+            region.box[1, :2],
+        )
         too_low, too_high = low[:, 2] < floor - SLACK, high[:, 2] > top + SLACK
-        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(axis=1)
+        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(
+            axis=1
+        )
     else:
         least, most = -region.size[:2] / 2, region.size[:2] / 2
         too_low, too_high = low[:, 2] < -NEAR, low[:, 2] > NEAR
         within = (np.abs((low + high)[:, :2] / 2) <= most).all(axis=1)
+
     overlaps = (low[:, :2] < most).all(axis=1) & (high[:, :2] > least).all(axis=1)
     free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
     failed = {
@@ -82,22 +94,31 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
         Verdict.OUTSIDE: ~within,
         Verdict.COLLIDES: ~free,
     }
-    return [next((name for name, true in failed.items() if true[row]), Verdict.HOLDS) for row in range(len(poses))]
+    return [
+        next((name for name, true in failed.items() if true[row]), Verdict.HOLDS)
+        for row in range(len(poses))
+    ]
 
 
 def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
-    """Whether the relation holds with the body at each of the poses, shape (n, 4, 4), and goes on holding."""
+    """Judge by a physics simulation whether the relation holds with the body at each of the poses,
+    shape (n, 4, 4), and goes on holding.
+    """
     if not len(poses):
         return []
     boxes = [Placed(situation.body.form, pose).box for pose in poses if np.isfinite(pose).all()]
-    others = [other for other in situation.others if any(gap(other.box, box) < REACH for box in boxes)]
+    others = [
+        other for other in situation.others if any(gap(other.box, box) < REACH for box in boxes)
+    ]
     bodies = [situation.support, *others]
     drops.set_up(items(situation.body.form), [(items(body.form), body.matrix) for body in bodies])
     return [_judge(situation, pose, drops) for pose in poses]
 
 
 def place_verdict(region: Region, form: Form, T_region_body: Array) -> Verdict:
-    """Where a body is by geometry alone, contacts left out: HOLDS, or what is wrong with the place."""
+    """Judge a body's place by geometry alone, contacts left out: HOLDS, or what is wrong with the
+    place.
+    """
     points = form.vertices @ T_region_body[:3, :3].T + T_region_body[:3, 3]
     low, high = points.min(axis=0), points.max(axis=0)
     half = region.size[:2] / 2
@@ -123,7 +144,7 @@ class ItemOf:
         self._items: dict[tuple[int, float], tuple[Form, Item]] = {}
 
     def __call__(self, form: Form) -> Item:
-        """The same item for the same unit form and scale."""
+        """Return the same item for the same unit form and scale."""
         key = id(form.unit), form.scale
         if key not in self._items:
             self._items[key] = form, Item(form.parts)
@@ -138,7 +159,9 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
     place = place_verdict(region, form, T_region_world @ pose)
     if place is not Verdict.HOLDS:
         return place
-    deep = [contact.obstacle for contact in drops.contacts(pose, 0.001) if contact.distance < -DEPTH]
+    deep = [
+        contact.obstacle for contact in drops.contacts(pose, 0.001) if contact.distance < -DEPTH
+    ]
     if deep:
         return Verdict.PENETRATES if 0 in deep or -1 in deep else Verdict.COLLIDES
     after = drops.drop(pose, SECONDS)
@@ -149,12 +172,14 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
 
 
 def moved(form: Form, before: Array, after: Array) -> float:
-    """How far the centre of mass went, metres."""
+    """Return how far the centre of mass went, metres."""
     centre = form.centre_of_mass
-    return float(np.linalg.norm((after[:3, :3] - before[:3, :3]) @ centre + after[:3, 3] - before[:3, 3]))
+    return float(
+        np.linalg.norm((after[:3, :3] - before[:3, :3]) @ centre + after[:3, 3] - before[:3, 3])
+    )
 
 
 def turned(before: Array, after: Array) -> float:
-    """The angle between two orientations, radians."""
+    """Compute the angle between two orientations, radians."""
     cosine = (np.trace(before[:3, :3].T @ after[:3, :3]) - 1) / 2
     return math.acos(float(np.clip(cosine, -1.0, 1.0)))

@@ -1,8 +1,10 @@
-"""A file of numbers and its card, NAME.json, which says what they are: two files that belong together.
+"""A file of numbers and its card, NAME.json, which says what they are: two files that belong
+together.
 
-The card holds the hash of its file. Of a new pair the card is written beside the old one first, under a name of its
-own; then the file takes its place, and then the card. So whoever is killed leaves the old pair, or the new one: a file
-whose card has not yet taken its place is read with the one that waits.
+The card holds the hash of its file. Of a new pair the card is written beside the old one first,
+under a name of its own; then the file takes its place, and then the card. So whoever is killed
+leaves the old pair, or the new one: a file whose card has not yet taken its place is read with the
+one that waits.
 """
 
 from __future__ import annotations
@@ -47,7 +49,9 @@ def write_pair(path: Path, content: bytes, card: Mapping[str, Any]) -> None:
         raise
     waiting.replace(beside)
 
-    for left in beside.parent.glob(f".{glob.escape(beside.name)}.{'[0-9a-f]' * 16}"):  # of runs that were killed
+    for left in beside.parent.glob(
+        f".{glob.escape(beside.name)}.{'[0-9a-f]' * 16}"
+    ):  # of runs that were killed
         with contextlib.suppress(OSError):
             left.unlink()
 
@@ -59,7 +63,8 @@ class Pair:
     Attributes:
         content: The file's bytes.
         card: The card, without the hash.
-        stranger: The error when the card is that of another file; to be raised once the file itself was found sound.
+        stranger: The error when the card is that of another file; to be raised once the file itself
+            was found sound.
     """
 
     content: bytes
@@ -78,7 +83,8 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
         remedy: How to make it anew.
 
     Raises:
-        InputError: A file is missing, too large or no file; the card is damaged or of another format.
+        InputError: A file is missing, too large or no file; the card is damaged or of another
+            format.
     """
     beside = path.with_suffix(".json")
     for file in (path, beside):
@@ -95,7 +101,10 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
         card = _card(beside, form, remedy)
     if card.pop(HASH, digest) == digest:
         return Pair(content, card)
-    message = f"{path.name} and its card do not belong together: one of them was changed or is another one's"
+    message = (
+        f"{path.name} and its card do not belong together: "
+        f"one of them was changed or is another one's"
+    )
     meant = f"{remedy}; if it was changed on purpose, take '{HASH}' out of the card"
     return Pair(content, card, InputError(message, file=beside, remedy=meant))
 
@@ -103,10 +112,18 @@ def read_pair(path: Path, form: str, *, what: str, most: int, remedy: str) -> Pa
 def _card(file: Path, form: str, remedy: str) -> dict[str, Any]:
     try:
         text = read_text(file, MOST_CARD_BYTES, kind="card")
-        found = parse_json(text.replace(": Infinity", ": null"), file, kind="card")  # of earlier versions
+        found = parse_json(
+            text.replace(": Infinity", ": null"), file, kind="card"
+        )  # of earlier versions
     except InputError as error:
-        message = error.message if error.message.startswith("this is") else f"the card is damaged: {error.message}"
-        raise InputError(message, file=file, line=error.line, column=error.column, remedy=remedy) from None
+        message = (
+            error.message
+            if error.message.startswith("this is")
+            else f"the card is damaged: {error.message}"
+        )
+        raise InputError(
+            message, file=file, line=error.line, column=error.column, remedy=remedy
+        ) from None
     if not isinstance(found, dict) or found.get("format") != form:
         raise InputError(f"not a card of '{form}'", file=file, remedy=remedy)
     _refuse_infinite(found, file, remedy)
@@ -114,15 +131,17 @@ def _card(file: Path, form: str, remedy: str) -> dict[str, Any]:
 
 
 def _refuse_infinite(value: Any, file: Path, remedy: str) -> None:
-    """JSON's 1e999 is read as infinity."""
+    """Refuse infinity, which is how JSON's 1e999 is read."""
     waiting = [value]
     while waiting:
         one = waiting.pop()
         if isinstance(one, float) and not math.isfinite(one):
-            raise InputError("the card is damaged: a number is not finite", file=file, remedy=remedy)
+            raise InputError(
+                "the card is damaged: a number is not finite", file=file, remedy=remedy
+            )
         waiting += one.values() if isinstance(one, dict) else one if isinstance(one, list) else ()
 
 
 def _waiting(beside: Path, digest: str) -> Path:
-    """Where the card of a file of this hash waits until the file is there."""
+    """Return where the card of a file of this hash waits until the file is there."""
     return beside.with_name(f".{beside.name}.{digest[:16]}")

@@ -1,4 +1,4 @@
-"""Random poses of bodies: at rest, on the ground, in the air; T_frame_body, shape (4, 4), metres."""
+"""Random poses of bodies: at rest, on the ground, in the air; T_frame_body (4, 4), metres."""
 
 from __future__ import annotations
 
@@ -15,8 +15,12 @@ from tamp.geometric.scene.scene import CONTACT_GAP
 from tamp.geometric.stability.stable_poses import resting_pose
 
 
-def random_rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random) -> Array | None:
-    """T_region_body at rest: whole above the rectangle, or only its centre of mass, 2 cm inside, with `overhang`."""
+def random_rest(
+    form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random
+) -> Array | None:
+    """Sample T_region_body at rest: whole above the rectangle, or only its centre of mass, 2 cm
+    inside, with `overhang`.
+    """
     faces = [face for face in form.faces if face.extent + 2 * CONTACT_GAP <= size[2]]
     if not faces:
         return None
@@ -32,6 +36,7 @@ def random_rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng
     else:
         outline = face.outline @ turn.T
         low, high = outline.min(axis=0), outline.max(axis=0)
+
     least, most = -half - low, half - high
     if (least > most).any():
         return None
@@ -40,7 +45,7 @@ def random_rest(form: Form, size: Array | tuple[float, ...], overhang: bool, rng
 
 
 def on_ground(form: Form, stand: Placed, rng: Random) -> Array | None:
-    """At rest on the ground around a support."""
+    """Sample a pose at rest on the ground around a support."""
     low, high = stand.box
     size = high - low
     pose = random_rest(form, (size[0] + 1.0, size[1] + 1.0, math.inf), False, rng)
@@ -50,36 +55,40 @@ def on_ground(form: Form, stand: Placed, rng: Random) -> Array | None:
 
 
 def afloat(stand: Placed, rng: Random) -> Array:
-    """Anywhere around and above a support, turned in any way."""
+    """Sample a pose anywhere around and above a support, turned in any way."""
     low, high = stand.box
     pose = random_turn(rng)
-    pose[:3, 3] = rng.uniform([low[0] - 0.5, low[1] - 0.5, 0.15], [high[0] + 0.5, high[1] + 0.5, high[2] + 0.5])
+    pose[:3, 3] = rng.uniform(
+        [low[0] - 0.5, low[1] - 0.5, 0.15], [high[0] + 0.5, high[1] + 0.5, high[2] + 0.5]
+    )
     return pose
 
 
 def random_turn(rng: Random) -> Array:
-    """T with a uniformly random rotation and no translation, shape (4, 4)."""
+    """Sample T with a uniformly random rotation and no translation, shape (4, 4)."""
     x, y, z, w = (float(v) for v in rng.normal(size=4))
     norm = math.sqrt(x * x + y * y + z * z + w * w)
     return Pose((0.0, 0.0, 0.0), (x / norm, y / norm, z / norm, w / norm)).matrix.copy()
 
 
 def upright(at: Array, rng: Random) -> Array:
-    """Upright on the ground above `at` (2,), any yaw."""
-    return Pose.from_xyz_yaw(float(at[0]), float(at[1]), 0.0, rng.uniform(-math.pi, math.pi)).matrix.copy()
+    """Sample a pose upright on the ground above `at` (2,), any yaw."""
+    return Pose.from_xyz_yaw(
+        float(at[0]), float(at[1]), 0.0, rng.uniform(-math.pi, math.pi)
+    ).matrix.copy()
 
 
 def solids(stand: Placed) -> list[Placed]:
-    """The support's convex parts as obstacles of their own."""
+    """Return the support's convex parts as obstacles of their own."""
     return [Placed(part, stand.matrix) for part in stand.form.pieces]
 
 
 def pick(names: Mapping[str, object], rng: Random) -> str:
-    """One of the names."""
+    """Pick one of the names."""
     return tuple(names)[int(rng.integers(len(names)))]
 
 
 def random_scale(limits: tuple[float, float], rng: Random) -> float:
-    """In steps of 0.1, so that shapes come again."""
+    """Sample a scale in steps of 0.1, so that shapes come again."""
     low, high = round(limits[0] * 10), round(limits[1] * 10)
     return int(rng.integers(low, high + 1)) / 10

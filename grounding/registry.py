@@ -1,4 +1,6 @@
-"""Which groundings there are: by relation and name, made from the weights that ship or that a user trained."""
+"""The registry of groundings: by relation and name, made from the weights that ship or that a user
+trained.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +69,9 @@ BORROWED: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
 """Model name to the one whose weights it uses, of which it takes the classifier."""
 
 VARIANTS: Mapping[str, str] = {
-    f"{model}-{scheme}": model for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "classifier")
+    f"{model}-{scheme}": model
+    for model in ("mlp-bb", "gnn-bb")
+    for scheme in ("discriminator", "classifier")
 }
 """Name of what ships of another training scheme than "both" to the model that it is."""
 
@@ -78,26 +82,35 @@ RELATIONS = ("on", "inside")
 
 
 def load_model(path: Path, model: str | None = None) -> Model:
-    """The model of a weight file.
+    """Load the model of a weight file.
 
     Args:
         path: The file; its card is beside it.
         model: Which model to make of it; by default the one that the card names.
 
     Raises:
-        InputError: The file is missing, damaged, or of a model that this version does not know; or the model asked for
-            is not made of such weights.
+        InputError: The file is missing, damaged, or of a model that this version does not know; or
+            the model asked for is not made of such weights.
     """
     weights = read_weights(path)
     trained = str(weights.card.get("model"))
     if trained not in MODELS or trained in BORROWED:
         choices = [name for name in MODELS if name not in BORROWED]
-        raise InputError(f"unknown model '{trained}'", file=path.with_suffix(".json"), found=trained, choices=choices)
+        raise InputError(
+            f"unknown model '{trained}'",
+            file=path.with_suffix(".json"),
+            found=trained,
+            choices=choices,
+        )
+
     name = model or trained
     if name not in MODELS and name not in UNTRAINED:
         raise InputError(f"unknown model '{name}'", found=name, choices=MODELS)
     if BORROWED.get(name, name) != trained:
-        raise InputError(f"these are weights of '{trained}'; '{name}' is not made of them", file=path)
+        raise InputError(
+            f"these are weights of '{trained}'; '{name}' is not made of them", file=path
+        )
+
     try:
         return MODELS[name](weights)
     except InputError as error:
@@ -107,35 +120,41 @@ def load_model(path: Path, model: str | None = None) -> Model:
 
 
 def shipped_model(relation: str, name: str) -> Model:
-    """The model of a name, of the weights that ship, or of none where it needs none.
+    """Load the model of a name, of the weights that ship, or of none where it needs none.
 
     Raises:
-        InputError: An unknown relation or name, or weights that do not ship; then how to train them.
+        InputError: An unknown relation or name, or weights that do not ship; then how to train
+            them.
     """
     if relation not in RELATIONS:
         raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS)
     if name in UNTRAINED:
         return UNTRAINED[name]()
     if name not in MODELS and name not in VARIANTS:
-        raise InputError(f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED])
+        raise InputError(
+            f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED]
+        )
     path = shipped_weights(relation, name)
     model = VARIANTS.get(name, name)
     if not path.is_file():
         scheme = f" --scheme {name.rpartition('-')[2]}" if name in VARIANTS else ""
-        remedy = f"Train it: tamp-learn train {relation} --model {BORROWED.get(model, model)}{scheme} --out {path}"
+        trained = BORROWED.get(model, model)
+        remedy = f"Train it: tamp-learn train {relation} --model {trained}{scheme} --out {path}"
         raise InputError(f"no weights of '{name}' for '{relation}' are shipped", remedy=remedy)
     return load_model(path, model)
 
 
 def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer:
-    """`load_model` for the planner; without a classifier where the card says that it cannot tell yet."""
+    """Load a model for the planner; without a classifier where the card says that it cannot tell
+    yet.
+    """
     grounding = _grounding(load_model(path, model))
     why = cannot_tell(read_weights(path).card)
     return grounding if why is None else Proposer(grounding, why)
 
 
 def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
-    """`load_grounding` of a file that must be about this relation.
+    """Load a grounding of a file that must be about this relation.
 
     Raises:
         InputError: It is about another one, or as for `load_model`.
@@ -147,7 +166,7 @@ def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
 
 
 def shipped_grounding(relation: str, name: str) -> Grounding:
-    """`shipped_model` for the planner."""
+    """Load a shipped model for the planner."""
     return _grounding(shipped_model(relation, name))
 
 
@@ -159,7 +178,7 @@ def _grounding(model: Model) -> Grounding:
 
 
 def shipped_weights(relation: str, name: str) -> Path:
-    """Where the shipped weights of a model are, if they are."""
+    """Return the path of the shipped weights of a model, if they are there."""
     return SHIPPED / f"{relation}_{BORROWED.get(name, name)}.safetensors"
 
 
@@ -173,8 +192,9 @@ GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
     },
     ANY: {".safetensors": file_grounding},
 }
-"""Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler on=FILE.safetensors` mean.
+"""Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler
+on=FILE.safetensors` mean.
 
-`surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for it says so and how to
-train them.
+`surface` and `uniform` are the planner's own. Where the weights of a name do not ship, asking for
+it says so and how to train them.
 """

@@ -1,4 +1,6 @@
-"""Trained groundings as the planner calls them: a scene and names in, world poses or a probability out. Numpy only."""
+"""Trained groundings as the planner calls them: a scene and names in, world poses or a probability
+out. Numpy only.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +25,21 @@ class Grounding:
     def __init__(self, model: Model) -> None:
         self.model = model
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """At most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the best first."""
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose at most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the
+        best first.
+        """
         poses = self.model.propose(situation_of(scene, arguments), count, rng)
         return [Pose.from_matrix(pose) for pose in poses]
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
-        """The probability that the relation holds where the body is."""
+        """Return the probability that the relation holds where the body is."""
         situation = situation_of(scene, arguments)
-        return float(np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0))
+        return float(
+            np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0)
+        )
 
 
 class Proposer:
@@ -45,6 +53,8 @@ class Proposer:
     def __init__(self, grounding: Grounding, cannot_tell: str) -> None:
         self._grounding, self.cannot_tell = grounding, cannot_tell
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """As the grounding's."""
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose poses as the grounding does."""
         return self._grounding.propose(scene, arguments, count, rng)

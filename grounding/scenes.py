@@ -1,4 +1,6 @@
-"""Random scenes to put a body into: a support or container, another support, and bodies on, in and around them."""
+"""Random scenes to put a body into: a support or container, another support, and bodies on, in and
+around them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,15 @@ from grounding.form import Form
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
 from grounding.oracles import REACH, ItemOf
-from grounding.random_poses import afloat, on_ground, pick, random_rest, random_scale, solids, upright
+from grounding.random_poses import (
+    afloat,
+    on_ground,
+    pick,
+    random_rest,
+    random_scale,
+    solids,
+    upright,
+)
 from grounding.separation import Obstacles, separations
 from grounding.situation import Placed, Situation, gap, near
 from grounding.supports import Support, scaled_region, support_templates
@@ -75,17 +85,22 @@ class Drawn:
 
     @property
     def placed(self) -> list[Placed]:
-        """The other bodies."""
+        """Return the other bodies."""
         return [item for _, _, item in self.others]
 
     def situation(self, pose: Array) -> Situation:
-        """With the body at T_world_body, shape (4, 4)."""
+        """Return the situation with the body at T_world_body, shape (4, 4)."""
         return near(self.stand, self.support.region, Placed(self.body, pose), self.placed)
 
     def made(
-        self, pose: Array, kind: str, holds: bool, feasible: bool, columns: Mapping[str, int] | None = None
+        self,
+        pose: Array,
+        kind: str,
+        holds: bool,
+        feasible: bool,
+        columns: Mapping[str, int] | None = None,
     ) -> Made:
-        """This scene, labelled, with the body at T_world_body, shape (4, 4)."""
+        """Label this scene, with the body at T_world_body, shape (4, 4)."""
         names = [*self.names, *(name for name, _, _ in self.others)]
         scales = [*self.scales, *(scale for _, scale, _ in self.others)]
         poses = [self.stand.matrix, pose, *(item.matrix for item in self.placed)]
@@ -103,24 +118,32 @@ class Scenes:
 
     def __init__(self, relation: str, split: str, folder: MeshFolder | None = None) -> None:
         self.split, self.items = split, ItemOf()
-        self._objects = {name: Form(parts) for name, parts in object_templates(split, folder).items()}
+        self._objects = {
+            name: Form(parts) for name, parts in object_templates(split, folder).items()
+        }
         self._supports = dict(support_templates(relation, split))
         self._tables = dict(support_templates("on", split))
-        self._forms = {name: Form(support.parts) for name, support in (self._supports | self._tables).items()}
+        self._forms = {
+            name: Form(support.parts) for name, support in (self._supports | self._tables).items()
+        }
         self._scaled: dict[tuple[str, float], Form] = {}
 
     def draw(self, rng: Random, *, crowded: bool = True) -> Drawn:
-        """A scene; `crowded` has bodies on or in argument 0."""
+        """Sample a scene; `crowded` has bodies on or in argument 0."""
         name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         support = self._supports[name]
         support = replace(support, region=scaled_region(support.region, scale))
         stand = Placed(self._form(name, scale), upright(rng.uniform(-1.5, 1.5, 2), rng))
-        body_name, body_scale = pick(self._objects, rng), random_scale(OBJECT_SCALES[self.split], rng)
+        body_name, body_scale = (
+            pick(self._objects, rng),
+            random_scale(OBJECT_SCALES[self.split], rng),
+        )
         others = [self._other_support(stand, rng)]
         for number in range(int(rng.integers(OTHERS[self.split][0], OTHERS[self.split][1] + 1))):
             found = self._distractor(crowded, number, stand, support, others, rng)
             if found is not None:
                 others.append(found)
+
         return Drawn(
             (name, body_name),
             (scale, body_scale),
@@ -133,13 +156,15 @@ class Scenes:
         )
 
     def around(self, scene: Drawn, pose: Array) -> list[tuple[Item, Array]]:
-        """What the body can touch from T_world_body, shape (4, 4), as the engine's items and their matrices."""
+        """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
+        their matrices.
+        """
         box = Placed(scene.body, pose).box
         bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
         return [(self.items(item.form), item.matrix) for item in bodies]
 
     def on_other(self, form: Form, other: tuple[str, float, Placed], rng: Random) -> Array | None:
-        """At rest on the other support."""
+        """Sample a pose at rest on the other support."""
         name, scale, item = other
         region = scaled_region(self._tables[name].region, scale)
         pose = random_rest(form, region.size, False, rng)
@@ -189,19 +214,24 @@ class Scenes:
 
 
 def free(poses: Array, scene: Drawn) -> Array:
-    """Those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the other bodies."""
+    """Select those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the
+    other bodies.
+    """
     if not len(poses) or not scene.others:
         return poses
     return poses[(separations(scene.body, poses, scene.obstacles) > GAP).all(axis=1)]
 
 
 def resting(scene: Drawn, rng: Random) -> Array:
-    """World poses at rest in the region, up to TRIES: any face, any yaw, the body or its centre inside."""
+    """Sample world poses at rest in the region, up to TRIES: any face, any yaw, the body or its
+    centre inside.
+    """
     region = scene.support.region
     poses = [
         scene.T_world_region @ pose
         for pose in (
-            random_rest(scene.body, region.size, not region.hollow and rng.random() < 0.3, rng) for _ in range(TRIES)
+            random_rest(scene.body, region.size, not region.hollow and rng.random() < 0.3, rng)
+            for _ in range(TRIES)
         )
         if pose is not None
     ]

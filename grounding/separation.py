@@ -1,4 +1,6 @@
-"""How far a body at many poses is from the bodies around it: separating axes between convex hulls, all at once."""
+"""Separations of a body at many poses from the bodies around it: separating axes between convex
+hulls, all at once.
+"""
 
 from __future__ import annotations
 
@@ -51,10 +53,11 @@ class Obstacles:
 
 
 def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
-    """Signed distances along the best of some axes, metres: a lower bound of the distance, negative when hulls overlap.
+    """Compute signed distances along the best of some axes, metres: a lower bound of the distance,
+    negative when hulls overlap.
 
-    The axes are both bodies' own, the vertical, and the line between the centres: exact for boxes that stand upright
-    and for cylinders beside each other, a little pessimistic at corners.
+    The axes are both bodies' own, the vertical, and the line between the centres: exact for boxes
+    that stand upright and for cylinders beside each other, a little pessimistic at corners.
 
     Args:
         form: The body that is placed.
@@ -68,27 +71,42 @@ def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
     if not obstacles.count:
         return np.zeros((count, 0))
     out = np.empty((count, obstacles.count))
-    placed = (obstacles.points, obstacles.sizes, obstacles.axes, obstacles.spans, obstacles.low, obstacles.high)
+    placed = (
+        obstacles.points,
+        obstacles.sizes,
+        obstacles.axes,
+        obstacles.spans,
+        obstacles.low,
+        obstacles.high,
+    )
     _separate(form.outer, form.outer_box, np.ascontiguousarray(poses, dtype=float), *placed, out)
     return out
 
 
 @njit(
-    "void(float64[:,::1], float64[:,::1], float64[:,:,::1], float64[:,:,::1], int64[::1], float64[:,:,::1],"
-    "float64[:,:,:], float64[:,::1], float64[:,::1], float64[:,::1])",
+    "void(float64[:,::1], float64[:,::1], float64[:,:,::1], float64[:,:,::1], "
+    "int64[::1], float64[:,:,::1], float64[:,:,:], float64[:,::1], float64[:,::1], float64[:,::1])",
     cache=True,
 )
 def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
-    """`separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the rest of `Obstacles`."""
+    """Compute `separations` into `out` (n, m): own (v, 3) and box (2, 3) in the body's frame, the
+    rest of `Obstacles`.
+    """
     points = np.empty_like(own)
     for n in range(len(poses)):
         pose = poses[n]
         least, most = np.full(3, np.inf), np.full(3, -np.inf)
         for v in range(len(own)):
             for k in range(3):
-                at = pose[k, 0] * own[v, 0] + pose[k, 1] * own[v, 1] + pose[k, 2] * own[v, 2] + pose[k, 3]
+                at = (
+                    pose[k, 0] * own[v, 0]
+                    + pose[k, 1] * own[v, 1]
+                    + pose[k, 2] * own[v, 2]
+                    + pose[k, 3]
+                )
                 points[v, k] = at
                 least[k], most[k] = min(least[k], at), max(most[k], at)
+
         for m in range(len(sizes)):
             best = max(least[2] - high[m, 2], low[m, 2] - most[2])  # the vertical
             for k in range(3):  # the obstacle's axes
@@ -98,6 +116,7 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
                     at = x * points[v, 0] + y * points[v, 1] + z * points[v, 2]
                     first, last = min(first, at), max(last, at)
                 best = max(best, first - spans[m, k, 1], spans[m, k, 0] - last)
+
             for k in range(3):  # the body's axes
                 x, y, z = pose[0, k], pose[1, k], pose[2, k]
                 first, last = np.inf, -np.inf
@@ -106,6 +125,7 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
                     first, last = min(first, at), max(last, at)
                 origin = x * pose[0, 3] + y * pose[1, 3] + z * pose[2, 3]
                 best = max(best, origin + box[0, k] - last, first - origin - box[1, k])
+
             # the horizontal line between the centres
             x = (least[0] + most[0] - low[m, 0] - high[m, 0]) / 2
             y = (least[1] + most[1] - low[m, 1] - high[m, 1]) / 2

@@ -1,4 +1,6 @@
-"""What a grounding sees of a scene: the relation's two arguments and what is around them."""
+"""The situation that a grounding sees of a scene: the relation's two arguments and what is around
+them.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Part, Scene, Surface
 
 SURROUNDINGS = 1.0
-"""Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section IV-B), metres."""
+"""Bodies whose boxes are within this distance of an argument's box are surroundings (paper, section
+IV-B), metres.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,25 +31,33 @@ class Placed:
 
     @cached_property
     def box(self) -> Array:
-        """The box around it along the world's axes: low and high corner, shape (2, 3), metres."""
+        """Return the bounding box along the world's axes: low and high corner, shape (2, 3),
+        metres.
+        """
         centre, half = self.form.corners.mean(axis=0), np.ptp(self.form.corners, axis=0) / 2
         if len(self.form.vertices) > 8:
             points = self.form.vertices @ self.matrix[:3, :3].T
             return np.stack([points.min(axis=0), points.max(axis=0)]) + self.matrix[:3, 3]
-        middle, reach = self.matrix[:3, :3] @ centre + self.matrix[:3, 3], np.abs(self.matrix[:3, :3]) @ half
+        middle, reach = (
+            self.matrix[:3, :3] @ centre + self.matrix[:3, 3],
+            np.abs(self.matrix[:3, :3]) @ half,
+        )
         return np.stack([middle - reach, middle + reach])
 
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Where on or in its support a body is wanted.
+    """The rectangle on or in its support where a body is wanted.
 
     Attributes:
         hollow: Whether it is a cavity; else a surface.
-        matrix: T_support_region: the middle of the surface or of the cavity's floor, z up, shape (4, 4).
-        size: x, y and free height in metres, shape (3,); the height above an open surface is infinite.
-        box: The argument's box in the support's frame, low and high corner, shape (2, 3): under a surface all of the
-            support down to its foot; around a cavity the whole container, or its compartment of several.
+        matrix: T_support_region: the middle of the surface or of the cavity's floor, z up, shape
+            (4, 4).
+        size: x, y and free height in metres, shape (3,); the height above an open surface is
+            infinite.
+        box: The argument's box in the support's frame, low and high corner, shape (2, 3): under a
+            surface all of the support down to its foot; around a cavity the whole container, or its
+            compartment of several.
     """
 
     hollow: bool
@@ -72,12 +84,13 @@ class Situation:
 
     @property
     def T_world_region(self) -> Array:
-        """Shape (4, 4)."""
+        """Return the pose of the region's frame, shape (4, 4)."""
         return self.support.matrix @ self.region.matrix
 
 
 def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None) -> Situation:
-    """What a scene shows about (body, surface or cavity), the planner's order of a relation's arguments.
+    """Build the situation of (body, surface or cavity), the planner's order of a relation's
+    arguments.
 
     Args:
         scene: The scene.
@@ -91,10 +104,14 @@ def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None
     place = scene.surfaces.get(arguments[1]) or scene.cavities.get(arguments[1])
     if body is None or place is None:
         said = ", ".join(arguments)
-        raise InputError(f"a learned grounding takes a body, and a surface or container: not ({said})")
+        raise InputError(
+            f"a learned grounding takes a body, and a surface or container: not ({said})"
+        )
     support = scene.bodies[place.body]
     others = [
-        _placed(item.parts, item.pose) for item in scene.bodies.values() if item is not body and item is not support
+        _placed(item.parts, item.pose)
+        for item in scene.bodies.values()
+        if item is not body and item is not support
     ]
     seen = _placed(body.parts, body.pose) if at is None else Placed(form_of(body.parts), at)
     return near(_placed(support.parts, support.pose), region_of(support, place), seen, others)
@@ -102,33 +119,42 @@ def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None
 
 @lru_cache(maxsize=4096)
 def _placed(parts: tuple[Part, ...], pose: Pose) -> Placed:
-    """Bodies mostly stay where they are from one situation to the next."""
+    """Place a body; bodies mostly stay where they are from one situation to the next."""
     return Placed(form_of(parts), pose.matrix)
 
 
 def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
-    """The situation, with those of `others` that are surroundings."""
+    """Return the situation with those of `others` that are surroundings."""
     around = tuple(
-        other for other in others if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
+        other
+        for other in others
+        if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
     )
     return Situation(support, region, body, around)
 
 
 def region_of(support: Body, place: Surface | Cavity) -> Region:
-    """A surface or a cavity of a body as a region."""
+    """Build the region of a surface or a cavity of a body."""
     return _region(support.parts, len(support.cavities) == 1 and not support.surfaces, place)
 
 
 @lru_cache(maxsize=512)
 def _region(parts: tuple[Part, ...], alone: bool, place: Surface | Cavity) -> Region:
-    low, high = bounds(parts, place.pose.inverse())  # T_region_support: the box along the region's axes
+    low, high = bounds(
+        parts, place.pose.inverse()
+    )  # T_region_support: the box along the region's axes
     half = np.array(place.size[:2]) / 2
     if isinstance(place, Surface):
         corners = np.array([[-half[0], -half[1], min(float(low[2]), 0.0)], [half[0], half[1], 0.0]])
         height = place.clearance
     else:
         height = place.size[2]
-        corners = np.stack([low, high]) if alone else np.array([[-half[0], -half[1], 0.0], [*half, height]])
+        corners = (
+            np.stack([low, high])
+            if alone
+            else np.array([[-half[0], -half[1], 0.0], [*half, height]])
+        )
+
     return Region(
         isinstance(place, Cavity),
         place.pose.matrix,
@@ -144,6 +170,6 @@ def _turned(corners: Array, matrix: Array) -> Array:
 
 
 def gap(first: Array, second: Array) -> float:
-    """Distance between two boxes along the axes, metres; 0 when they overlap."""
+    """Compute the distance between two boxes along the axes, metres; 0 when they overlap."""
     apart = np.maximum(np.maximum(first[0] - second[1], second[0] - first[1]), 0.0)
     return float(np.sqrt(apart @ apart))

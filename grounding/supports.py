@@ -1,4 +1,6 @@
-"""Furniture that data are made with: what things stand on, and what they stand in. Training and test pieces differ."""
+"""Furniture that data are made with: what things stand on, and what they stand in. Training and
+test pieces differ.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ class Support:
 
 @lru_cache(maxsize=4)
 def support_templates(relation: str, split: str) -> Mapping[str, Support]:
-    """Supports for `on`, containers for `inside`, by name; deterministic."""
+    """Make the supports for `on`, containers for `inside`, by name; deterministic."""
     rng = np.random.default_rng([_SEED, SPLITS.index(split), relation == "on"])
     found: dict[str, Support] = {}
     for kind, make in (_SUPPORTS if relation == "on" else _CONTAINERS).items():
@@ -43,7 +45,7 @@ def support_templates(relation: str, split: str) -> Mapping[str, Support]:
 
 
 def scaled_region(region: Region, factor: float) -> Region:
-    """The region of a support that is made larger."""
+    """Scale the region of a support that is made larger."""
     matrix = region.matrix.copy()
     matrix[:3, 3] *= factor
     return replace(region, matrix=matrix, size=region.size * factor, box=region.box * factor)
@@ -57,24 +59,34 @@ def _block(rng: Random) -> Body:
     x, y, z = (float(v) for v in rng.uniform([0.25, 0.25, 0.1], [0.8, 0.7, 0.8]))
     part = Part(Box((x, y, z)), Pose((0.0, 0.0, z / 2)))
     surface = Surface("block", "block", Pose(), (x, y))
-    return Body("block", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, z))),))
+    return Body(
+        "block", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, z))),)
+    )
 
 
 def _board(rng: Random) -> Body:
-    """A thin board that hangs at some height."""
+    """Make a thin board that hangs at some height."""
     x, y, height = (float(v) for v in rng.uniform([0.3, 0.18, 0.2], [1.0, 0.45, 1.4]))
     part = Part(Box((x, y, 0.03)), Pose((0.0, 0.0, height - 0.015)))
     surface = Surface("board", "board", Pose(), (x, y))
-    return Body("board", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),))
+    return Body(
+        "board", (part,), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),)
+    )
 
 
 def _round(rng: Random) -> Body:
-    """A round table on one leg; the surface is the largest square on it."""
+    """Make a round table on one leg; the surface is the largest square on it."""
     radius, height = (float(v) for v in rng.uniform([0.25, 0.4], [0.6, 0.9]))
     plate = Part(Cylinder(radius, 0.04), Pose((0.0, 0.0, height - 0.02)))
     leg = Part(Cylinder(0.05, height - 0.04), Pose((0.0, 0.0, (height - 0.04) / 2)))
     surface = Surface("round", "round", Pose(), (radius * 2**0.5, radius * 2**0.5))
-    return Body("round", (plate, leg), Pose(), False, surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),))
+    return Body(
+        "round",
+        (plate, leg),
+        Pose(),
+        False,
+        surfaces=(replace(surface, pose=Pose((0.0, 0.0, height))),),
+    )
 
 
 def _top(rng: Random) -> Body:
@@ -84,24 +96,35 @@ def _top(rng: Random) -> Body:
 
 def _shelf(rng: Random) -> Body:
     size = rng.uniform([0.5, 0.28, 0.7], [1.1, 0.45, 1.4])
-    body = _furniture("shelf", size, Options(rows=int(rng.integers(2, 4)), back=bool(rng.random() < 0.5)))
+    body = _furniture(
+        "shelf", size, Options(rows=int(rng.integers(2, 4)), back=bool(rng.random() < 0.5))
+    )
     return replace(body, surfaces=body.surfaces[:-1])  # a board with another one above it
 
 
 def _open_box(rng: Random) -> Body:
-    return _furniture("open_box", rng.uniform([0.25, 0.22, 0.1], [0.65, 0.5, 0.2]), Options(thickness=0.02))
+    return _furniture(
+        "open_box", rng.uniform([0.25, 0.22, 0.1], [0.65, 0.5, 0.2]), Options(thickness=0.02)
+    )
 
 
 def _bin(rng: Random) -> Body:
-    return _furniture("open_box", rng.uniform([0.22, 0.22, 0.2], [0.45, 0.4, 0.36]), Options(thickness=0.01))
+    return _furniture(
+        "open_box", rng.uniform([0.22, 0.22, 0.2], [0.45, 0.4, 0.36]), Options(thickness=0.01)
+    )
 
 
 def _drawer(rng: Random) -> Body:
-    """Drawn out of nothing, at some height: wide, shallow, thin walls."""
+    """Make a drawer drawn out of nothing, at some height: wide, shallow, thin walls."""
     size = rng.uniform([0.3, 0.3, 0.09], [0.6, 0.5, 0.16])
-    body, lift = _furniture("open_box", size, Options(thickness=0.012)), Pose((0.0, 0.0, float(rng.uniform(0.1, 0.8))))
+    body, lift = (
+        _furniture("open_box", size, Options(thickness=0.012)),
+        Pose((0.0, 0.0, float(rng.uniform(0.1, 0.8)))),
+    )
     parts = tuple(replace(part, pose=lift @ part.pose) for part in body.parts)
-    return replace(body, parts=parts, cavities=(replace(body.cavities[0], pose=lift @ body.cavities[0].pose),))
+    return replace(
+        body, parts=parts, cavities=(replace(body.cavities[0], pose=lift @ body.cavities[0].pose),)
+    )
 
 
 def _compartment(rng: Random) -> Body:
@@ -110,7 +133,14 @@ def _compartment(rng: Random) -> Body:
     return _furniture("cupboard", size, Options(rows=rows, columns=columns))
 
 
-_SUPPORTS = {"table": _table, "block": _block, "board": _board, "round": _round, "top": _top, "shelf": _shelf}
+_SUPPORTS = {
+    "table": _table,
+    "block": _block,
+    "board": _board,
+    "round": _round,
+    "top": _top,
+    "shelf": _shelf,
+}
 _CONTAINERS = {"open_box": _open_box, "bin": _bin, "drawer": _drawer, "compartment": _compartment}
 
 

@@ -1,4 +1,6 @@
-"""What an engineer would write for `on` and `inside`: the reference that needs no training."""
+"""The reference samplers for `on` and `inside` as an engineer would write them, without
+training.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +21,19 @@ DEPTH = 0.001
 
 
 class SurfaceModel:
-    """Draws as the planner's hand-made sampler does (`tamp.geometric.samplers.placements`), and judges by geometry."""
+    """Draws as the planner's hand-made sampler does (`tamp.geometric.samplers.placements`), and
+    judges by geometry.
+    """
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: a stable face down, flush, whole inside the region where it fits; bodies around
-        are not looked at. None when no stable face fits under the ceiling.
+        """Propose `count` poses, in no order: a stable face down, flush, whole inside the region
+        where it fits; bodies around are not looked at. None when no stable
+        face fits under the ceiling.
         """
         region = situation.region
-        faces = [face for face in _faces(situation) if face.extent + 2 * CONTACT_GAP <= region.size[2]]
+        faces = [
+            face for face in _faces(situation) if face.extent + 2 * CONTACT_GAP <= region.size[2]
+        ]
         if not faces or count < 1:
             return np.zeros((0, 4, 4))
         poses: list[Array] = []
@@ -38,8 +45,8 @@ class SurfaceModel:
         return situation.T_world_region @ np.stack(poses)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """1 or 0, shape (n,): near the floor of the region with a stable face down, above it (`on`: the centre of
-        mass; `inside`: the whole body), in none of the bodies around.
+        """Return 1 or 0, shape (n,): near the floor of the region with a stable face down, above it
+        (`on`: the centre of mass; `inside`: the whole body), in none of the bodies around.
         """
         region, form = situation.region, situation.body.form
         inner = np.linalg.inv(situation.T_world_region) @ poses
@@ -49,7 +56,9 @@ class SurfaceModel:
         if region.hollow:
             above = (low[:, :2] >= -half - SLACK) & (high[:, :2] <= half + SLACK)
         else:
-            above = np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
+            above = (
+                np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
+            )
         downs = np.array([-face.rotation[2] for face in form.faces]).reshape(-1, 3)
         upright = (-inner[:, 2, :3] @ downs.T > math.cos(SNAP_TILT)).any(axis=1)
         free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
@@ -58,6 +67,9 @@ class SurfaceModel:
 
 
 def _faces(situation: Situation) -> list[Face]:
-    """The stable faces, the one that is down where the body is first, then the steadiest."""
+    """Return the stable faces, the one that is down where the body is first, then the steadiest."""
     down = -situation.body.matrix[2, :3]
-    return sorted(situation.body.form.faces, key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT))
+    return sorted(
+        situation.body.form.faces,
+        key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT),
+    )

@@ -12,12 +12,12 @@ from torch import Tensor, nn
 
 
 def dense_layers(widths: Sequence[int]) -> nn.ModuleList:
-    """Layers between these widths."""
+    """Make dense layers between these widths."""
     return nn.ModuleList(nn.Linear(a, b) for a, b in pairwise(widths))
 
 
 def run_layers(layers: nn.ModuleList, x: Tensor) -> Tensor:
-    """ReLU after every layer but the last; (..., in) to (..., out)."""
+    """Apply the layers, ReLU after every layer but the last; (..., in) to (..., out)."""
     for row, layer in enumerate(layers):
         x = layer(x)
         if row < len(layers) - 1:
@@ -26,7 +26,7 @@ def run_layers(layers: nn.ModuleList, x: Tensor) -> Tensor:
 
 
 def arrays_of(**networks: nn.ModuleList) -> dict[str, NDArray[np.float32]]:
-    """Weights (in, out) and biases by name, as `grounding.layers.layers_of` reads them."""
+    """Return weights (in, out) and biases by name, as `grounding.layers.layers_of` reads them."""
     found: dict[str, NDArray[np.float32]] = {}
     for name, layers in networks.items():
         for key, value in layers.named_parameters():

@@ -1,4 +1,6 @@
-"""From labelled scenes to weights of a grounding, by name; torch and scikit-learn are imported when they are used."""
+"""Training from labelled scenes to weights of a grounding, by name; torch and scikit-learn are
+imported when they are used.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
 RANKS_FROM = 100
-"""Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md, section 3)."""
+"""Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md,
+section 3).
+"""
 
 NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
 
@@ -45,14 +49,14 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class TrainArgs:
-    """What is trained.
+    """The training options.
 
     Attributes:
         samples: How many scenes of the data set; None for all.
         seed: Of initial weights and batches.
         demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
-        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier or both; None for
-            both.
+        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier
+            or both; None for both.
         iterations: Of the paper's networks; None for the paper's 30,000.
         encoder: Weights of an encoder of clouds, which the models on clouds need.
         state: Where an interrupted training of the paper's networks goes on from, and is saved.
@@ -69,7 +73,9 @@ class TrainArgs:
     commit: str = ""
 
 
-def train(data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None) -> Weights:
+def train(
+    data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None
+) -> Weights:
     """Train a grounding.
 
     Args:
@@ -79,7 +85,8 @@ def train(data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Sa
         progress: Told how far it is.
 
     Raises:
-        InputError: An unknown model or one that is not trained, an option that it has not, scenes that do not serve.
+        InputError: An unknown model or one that is not trained, an option that it has not, scenes
+            that do not serve.
         ImportError: What it is trained with is not installed.
     """
     check(data.relation, model, args)
@@ -89,14 +96,17 @@ def train(data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Sa
 
 
 def check(relation: str, model: str, args: TrainArgs) -> None:
-    """What can be said before the data are read.
+    """Check the options as far as they can be before the data are read.
 
     Raises:
         InputError: An unknown model or one that is not trained, or an option that it has not.
     """
     if model in BORROWED:
         remedy = f"Train that: tamp-learn train {relation} --model {BORROWED[model]}"
-        raise InputError(f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'", remedy=remedy)
+        raise InputError(
+            f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'",
+            remedy=remedy,
+        )
     if model in UNTRAINED:
         raise InputError(f"'{model}' needs no training")
     if model not in TRAINERS:
@@ -106,14 +116,16 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
             raise InputError(f"model '{model}' has no {option}; these have: {', '.join(models)}")
     if model in OPTIONS["encoder"] and args.encoder is None:
         raise InputError(
-            f"model '{model}' needs an encoder of clouds", remedy=f"Train one: tamp-learn encoder {relation}"
+            f"model '{model}' needs an encoder of clouds",
+            remedy=f"Train one: tamp-learn encoder {relation}",
         )
 
 
 def train_relational(
     data: Dataset, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None, *, flow: bool
 ) -> Weights:
-    """A relational grounding of the first scenes of a data set: demonstrations to transfer, or a flow, and the ranker.
+    """Train a relational grounding of the first scenes of a data set: demonstrations to transfer,
+    or a flow, and the ranker.
 
     Raises:
         InputError: None of them holds.
@@ -137,7 +149,9 @@ def train_relational(
             lambda step, steps, loss: progress(f"flow {step}/{steps}, loss {loss:.4f}"),
         )
     else:
-        proposals = Transfer.of(chart, [chart.encode(one) for one in positive[: args.demonstrations]])
+        proposals = Transfer.of(
+            chart, [chart.encode(one) for one in positive[: args.demonstrations]]
+        )
     rank, score = {}, None
     ranks = count >= RANKS_FROM and not holds.all()
     if ranks:
@@ -147,7 +161,9 @@ def train_relational(
             [one for one, good in zip(measured, usable, strict=True) if good],
             holds[usable],
             Args(seed=args.seed),
-            lambda step, steps, score: progress(f"ranker {step}/{steps}, validation accuracy {score:.4f}"),
+            lambda step, steps, score: progress(
+                f"ranker {step}/{steps}, validation accuracy {score:.4f}"
+            ),
         )
     card = {
         "relation": data.relation,
@@ -164,9 +180,14 @@ def train_relational(
 
 
 def _certainty(
-    measured: list[Measures], holds: Labels, usable: Labels, ranks: bool, score: float | None, seed: int
+    measured: list[Measures],
+    holds: Labels,
+    usable: Labels,
+    ranks: bool,
+    score: float | None,
+    seed: int,
 ) -> dict[str, object]:
-    """Whether the ranker may judge, for the card, and else why not."""
+    """Return the card's entries on whether the ranker may judge, and else why not."""
     why = too_few(holds)
     if why is None and ranks:
         from grounding.relational.training import Args, train_ranker
@@ -175,25 +196,34 @@ def _certainty(
         labels = holds[usable]
 
         def fit(train_rows: NDArray[np.intp], test_rows: NDArray[np.intp]) -> Labels:
-            rank, _ = train_ranker([seen[row] for row in train_rows], labels[train_rows], Args(seed=seed))
+            rank, _ = train_ranker(
+                [seen[row] for row in train_rows], labels[train_rows], Args(seed=seed)
+            )
             ranker = Ranker(rank)
-            return np.array([float(ranker.logits(seen[row])[0]) > 0.0 for row in test_rows], dtype=bool)
+            return np.array(
+                [float(ranker.logits(seen[row])[0]) > 0.0 for row in test_rows], dtype=bool
+            )
 
         if len(labels) < MANY:
             why = no_better_than_chance(labels, fit)
         elif score is not None and score <= max(labels.mean(), 1 - labels.mean()):
-            why = f"on labels that it was not shown it is right about {100 * score:.0f} %, as saying the same always is"
+            why = (
+                f"on labels that it was not shown it is right about {100 * score:.0f} %, "
+                "as saying the same always is"
+            )
     return {"classifies": ranks and why is None, **({REASON: why} if why else {})}
 
 
 def measure(example: Example) -> Measures:
-    """An example's one pose in its region's frame."""
+    """Measure an example's one pose in its region's frame."""
     view = View(example.situation)
     return view.measure((view.T_region_world @ example.situation.body.matrix)[None])
 
 
 def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
-    """One of the paper's networks, on as many scenes in the order of `grounding.paper.table.order`."""
+    """Train one of the paper's networks, on as many scenes in the order of
+    `grounding.paper.table.order`.
+    """
     from grounding.paper.training import train as train_networks
 
     (weights,) = train_networks(
@@ -211,17 +241,24 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
 
 
 def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
-    """One of the paper's trees, on the same scenes."""
+    """Train one of the paper's trees, on the same scenes."""
     from grounding.paper import tree_training
 
     weights = tree_training.train_tree(
-        data, model, samples=args.samples or len(data), seed=args.seed, encoder=_encoder(args), progress=progress
+        data,
+        model,
+        samples=args.samples or len(data),
+        seed=args.seed,
+        encoder=_encoder(args),
+        progress=progress,
     )
     return _signed(_checked(weights, data, args), args)
 
 
 def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
-    """The weights with what their card says of their classifier; it is asked of the labels that it was shown."""
+    """Add to the weights what their card says of their classifier; it is asked of the labels that
+    it was shown.
+    """
     count = args.samples or len(data)
     why = too_few(data.holds[:count])
     if why is None and weights.card.get("classifies", True):
@@ -230,7 +267,11 @@ def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
         bodies = [(one.situation, one.situation.body.matrix[None]) for one in examples]
         said = np.array([float(model.classify(*body)[0]) > 0.5 for body in bodies], dtype=bool)
         why = chance(data.holds[: len(said)], said)
-    return Weights(weights.arrays, {**weights.card, "classifies": False, REASON: why}) if why else weights
+    return (
+        Weights(weights.arrays, {**weights.card, "classifies": False, REASON: why})
+        if why
+        else weights
+    )
 
 
 def _encoder(args: TrainArgs) -> Weights | None:
@@ -238,7 +279,11 @@ def _encoder(args: TrainArgs) -> Weights | None:
         return None
     weights = read_weights(args.encoder)
     if (weights.card.get("model"), weights.card.get("kind")) != ("encoder", "conv"):
-        raise InputError("no encoder of kind 'conv'", file=args.encoder, remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            "no encoder of kind 'conv'",
+            file=args.encoder,
+            remedy="Train one: tamp-learn encoder --help",
+        )
     return weights
 
 

@@ -1,4 +1,6 @@
-"""What a data set of demonstrations cannot teach: what is the same in all of them, and what they say both ways."""
+"""Lack of variety in a data set of demonstrations: what is the same in all of them, and what they
+say both ways.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,8 @@ Numbers = NDArray[np.float64]
 
 
 def monotony(data: Dataset, count: int | None = None) -> list[str]:
-    """Warnings of what is the same in all scenes in which the relation holds, and of one label alone.
+    """Return warnings of what is the same in all scenes in which the relation holds, and of one
+    label alone.
 
     Args:
         data: Labelled scenes.
@@ -35,29 +38,39 @@ def monotony(data: Dataset, count: int | None = None) -> list[str]:
     holds = data.holds[:used]
     rows = np.flatnonzero(holds)
     if not len(rows):
-        return [f"'{data.relation}' holds in none of the {used:,} scenes: there is nothing to learn from"]
+        return [
+            f"'{data.relation}' holds in none of the {used:,} scenes: "
+            f"there is nothing to learn from"
+        ]
 
     found: list[str] = []
     if holds.all():
         found.append(
-            f"'{data.relation}' holds in every scene ({used:,}): what it is not cannot be learned from them. "
+            f"'{data.relation}' holds in every scene ({used:,}): "
+            f"what it is not cannot be learned from them. "
             f"Say it in some: goal: (not ({data.relation} BODY PLACE))"
         )
     if len(rows) == 1:
-        return [*found, f"'{data.relation}' holds in one scene only (row {rows[0]}): nothing varies in it"]
+        return [
+            *found,
+            f"'{data.relation}' holds in one scene only (row {rows[0]}): nothing varies in it",
+        ]
     for name, measure in _MEASURES.items():
         values = measure(data, rows)
         if values is not None:
             shown = ", ".join(f"{value + 0.0:.3g}" for value in np.round(np.atleast_1d(values), 3))
             found.append(
-                f"in all {len(rows):,} scenes in which '{data.relation}' holds {name} is the same ({shown}): "
+                f"in all {len(rows):,} scenes in which '{data.relation}' holds "
+                f"{name} is the same ({shown}): "
                 "whether it matters cannot be learned from them. Vary it"
             )
     return found
 
 
 def contradictions(data: Dataset) -> Iterator[tuple[int, int]]:
-    """Pairs of rows that are the same situation with opposite labels, the first of each situation."""
+    """Yield pairs of rows that are the same situation with opposite labels, the first of each
+    situation.
+    """
     seen: dict[bytes, tuple[int, bool]] = {}
     for row, holds in enumerate(data.holds.tolist()):
         key = _key(data, row)
@@ -67,15 +80,19 @@ def contradictions(data: Dataset) -> Iterator[tuple[int, int]]:
 
 
 def _key(data: Dataset, row: int) -> bytes:
-    """All that a scene shows of its situation; the others in any order."""
+    """Return a key of all that a scene shows of its situation; the others in any order."""
     a = data.arrays
     names = tuple(data.templates)
     there = np.flatnonzero(a["body"][row] >= 0)
     bodies = [
-        f"{names[a['body'][row, index]]} {_rounded(a['scale'][row, index])} {_rounded(a['pose'][row, index])}"
+        f"{names[a['body'][row, index]]} {_rounded(a['scale'][row, index])} "
+        f"{_rounded(a['pose'][row, index])}"
         for index in there
     ]
-    place = [bool(a["hollow"][row]), *(_rounded(a[name][row]) for name in ("region", "size", "box"))]
+    place = [
+        bool(a["hollow"][row]),
+        *(_rounded(a[name][row]) for name in ("region", "size", "box")),
+    ]
     return repr((bodies[:2], sorted(bodies[2:]), place)).encode()
 
 
@@ -86,22 +103,26 @@ def _rounded(values: Numbers) -> str:
 
 
 def _height(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the place's middle above the ground."""
+    """Return the height of the place's middle above the ground, metres."""
     places = data.arrays["pose"][rows, 0] @ data.arrays["region"][rows]
     return _constant(places[:, 2, 3], SAME_LENGTH)
 
 
 def _yaw(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Radians, of the body's first axis that lies, about the place's upright one."""
+    """Return the yaw of the body's first axis that lies, about the place's upright one, radians."""
     regions = data.arrays["pose"][rows, 0] @ data.arrays["region"][rows]
     turned = np.linalg.inv(regions) @ data.arrays["pose"][rows, 1]
     axis = int(np.argmax(np.abs(turned[0, :2, :3]).max(axis=0)))
     yaws = np.arctan2(turned[:, 1, axis], turned[:, 0, axis])
-    return yaws[:1] if float(np.abs(np.angle(np.exp(1j * (yaws - yaws[0])))).max()) < SAME_ANGLE else None
+    return (
+        yaws[:1]
+        if float(np.abs(np.angle(np.exp(1j * (yaws - yaws[0])))).max()) < SAME_ANGLE
+        else None
+    )
 
 
 def _size(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the body's box along its own axes, the shortest side first."""
+    """Return the sides of the body's box along its own axes, metres, the shortest side first."""
     sizes: list[Numbers] = []
     for row in rows:
         corners = data.form(row, 1).corners
@@ -112,7 +133,7 @@ def _size(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
 
 
 def _room(data: Dataset, rows: NDArray[np.intp]) -> Numbers | None:
-    """Metres, of the place's two sides."""
+    """Return the lengths of the place's two sides, metres."""
     return _constant(data.arrays["size"][rows, :2], SAME_LENGTH)
 
 

@@ -1,4 +1,6 @@
-"""Weights on disk: NAME.safetensors with the numbers, NAME.json, the card, which says what they are."""
+"""Weights on disk: NAME.safetensors with the numbers, NAME.json, the card, which says what they
+are.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,8 @@ class Weights:
 
 
 def write_weights(path: Path, weights: Weights) -> None:
-    """Write `path` (.safetensors) and its card beside it; a reader sees the old pair or the new one.
+    """Write `path` (.safetensors) and its card beside it; a reader sees the old pair or the new
+    one.
 
     Raises:
         OSError: The folder cannot be made or written.
@@ -56,10 +59,11 @@ def write_weights(path: Path, weights: Weights) -> None:
 
 
 def read_weights(path: Path) -> Weights:
-    """The weights at `path`.
+    """Read the weights at `path`.
 
     Raises:
-        InputError: A file is missing, damaged, truncated, or not of this format, or the two do not belong together.
+        InputError: A file is missing, damaged, truncated, or not of this format, or the two do not
+            belong together.
     """
     from safetensors import SafetensorError
     from safetensors.numpy import load
@@ -69,11 +73,23 @@ def read_weights(path: Path) -> Weights:
     for name in ("relation", "model"):
         if name in card and not (isinstance(card[name], str) and card[name].isprintable()):
             card_file = path.with_suffix(".json")
-            raise InputError(f"'{name}' of the card is {card[name]!r:.60}, not a name", file=card_file, remedy=_REMEDY)
+            raise InputError(
+                f"'{name}' of the card is {card[name]!r:.60}, not a name",
+                file=card_file,
+                remedy=_REMEDY,
+            )
     try:
         _check_header(content)
         arrays = load(content)
-    except (SafetensorError, InputError, ValueError, KeyError, TypeError, OSError, MemoryError) as error:
+    except (
+        SafetensorError,
+        InputError,
+        ValueError,
+        KeyError,
+        TypeError,
+        OSError,
+        MemoryError,
+    ) as error:
         what = error.message if isinstance(error, InputError) else str(error)
         raise InputError(f"the weights are damaged: {what}", file=path, remedy=_REMEDY) from None
     for name, array in arrays.items():

@@ -16,7 +16,8 @@ POINTS = 2048
 
 
 def cloud(form: Form) -> Array:
-    """POINTS points on the surfaces of the form's parts, uniform by area, shape (POINTS, 3); metres, its own frame.
+    """Sample a cloud of POINTS points on the surfaces of the form's parts, uniform by area, shape
+    (POINTS, 3); metres, its own frame.
 
     The same form has the same points, and a scaled one has them scaled.
     """
@@ -27,8 +28,14 @@ def cloud(form: Form) -> Array:
 def _unit_cloud(form: Form) -> Array:
     rng = np.random.default_rng(0)
     meshes = [body_hull(Body("cloud", (part,), Pose(), movable=True)) for part in form.parts]
-    corners = np.concatenate([points[triangles] for points, triangles in meshes])  # (triangles, 3 corners, 3)
-    first, along, across = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    corners = np.concatenate(
+        [points[triangles] for points, triangles in meshes]
+    )  # (triangles, 3 corners, 3)
+    first, along, across = (
+        corners[:, 0],
+        corners[:, 1] - corners[:, 0],
+        corners[:, 2] - corners[:, 0],
+    )
     area = np.linalg.norm(np.cross(along, across), axis=1)
     chosen = rng.choice(len(area), size=POINTS, p=area / area.sum())
     u, v = rng.random((2, POINTS, 1))

@@ -1,4 +1,6 @@
-"""The features of a whole data set's point clouds, encoded in batches: what a body is turned like is in its code."""
+"""The features of a whole data set's point clouds, encoded in batches: what a body is turned like
+is in its code.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,7 @@ def coded_table(
     count: int | None = None,
     surroundings: bool = True,
 ) -> Table:
-    """As `table_of` with `CloudFeatures(encoder)`, by torch; agrees to 1e-5.
+    """Compute the table of `table_of` with `CloudFeatures(encoder)` by torch; agrees to 1e-5.
 
     Args:
         data: The scenes.
@@ -45,7 +47,9 @@ def coded_table(
     scenes = [data[int(index)].situation for index in indices]
     around = [scene.others if surroundings else () for scene in scenes]
     placed = [
-        item for scene, others in zip(scenes, around, strict=True) for item in (scene.support, scene.body, *others)
+        item
+        for scene, others in zip(scenes, around, strict=True)
+        for item in (scene.support, scene.body, *others)
     ]
     numbers: dict[Form, int] = {}
     template = np.array([numbers.setdefault(item.form.unit, len(numbers)) for item in placed])
@@ -55,7 +59,9 @@ def coded_table(
     matrices = np.stack([item.matrix for item in placed])
     rotations = matrices[:, :3, :3]
     features = np.empty((len(placed), PC), np.float32)
-    middle = (rotations @ (centroids[template] * scale[:, None])[:, :, None])[:, :, 0] + matrices[:, :3, 3]
+    middle = (rotations @ (centroids[template] * scale[:, None])[:, :, None])[:, :, 0] + matrices[
+        :, :3, 3
+    ]
     features[:, 3:7] = quaternions(rotations)
     encode = _TorchEncoder(encoder, np.stack([points for points, _ in clouds]), device)
     batch = BATCH.get(device, 512)
@@ -64,6 +70,7 @@ def coded_table(
         features[rows, 7:] = encode(template[rows], scale[rows, None, None] * rotations[rows])
         if start // batch % 200 == 199:
             progress(f"codes of {start + batch} of {len(placed)} clouds")
+
     sizes = np.array([2 + len(others) for others in around])
     first = np.cumsum(sizes) - sizes
     features[:, :3] = middle - np.repeat(middle[first], sizes, axis=0)
@@ -82,12 +89,20 @@ class _TorchEncoder:
     def __init__(self, encoder: NumpyEncoder, unit: NDArray[np.float64], device: str) -> None:
         self._device, self._scale, self._points = device, encoder.scale, encoder.points
         self._unit = self._tensor(unit)
-        self._layers = [(self._tensor(weight), self._tensor(bias)) for weight, bias in encoder.layers]
+        self._layers = [
+            (self._tensor(weight), self._tensor(bias)) for weight, bias in encoder.layers
+        ]
 
     @torch.no_grad()
-    def __call__(self, template: NDArray[np.intp], turn: NDArray[np.float64]) -> NDArray[np.float32]:
-        """Codes, shape (n, CODE), of clouds of these templates turned and scaled by (n, 3, 3)."""
-        points = self._unit[torch.tensor(template, device=self._device)] @ self._tensor(turn).transpose(1, 2)
+    def __call__(
+        self, template: NDArray[np.intp], turn: NDArray[np.float64]
+    ) -> NDArray[np.float32]:
+        """Encode clouds of these templates turned and scaled by (n, 3, 3); codes of shape (n,
+        CODE).
+        """
+        points = self._unit[torch.tensor(template, device=self._device)] @ self._tensor(
+            turn
+        ).transpose(1, 2)
         x = scaled(points, self._scale)[:, : self._points]
         for weight, bias in self._layers[:-1]:
             x = torch.relu_(x @ weight + bias)

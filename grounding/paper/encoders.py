@@ -1,4 +1,6 @@
-"""Auto-encoders of point clouds (section III-B): three encoders, a fully connected decoder, Chamfer's distance."""
+"""Auto-encoders of point clouds (section III-B): three encoders, a fully connected decoder,
+Chamfer's distance.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,14 @@ from grounding.torch_layers import dense_layers, run_layers
 from tamp.errors import InputError
 
 SCALINGS = ("one", "each")
-"""(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought to that cube."""
+"""(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought
+to that cube.
+"""
 
 
 @dataclass(frozen=True)
 class Args:
-    """How an encoder is trained.
+    """The encoder's training options.
 
     Attributes:
         iterations: Batches.
@@ -47,14 +51,16 @@ class Args:
 
 
 class Conv(nn.Module):
-    """1D convolutions with kernel 1, 3-64-128-128-256-128, and the largest of each number over the points."""
+    """1D convolutions with kernel 1, 3-64-128-128-256-128, and the largest of each number over the
+    points.
+    """
 
     def __init__(self, points: int) -> None:
         super().__init__()
         self.layers = dense_layers([3, 64, 128, 128, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         return run_layers(self.layers, points).amax(dim=1)
 
 
@@ -74,13 +80,19 @@ class PointNet(nn.Module):
         self.last = dense_layers([259, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         places, features = points, points[..., :0]
         for count, layers in zip(self.CENTRES, (self.first, self.second), strict=True):
             centres = places[:, : min(count, places.shape[1])]
-            near = torch.cdist(centres, places).topk(min(self.NEAREST, places.shape[1]), largest=False).indices
+            near = (
+                torch.cdist(centres, places)
+                .topk(min(self.NEAREST, places.shape[1]), largest=False)
+                .indices
+            )
             batch = torch.arange(len(points), device=points.device)[:, None, None]
-            around = torch.cat([places[batch, near] - centres[:, :, None], features[batch, near]], dim=-1)
+            around = torch.cat(
+                [places[batch, near] - centres[:, :, None], features[batch, near]], dim=-1
+            )
             places, features = centres, run_layers(layers, around).amax(dim=2)
         return run_layers(self.last, torch.cat([places, features], dim=-1)).amax(dim=1)
 
@@ -93,11 +105,15 @@ class Dense(nn.Module):
         self.layers = dense_layers([3 * points, 512, 256, CODE])
 
     def forward(self, points: Tensor) -> Tensor:
-        """Codes (n, CODE) of clouds (n, points, 3)."""
+        """Encode clouds (n, points, 3) as codes (n, CODE)."""
         return run_layers(self.layers, points.flatten(1))
 
 
-ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {"conv": Conv, "pointnet++": PointNet, "dense": Dense}
+ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {
+    "conv": Conv,
+    "pointnet++": PointNet,
+    "dense": Dense,
+}
 """By name; the models on clouds use `conv`, the paper's choice."""
 
 
@@ -108,7 +124,8 @@ def train_encoder(
     args: Args = Args(),
     progress: Callable[[str], None] = lambda line: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
-    """The encoder's arrays, with `scale` and `points` as the runtime reads them, and its validation Chamfer distance.
+    """Train an encoder; return its arrays, with `scale` and `points` as the runtime reads them, and
+    its validation Chamfer distance.
 
     Args:
         data: Scenes, whose bodies as they are turned are the clouds.
@@ -128,7 +145,10 @@ def train_encoder(
     factor = 0.5 / clouds.radius if scaling == "one" else 0.0
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
-        encoder, decoder = ENCODERS[kind](args.points), dense_layers([CODE, 256, 512, 3 * args.points])
+        encoder, decoder = (
+            ENCODERS[kind](args.points),
+            dense_layers([CODE, 256, 512, 3 * args.points]),
+        )
     encoder, decoder = encoder.to(args.device), decoder.to(args.device)
     optimizer = torch.optim.Adam([*encoder.parameters(), *decoder.parameters()], lr=args.rate)
     random = torch.Generator().manual_seed(args.seed)
@@ -148,17 +168,23 @@ def train_encoder(
         optimizer.step()
         if step % args.validate_every == 0 or step == args.iterations:
             with torch.no_grad():
-                score = float(np.mean([float(distance(rows).mean()) for rows in apart.split(args.batch)]))
+                score = float(
+                    np.mean([float(distance(rows).mean()) for rows in apart.split(args.batch)])
+                )
             if score < best:
                 best, kept = score, _arrays(encoder)
-            progress(f"{kind}, scaling {scaling}: {step} of {args.iterations}, Chamfer distance {score:.3e}")
+            progress(
+                f"{kind}, scaling {scaling}: {step} of {args.iterations}, "
+                f"Chamfer distance {score:.3e}"
+            )
     kept["scale"], kept["points"] = np.array(factor, np.float32), np.array(args.points, np.float32)
     return kept, best
 
 
 @dataclass(frozen=True, eq=False)
 class PosedClouds:
-    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's scale and rotation.
+    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's
+    scale and rotation.
 
     Attributes:
         unit: Shape (templates, points, 3).
@@ -172,7 +198,7 @@ class PosedClouds:
 
     @classmethod
     def of(cls, data: Dataset, device: str, points: int = POINTS) -> PosedClouds:
-        """Of all bodies of all scenes."""
+        """Collect the clouds of all bodies of all scenes."""
         unit = np.stack([centred(Form(parts))[0][:points] for parts in data.templates.values()])
         there = data.arrays["body"] >= 0
         turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
@@ -187,25 +213,25 @@ class PosedClouds:
 
     @property
     def radius(self) -> float:
-        """Of the ball that contains every cloud, metres."""
+        """Return the radius of the ball that contains every cloud, metres."""
         largest = self.unit.norm(dim=2).amax(dim=1)[self.template]
         return float((largest * self.turn[:, 0].norm(dim=1)).max())
 
     def take(self, rows: Tensor) -> Tensor:
-        """Posed clouds, shape (rows, points, 3), metres."""
+        """Select posed clouds, shape (rows, points, 3), metres."""
         rows = rows.to(self.template.device)
         return self.unit[self.template[rows]] @ self.turn[rows].transpose(1, 2)
 
 
 def centred(form: Form) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """A form's cloud about its centroid, and that centroid."""
+    """Centre a form's cloud about its centroid; return both."""
     points = cloud(form)
     centroid = points.mean(axis=0)
     return points - centroid, centroid
 
 
 def scaled(points: Tensor, factor: float) -> Tensor:
-    """As `runtime.scaled`, of clouds (n, points, 3)."""
+    """Scale clouds (n, points, 3) as `runtime.scaled` does."""
     if factor:
         return points * factor
     extents = points.amax(dim=1) - points.amin(dim=1)
@@ -213,8 +239,14 @@ def scaled(points: Tensor, factor: float) -> Tensor:
 
 
 def chamfer(first: Tensor, second: Tensor) -> Tensor:
-    """Mean squared distance to the nearest point, both ways, of clouds (n, points, 3); shape (n,)."""
-    squares = (first**2).sum(-1)[:, :, None] + (second**2).sum(-1)[:, None] - 2 * first @ second.transpose(1, 2)
+    """Compute the Chamfer distance of clouds (n, points, 3), the mean squared distance to the
+    nearest point, both ways; shape (n,).
+    """
+    squares = (
+        (first**2).sum(-1)[:, :, None]
+        + (second**2).sum(-1)[:, None]
+        - 2 * first @ second.transpose(1, 2)
+    )
     squares = squares.clamp(min=0.0)
     return squares.amin(dim=2).mean(dim=1) + squares.amin(dim=1).mean(dim=1)
 

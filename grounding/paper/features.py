@@ -1,7 +1,9 @@
-"""The paper's features of a body (section III-B): its bounding boxes, or the code of its point cloud.
+"""The paper's features of a body (section III-B): its bounding boxes, or the code of its point
+cloud.
 
-A situation is seen with argument 0 at the origin (`first_arg`): its position is subtracted from every body's, nothing
-is turned or scaled. Positions are centres of object-aligned boxes, or centroids of clouds; metres.
+A situation is seen with argument 0 at the origin (`first_arg`): its position is subtracted from
+every body's, nothing is turned or scaled. Positions are centres of object-aligned boxes, or
+centroids of clouds; metres.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from grounding.situation import Placed, Situation
 from tamp.geometric.scene.pose import Array
 
 BB = 19
-"""Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own box's corners 6."""
+"""Numbers a body: centre 3, corners of the box along the world's axes 6, quaternion xyzw 4, own
+box's corners 6.
+"""
 
 PC = 135
 """Numbers a body: centroid 3, quaternion xyzw 4, code of its cloud 128."""
@@ -58,16 +62,22 @@ class Features(Protocol):
     size: int
 
     def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
-        """The features of a situation as it is; without its surroundings for a network that does not see them."""
+        """Compute the features of a situation as it is; without its surroundings for a network that
+        does not see them.
+        """
         ...
 
     def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
-        """The features that argument 1 would have at T_world_body, shape (n, 4, 4); returns (n, f)."""
+        """Compute the features that argument 1 would have at T_world_body, shape (n, 4, 4); returns
+        (n, f).
+        """
         ...
 
 
 class BoxFeatures:
-    """BB. The box along the world's axes is that of the posed object-aligned box, in data as in completed proposals."""
+    """BB. The box along the world's axes is that of the posed object-aligned box, in data as in
+    completed proposals.
+    """
 
     size = BB
 
@@ -75,17 +85,23 @@ class BoxFeatures:
         """See Features."""
         support, body = situation.support, situation.body
         others = situation.others if surroundings else ()
-        corners = np.array([situation.region.box, body.form.corners, *(other.form.corners for other in others)])
+        corners = np.array(
+            [situation.region.box, body.form.corners, *(other.form.corners for other in others)]
+        )
         matrices = np.array([support.matrix, body.matrix, *(other.matrix for other in others)])
         centres = _moved(matrices, (corners[:, 0] + corners[:, 1]) / 2)
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
-        return Observation(features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2)
+        return Observation(
+            features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2
+        )
 
     def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
         """See Features."""
         corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
-        return box_features(_moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners)
+        return box_features(
+            _moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners
+        )
 
 
 class CloudFeatures:
@@ -123,7 +139,7 @@ class CloudFeatures:
         return features
 
     def _features(self, item: Placed) -> Array:
-        """Worked out once while a body stays where it is."""
+        """Compute a body's features, once while it stays where it is."""
         if item not in self._known:
             self._known[item] = self._described(item)
         return self._known[item]
@@ -132,30 +148,40 @@ class CloudFeatures:
         points = cloud(item.form)
         centroid, rotation = points.mean(axis=0), item.matrix[:3, :3]
         code = self._encode((points - centroid) @ rotation.T)
-        return np.concatenate([rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code])
+        return np.concatenate(
+            [rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code]
+        )
 
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
-    """BB, shape (n, 19), of positions (n, 3), quaternions (n, 4) and own boxes, low and high corner (n, 2, 3)."""
+    """Compute the bounding box features BB, shape (n, 19), of positions (n, 3), quaternions (n, 4)
+    and own boxes, low and high corner (n, 2, 3).
+    """
     features = np.empty((len(centres), BB), centres.dtype)
     describe_boxes(centres, turns, rotations(turns), corners, features)
     return features
 
 
 def completed(seen: Observation, positions: Array, turns: Array) -> Array:
-    """Argument 1's features when a generator put it at positions (n, 3) and unit quaternions (n, 4); shape (n, f).
+    """Complete argument 1's features when a generator put it at positions (n, 3) and unit
+    quaternions (n, 4); shape (n, f).
 
-    Its own box or its code stay as they were seen: a code is not computed again, although its cloud has turned.
+    Its own box or its code stay as they were seen: a code is not computed again, although its cloud
+    has turned.
     """
     argument = seen.arguments[1]
     if len(argument) == BB:
-        return box_features(positions, turns, np.broadcast_to(argument[13:].reshape(2, 3), (len(positions), 2, 3)))
+        return box_features(
+            positions, turns, np.broadcast_to(argument[13:].reshape(2, 3), (len(positions), 2, 3))
+        )
     code = np.broadcast_to(argument[7:], (len(positions), CODE))
     return np.concatenate([positions, turns, code], axis=1, dtype=positions.dtype)
 
 
 def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
-    """T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have them, turned by (n, 4)."""
+    """Compute T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have
+    them, turned by (n, 4).
+    """
     poses = np.zeros((len(positions), 4, 4))
     poses[:, 3, 3] = 1.0
     poses[:, :3, :3] = rotations(turns)
@@ -164,7 +190,7 @@ def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
 
 
 def _moved(matrices: Array, points: Array) -> Array:
-    """One point of each frame, in the outer frame; shape (n, 3)."""
+    """Transform one point of each frame to the outer frame; shape (n, 3)."""
     moved = np.empty((len(matrices), 3))
     move(matrices, points.reshape(-1, 3), moved)
     return moved

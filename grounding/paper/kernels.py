@@ -1,4 +1,6 @@
-"""Compiled arithmetic of the paper's features: for one proposal numpy's calls would cost more than the numbers."""
+"""Compiled arithmetic of the paper's features: for one proposal numpy's calls would cost more than
+the numbers.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ from tamp.system.compilation import njit
 
 @njit(cache=True)
 def move(matrices, points, moved):
-    """Points (n, 3) of frames posed by (n, 4, 4), in the outer frame, into `moved` (n, 3). One point serves all."""
+    """Transform points (n, 3) of frames posed by (n, 4, 4) to the outer frame, into `moved` (n, 3).
+    One point serves all.
+    """
     for n in range(len(matrices)):
         m, point = matrices[n], points[min(n, len(points) - 1)]
         for r in range(3):
@@ -18,7 +22,9 @@ def move(matrices, points, moved):
 
 @njit(cache=True)
 def describe_boxes(centres, turns, rotations, corners, features):
-    """BB of `features.box_features` into `features` (n, 19); quaternions (n, 4) and the matrices (n, 3, 3) of them."""
+    """Compute BB of `features.box_features` into `features` (n, 19); quaternions (n, 4) and the
+    matrices (n, 3, 3) of them.
+    """
     for n in range(len(centres)):
         for r in range(3):
             reach = 0.0
@@ -35,7 +41,7 @@ def describe_boxes(centres, turns, rotations, corners, features):
 
 @njit(cache=True)
 def normalize(turns, units):
-    """Quaternions of norm 1 into `units` (n, 4); no rotation for one that is zero."""
+    """Normalize quaternions into `units` (n, 4); no rotation for one that is zero."""
     for n in range(len(turns)):
         x, y, z, w = turns[n]
         norm = math.sqrt(x * x + y * y + z * z + w * w)

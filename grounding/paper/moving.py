@@ -1,4 +1,6 @@
-"""The paper's networks as the planner calls them: each moves a body from nearby to a pose that is then laid."""
+"""The paper's networks as the planner calls them: each moves a body from nearby to a pose that is
+then laid.
+"""
 
 from __future__ import annotations
 
@@ -19,16 +21,20 @@ TOGETHER = 4
 
 
 class Moving(Grounding):
-    """A network that moves a body from where it is, and was taught with bodies around their support.
+    """A network that moves a body from where it is, and was taught with bodies around their
+    support.
 
-    The body that the planner asks about is in the hand or elsewhere in the room, farther away than in any scene of the
-    training data; from there the networks miss the support by decimetres, each time at the same place. So it is shown
-    afloat around the support, each time elsewhere. And since the oracle by which the networks were taught (MCA) asks
-    nothing about orientation, theirs is tens of degrees off: it is read as which of the stable faces is meant.
+    The body that the planner asks about is in the hand or elsewhere in the room, farther away than
+    in any scene of the training data; from there the networks miss the support by decimetres, each
+    time at the same place. So it is shown afloat around the support, each time elsewhere. And since
+    the oracle by which the networks were taught (MCA) asks nothing about orientation, theirs is
+    tens of degrees off: it is read as which of the stable faces is meant.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """`count` world poses of body `arguments[0]` on or in `arguments[1]`, in no order."""
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose `count` world poses of body `arguments[0]` on or in `arguments[1]`, unordered."""
         support = situation_of(scene, arguments).support
         poses: list[Pose] = []
         while len(poses) < count:
@@ -39,7 +45,8 @@ class Moving(Grounding):
 
 
 def laid(form: Form, pose: Array) -> Array:
-    """The pose turned about the body's middle onto the nearest stable face, the lowest point as high as it was.
+    """Turn the pose about the body's middle onto the nearest stable face, the lowest point as high
+    as it was.
 
     Args:
         form: The body's; one without stable faces is left as it is.
@@ -47,17 +54,21 @@ def laid(form: Form, pose: Array) -> Array:
     """
     if not form.faces:
         return pose
-    ups = np.array(
-        [face.rotation[2] for face in form.faces]
-    )  # the world's up in the body's frame, were it on that face
+
+    # the world's up in the body's frame, were it on that face
+    ups = np.array([face.rotation[2] for face in form.faces])
     up = ups[np.argmax(ups @ pose[2, :3])]
     before = pose[2, :3]
     axis, cosine = np.cross(up, before), float(up @ before)
     cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    turn = np.eye(3) + cross + cross @ cross / max(1.0 + cosine, 1e-9)  # Rodrigues: turn @ up = before
+    turn = (
+        np.eye(3) + cross + cross @ cross / max(1.0 + cosine, 1e-9)
+    )  # Rodrigues: turn @ up = before
     result = pose.copy()
     result[:3, :3] = pose[:3, :3] @ turn
     middle = form.corners.mean(axis=0)
     result[:3, 3] = pose[:3, :3] @ middle + pose[:3, 3] - result[:3, :3] @ middle
-    result[2, 3] += (form.vertices @ pose[2, :3]).min() + pose[2, 3] - (form.vertices @ up).min() - result[2, 3]
+    result[2, 3] += (
+        (form.vertices @ pose[2, :3]).min() + pose[2, 3] - (form.vertices @ up).min() - result[2, 3]
+    )
     return result

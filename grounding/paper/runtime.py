@@ -9,7 +9,16 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.paper.features import BB, CODE, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.paper.features import (
+    BB,
+    CODE,
+    PC,
+    BoxFeatures,
+    CloudFeatures,
+    Features,
+    Observation,
+    poses_of,
+)
 from grounding.paper.kernels import normalize
 from grounding.situation import Situation
 from grounding.weights import Weights
@@ -26,7 +35,8 @@ NOISE = 4
 
 
 class PaperModel:
-    """A classifier and a generator of the paper: `mlp-bb`, `gnn-bb`, `mlp-pc` or `gnn-pc`, as its arrays say.
+    """A classifier and a generator of the paper: `mlp-bb`, `gnn-bb`, `mlp-pc` or `gnn-pc`, as its
+    arrays say.
 
     Args:
         weights: What `training.train` returned.
@@ -37,20 +47,27 @@ class PaperModel:
 
     def __init__(self, weights: Weights) -> None:
         arrays = weights.arrays
-        self.classifier, self.generator = Network(arrays, "classifier"), Network(arrays, "generator")
+        self.classifier, self.generator = (
+            Network(arrays, "classifier"),
+            Network(arrays, "generator"),
+        )
         self._features = features_in(arrays, self.classifier)
         _check_generator(self.generator, self._features.size)
         self._sees = bool(self.classifier.scene or self.generator.scene)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order: the generator moves argument 1 from where it is, each time by other noise."""
+        """Propose `count` poses, in no order: the generator moves argument 1 from where it is, each
+        time by other noise.
+        """
         seen = self._features.observe(situation, self._sees)
         noise = rng.standard_normal((count, NOISE), dtype=np.float32)
         positions, turns = generated(self.generator, seen, noise)
         return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """The probability that the relation holds with argument 1 at each of the poses, shape (n,)."""
+        """Return the probability that the relation holds with argument 1 at each of the poses,
+        shape (n,).
+        """
         seen = self._features.observe(situation, self._sees)
         return classified(self.classifier, self._features, seen, situation, poses)
 
@@ -59,7 +76,8 @@ class Network:
     """Matrices and biases of a classifier or a generator.
 
     Args:
-        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps `NAME.scene.0.weight`, ...
+        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps
+            `NAME.scene.0.weight`, ...
         name: Which network.
 
     Raises:
@@ -72,7 +90,8 @@ class Network:
             raise InputError(f"the weights have no {name}", remedy=_REMEDY)
 
     def context(self, arguments: Floats, others: Floats) -> Floats:
-        """The embedding of the surroundings, shape (n, 16), or (n, 0) of a network that does not look at them.
+        """Compute the embedding of the surroundings, shape (n, 16), or (n, 0) of a network that
+        does not look at them.
 
         Args:
             arguments: Shape (n, 2 f).
@@ -89,7 +108,7 @@ class Network:
         return hidden.mean(axis=1) @ third + bias_3
 
     def __call__(self, inputs: Floats) -> Floats:
-        """The layers `main`, shape (n, outputs)."""
+        """Apply the layers `main`, shape (n, outputs)."""
         x = inputs
         for weight, bias in self.main[:-1]:
             x = x @ weight
@@ -100,11 +119,13 @@ class Network:
 
 
 class NumpyEncoder:
-    """The encoder of 1D convolutions with kernel 1: each point through the layers, the largest of each number.
+    """The encoder of 1D convolutions with kernel 1: each point through the layers, the largest of
+    each number.
 
     Args:
-        arrays: `0.weight` (inputs, outputs), `0.bias`, ..., `scale`, by which metres are multiplied first (0: each
-            cloud is brought to the cube), and `points`, how many of the cloud's points are looked at.
+        arrays: `0.weight` (inputs, outputs), `0.bias`, ..., `scale`, by which metres are multiplied
+            first (0: each cloud is brought to the cube), and `points`, how many of the cloud's
+            points are looked at.
 
     Raises:
         InputError: The arrays are not those of an encoder.
@@ -112,12 +133,20 @@ class NumpyEncoder:
 
     def __init__(self, arrays: Arrays) -> None:
         self.layers = _chain(arrays, "")
-        if not self.layers or "scale" not in arrays or "points" not in arrays or self.layers[-1][0].shape[1] != CODE:
-            raise InputError("the weights have no encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        if (
+            not self.layers
+            or "scale" not in arrays
+            or "points" not in arrays
+            or self.layers[-1][0].shape[1] != CODE
+        ):
+            raise InputError(
+                "the weights have no encoder of clouds",
+                remedy="Train one: tamp-learn encoder --help",
+            )
         self.scale, self.points = float(arrays["scale"]), int(arrays["points"])
 
     def __call__(self, points: Array) -> Floats:
-        """The code, shape (CODE,), of a posed, centred cloud, shape (n, 3), metres."""
+        """Encode a posed, centred cloud, shape (n, 3), metres, as its code, shape (CODE,)."""
         x = scaled(points, self.scale)[: self.points].astype(np.float32)
         for number, (weight, bias) in enumerate(self.layers):
             x = x @ weight
@@ -128,31 +157,48 @@ class NumpyEncoder:
 
 
 def scaled(points: Array, factor: float) -> Array:
-    """Scaling (a), by one factor for all clouds, or (b), when it is 0: the largest extent fills the cube of edge 1."""
+    """Compute the scaling (a), by one factor for all clouds, or (b), when it is 0: the largest
+    extent fills the cube of edge 1.
+    """
     return points * factor if factor else points / max(float(np.ptp(points, axis=0).max()), 1e-9)
 
 
 def features_in(arrays: Arrays, classifier: Network) -> Features:
-    """The features that a classifier is for.
+    """Return the features that a classifier is for.
 
     Raises:
-        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no classifier of them.
+        InputError: Neither kind; or they are codes, and there is no encoder; or the network is no
+            classifier of them.
     """
-    inputs = classifier.main[0][0].shape[0] - (classifier.scene[-1][1].shape[0] if classifier.scene else 0)
+    inputs = classifier.main[0][0].shape[0] - (
+        classifier.scene[-1][1].shape[0] if classifier.scene else 0
+    )
     outputs = classifier.main[-1][1].shape[0]
     if outputs != 1:
-        raise InputError(f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY)
+        raise InputError(
+            f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY
+        )
+
     _check_scene(classifier, inputs // 2)
     if inputs == 2 * BB:
         return BoxFeatures()
     if inputs == 2 * PC:
-        encoder = {name.removeprefix("encoder."): array for name, array in arrays.items() if "encoder." in name}
+        encoder = {
+            name.removeprefix("encoder."): array
+            for name, array in arrays.items()
+            if "encoder." in name
+        }
         return CloudFeatures(NumpyEncoder(encoder))
-    raise InputError(f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)")
+
+    raise InputError(
+        f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)"
+    )
 
 
 def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Floats, Floats]:
-    """Positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for noise (n, 4)."""
+    """Generate positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for
+    noise (n, 4).
+    """
     inputs = np.empty((len(noise), network.main[0][0].shape[0]), np.float32)
     arguments = seen.arguments.reshape(1, -1).astype(np.float32)
     known = arguments.shape[1]
@@ -164,22 +210,30 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
     return pose[:, :3], pose[:, 3:]
 
 
-def classified(network: Network, features: Features, seen: Observation, situation: Situation, poses: Array) -> Array:
-    """Probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4, 4)."""
+def classified(
+    network: Network, features: Features, seen: Observation, situation: Situation, poses: Array
+) -> Array:
+    """Classify poses: probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4,
+    4).
+    """
     return judged(network, seen, features.at(seen, situation, poses))
 
 
 def judged(network: Network, seen: Observation, argument: Array) -> Array:
-    """Probabilities, shape (n,), with argument 1's features as given, shape (n, f)."""
+    """Classify features: probabilities, shape (n,), with argument 1's features as given, shape (n,
+    f).
+    """
     size = argument.shape[1]
     arguments = np.empty((len(argument), 2 * size), np.float32)
     arguments[:, :size], arguments[:, size:] = seen.arguments[0], argument
-    inputs = np.concatenate([arguments, network.context(arguments, seen.others.astype(np.float32))], axis=1)
+    inputs = np.concatenate(
+        [arguments, network.context(arguments, seen.others.astype(np.float32))], axis=1
+    )
     return 1 / (1 + np.exp(-np.clip(network(inputs)[:, 0].astype(np.float64), -60, 60)))
 
 
 def unit(turns: Array) -> Array:
-    """Quaternions of norm 1, shape (n, 4); no rotation for one that is zero."""
+    """Normalize quaternions, shape (n, 4); no rotation for one that is zero."""
     units = np.empty((len(turns), 4))
     normalize(turns, units)
     return units
@@ -198,21 +252,26 @@ def _check_generator(network: Network, size: int) -> None:
     wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
     if (inputs, outputs) != (wanted, 7):
         raise InputError(
-            f"the generator is given {inputs} numbers and returns {outputs}; it should be {wanted} and 7",
+            f"the generator is given {inputs} numbers and returns {outputs}; "
+            f"it should be {wanted} and 7",
             remedy=_REMEDY,
         )
 
 
 def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
-    """The layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
+    """Read the layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
     dot = f"{prefix}." if prefix else ""
     layers: list[tuple[Floats, Floats]] = []
     while f"{dot}{len(layers)}.weight" in arrays and f"{dot}{len(layers)}.bias" in arrays:
-        weight, bias = (np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32) for key in ("weight", "bias"))
+        weight, bias = (
+            np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32)
+            for key in ("weight", "bias")
+        )
         fits = not layers or layers[-1][0].shape[1] == weight.shape[0]
         if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
             raise InputError(
-                f"layer '{dot}{len(layers)}' does not fit: matrix {weight.shape}, bias {bias.shape}",
+                f"layer '{dot}{len(layers)}' does not fit: "
+                f"matrix {weight.shape}, bias {bias.shape}",
                 remedy=_REMEDY,
             )
         layers.append((weight, bias))

@@ -22,7 +22,8 @@ class Table:
     Attributes:
         arguments: Of argument 0 and 1, shape (n, 2 f).
         others: Of the surroundings, shape (n, k, f), zero where there are fewer than k.
-        share: Each one's weight in the mean over them, shape (n, k): 1 / their number, or 0 where there is none.
+        share: Each one's weight in the mean over them, shape (n, k): 1 / their number, or 0 where
+            there is none.
         holds: The labels, shape (n,).
     """
 
@@ -33,14 +34,17 @@ class Table:
 
     @cached_property
     def features(self) -> int:
-        """Numbers a body."""
+        """Return the number of features a body."""
         return self.others.shape[2]
 
 
 def table_of(
-    data: Dataset, features: Features, progress: Callable[[str], None] = lambda _: None, count: int | None = None
+    data: Dataset,
+    features: Features,
+    progress: Callable[[str], None] = lambda _: None,
+    count: int | None = None,
 ) -> Table:
-    """The features of the first `count` scenes of `order`, or of all."""
+    """Compute the features of the first `count` scenes of `order`, or of all."""
     indices = order(data.holds)[:count]
     arguments = np.zeros((len(indices), 2 * features.size), np.float32)
     most = max(1, data.arrays["body"].shape[1] - 2)
@@ -59,7 +63,8 @@ def table_of(
 
 
 def order(holds: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Indices of examples such that each prefix is a smaller training set, shape (n,): shuffled, the labels in turn.
+    """Order examples such that each prefix is a smaller training set, shape (n,): shuffled, the
+    labels in turn.
 
     Sets of different sizes are nested, and all training seeds see the same ones.
     """

@@ -1,8 +1,10 @@
-"""The paper's training (section III-D): the classifier, then the generator against discriminator and classifier.
+"""The paper's training (section III-D): the classifier, then the generator against discriminator
+and classifier.
 
-One run trains an ensemble: any number of pairs of a training set's size and a seed, each as if it were trained alone.
-The classifier that is kept is the one of least loss on a tenth of its training set that it is not trained on (of fewer
-than 100 examples none is spared, and the last is kept); the generator is the last, as in the paper.
+One run trains an ensemble: any number of pairs of a training set's size and a seed, each as if it
+were trained alone. The classifier that is kept is the one of least loss on a tenth of its training
+set that it is not trained on (of fewer than 100 examples none is spared, and the last is kept); the
+generator is the last, as in the paper.
 """
 
 from __future__ import annotations
@@ -15,53 +17,25 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits, softplus
 
 from grounding.paper import networks
 from grounding.paper.critic import critic_gradient
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
+from grounding.paper.random_streams import random_stream, stacked_draws
 from grounding.paper.table import Table
-from tamp.errors import InputError
-from tamp.system.files import write_whole
+from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_state import load_state, save_state
 
 SCHEMES = ("discriminator", "classifier", "both")
 """What teaches the generator: equation 3, equation 4, or both."""
 
 
-@dataclass(frozen=True)
-class Args:
-    """How to train.
-
-    Attributes:
-        iterations: Of the classifier, and then of the generator.
-        batch: Scenes a step and model.
-        rate: RMSprop's learning rate.
-        penalty: Weight of the critic's gradient penalty, the paper's lambda.
-        critic_steps: Steps of the critic before each of the generator.
-        critic_catches_up: The same for the first `first` steps of the generator, and for every `every`-th.
-        validate_every: Iterations between looks at the validation split.
-        save_every: Iterations between saved states, a multiple of `block`.
-        block: Iterations whose random numbers are drawn together, from seed, size, stage and the first of them.
-    """
-
-    iterations: int = 30_000
-    batch: int = 16
-    rate: float = 1e-3
-    penalty: float = 10.0
-    critic_steps: int = 5
-    critic_catches_up: int = 100
-    first: int = 24
-    every: int = 500
-    validate_every: int = 500
-    save_every: int = 2000
-    block: int = 500
-
-
 AHEAD = 5
-"""Batches that the generator proposes at once for the critic's steps, during which it does not change."""
+"""Batches that the generator proposes at once for the critic's steps, during which it does not
+change.
+"""
 
 VALIDATION = 500
 """Examples of the validation split at most."""
@@ -93,7 +67,10 @@ class Trainer:
         self._others = torch.from_numpy(self.table.others)
         self._share = torch.from_numpy(self.table.share)
         self._labels = torch.from_numpy(self.table.holds.astype(np.float32))
-        start = [_random(size, seed, 0, 0) for size, seed in zip(self.sizes, self.seeds, strict=True)]
+        start = [
+            random_stream(size, seed, 0, 0)
+            for size, seed in zip(self.sizes, self.seeds, strict=True)
+        ]
         self.classifier = Ensemble(networks.classifier_shapes(features, self.scene), start)
         self.critic = Ensemble(networks.critic_shapes(features), start)
         self.generator = Ensemble(networks.generator_shapes(features, self.scene), start)
@@ -101,12 +78,18 @@ class Trainer:
         self._least = torch.full((len(self.sizes),), torch.inf)
         self._done = torch.zeros(2, dtype=torch.int64)  # iterations of classifier and generator
         spared = [min(size // 10, VALIDATION) if size >= 100 else 0 for size in self.sizes]
-        self._seen = [torch.arange(size - some) for size, some in zip(self.sizes, spared, strict=True)]
-        self._spared = [torch.arange(size - some, size) for size, some in zip(self.sizes, spared, strict=True)]
+        self._seen = [
+            torch.arange(size - some) for size, some in zip(self.sizes, spared, strict=True)
+        ]
+        self._spared = [
+            torch.arange(size - some, size) for size, some in zip(self.sizes, spared, strict=True)
+        ]
         self._all = [torch.arange(size) for size in self.sizes]
         self._positive = [rows[self._labels[rows] > 0] for rows in self._all]
 
-    def run(self, state: Path | None = None, progress: Callable[[str], None] = lambda _: None) -> None:
+    def run(
+        self, state: Path | None = None, progress: Callable[[str], None] = lambda _: None
+    ) -> None:
         """Train to the end, from where `state` left off.
 
         Raises:
@@ -116,15 +99,19 @@ class Trainer:
         torch.set_num_threads(1)  # matrices this small only wait for each other
         try:
             if state is not None and state.is_file():
-                self._load(state)
+                load_state(state, self._tensors(), self._run())
                 progress(f"going on after {int(self._done[0])} + {int(self._done[1])} iterations")
-            for stage, (name, block) in enumerate((("classifier", self._classify), ("generator", self._generate))):
+            for stage, (name, block) in enumerate(
+                (("classifier", self._classify), ("generator", self._generate))
+            ):
                 self._stage(stage, name, block, state, progress)
         finally:
             torch.set_num_threads(threads)
 
     def models(self) -> Iterator[dict[str, np.ndarray]]:
-        """Classifier and generator of each model, as float32 arrays named like `classifier.main.0.weight`."""
+        """Yield classifier and generator of each model, as float32 arrays named like
+        `classifier.main.0.weight`.
+        """
         for index in range(len(self.sizes)):
             yield {
                 f"{name}.{layer}": array
@@ -147,19 +134,26 @@ class Trainer:
             self._done[stage] = end
             if end % self.args.save_every == 0 or end == self.args.iterations:
                 speed = (end - first) / (time.perf_counter() - start)
-                progress(f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, loss {loss:.3f}")
+                progress(
+                    f"{name} {end} of {self.args.iterations}, {speed:.0f} iterations/s, "
+                    f"loss {loss:.3f}"
+                )
                 if state is not None:
-                    self._save(state)
+                    save_state(state, self._tensors(), self._run())
         if stage == 0:
             self.classifier.flat.copy_(self._best)
 
     def _classify(self, start: int, end: int) -> float:
-        """Equation 1, from one iteration to another; returns the mean loss of the last batches."""
+        """Train the classifier by equation 1, from one iteration to another; returns the mean loss
+        of the last batches.
+        """
         batches = self._draw(self._seen, 1, start, end - start)
         total = torch.zeros(())
         for step, rows in enumerate(batches.unbind(1), start + 1):
             loss = binary_cross_entropy_with_logits(
-                score(self.classifier.weights, self._batch(rows)), self._labels[rows], reduction="sum"
+                score(self.classifier.weights, self._batch(rows)),
+                self._labels[rows],
+                reduction="sum",
             )
             loss.backward()
             self.classifier.update(self.args.rate)
@@ -174,41 +168,58 @@ class Trainer:
         for model, rows in enumerate(self._spared):
             loss = torch.tensor(-torch.inf)
             if len(rows):
-                alone = {name: tensor[model : model + 1] for name, tensor in self.classifier.fixed.items()}
+                alone = {
+                    name: tensor[model : model + 1]
+                    for name, tensor in self.classifier.fixed.items()
+                }
                 scores = score(alone, self._batch(rows[None]))[0]
                 loss = binary_cross_entropy_with_logits(scores, self._labels[rows])
             if loss <= self._least[model]:
                 self._least[model] = loss
-                for best, now in zip(self.classifier.parts(self._best), self.classifier.weights.values(), strict=True):
+                for best, now in zip(
+                    self.classifier.parts(self._best), self.classifier.weights.values(), strict=True
+                ):
                     best[model] = now[model]
 
     def _generate(self, start: int, end: int) -> float:
-        """Equations 2 to 4, from one iteration of the generator to another; returns the last mean loss."""
+        """Train the generator by equations 2 to 4, from one iteration of the generator to another;
+        returns the last mean loss.
+        """
         steps = [self._critic_steps(step) for step in range(start + 1, end + 1)]
-        randoms = [_random(size, seed, 2, start) for size, seed in zip(self.sizes, self.seeds, strict=True)]
+        randoms = [
+            random_stream(size, seed, 2, start)
+            for size, seed in zip(self.sizes, self.seeds, strict=True)
+        ]
         scenes = self._draw(self._all, 3, start, sum(steps) + end - start)
         positive = self._draw(self._positive, 4, start, sum(steps))
         done, loss, batch = 0, torch.zeros(()), self.args.batch
+
         for count, last in zip(steps, range(end - start), strict=True):
             for first in range(done, done + count, AHEAD):
                 some = min(AHEAD, done + count - first)
                 rows = scenes[:, first : first + some].flatten(1)
-                noise = _stack(randoms, torch.randn, (rows.shape[1], NOISE))
-                mixes = _stack(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
+                noise = stacked_draws(randoms, torch.randn, (rows.shape[1], NOISE))
+                mixes = stacked_draws(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
                 fakes = generate(self.generator.fixed, self._batch(rows), noise).split(batch, dim=1)
-                real = self._arguments[positive[:, first : first + some].flatten(1)].split(batch, dim=1)
+                real = self._arguments[positive[:, first : first + some].flatten(1)].split(
+                    batch, dim=1
+                )
                 for one, other, mix in zip(real, fakes, mixes, strict=True):
                     critic_gradient(self.critic, one, other, mix, self.args.penalty)
                     self.critic.update(self.args.rate)
+
             done += count
             rows = scenes[:, sum(steps) + last]
-            loss = self._loss(self._batch(rows), _stack(randoms, torch.randn, (batch, NOISE)))
+            loss = self._loss(
+                self._batch(rows), stacked_draws(randoms, torch.randn, (batch, NOISE))
+            )
             loss.backward()
             self.generator.update(self.args.rate)
+
         return float(loss.detach()) / batch / len(self.sizes)
 
     def _loss(self, batch: Batch, noise: Tensor) -> Tensor:
-        """Of the generator: equation 3, equation 4, or their sum."""
+        """Compute the generator's loss: equation 3, equation 4, or their sum."""
         proposed = Batch(generate(self.generator.weights, batch, noise), batch.others, batch.share)
         loss = torch.zeros(())
         if self.scheme != "classifier":
@@ -224,48 +235,38 @@ class Trainer:
         return self.args.critic_catches_up if rarely else self.args.critic_steps
 
     def _draw(self, rows: Sequence[Tensor], stage: int, start: int, count: int) -> Tensor:
-        """Batches of rows, shape (M, count, batch): each model's own, shuffled over and over."""
+        """Draw batches of rows, shape (M, count, batch): each model's own, shuffled over and
+        over.
+        """
         drawn: list[Tensor] = []
         wanted = count * self.args.batch
         for size, seed, own in zip(self.sizes, self.seeds, rows, strict=True):
-            random = _random(size, seed, stage, start)
+            random = random_stream(size, seed, stage, start)
             rounds = -(-wanted // len(own))
             shuffled = torch.rand((rounds, len(own)), generator=random).argsort(dim=1)
             drawn.append(own[shuffled.flatten()[:wanted]].view(count, self.args.batch))
         return torch.stack(drawn)
 
     def _batch(self, rows: Tensor) -> Batch:
-        """The scenes of these rows, shape (M, B)."""
+        """Gather the scenes of these rows, shape (M, B)."""
         arguments = self._arguments[rows]
-        return Batch(arguments, self._others[rows], self._share[rows]) if self.scene else Batch(arguments, _NONE, _NONE)
+        return (
+            Batch(arguments, self._others[rows], self._share[rows])
+            if self.scene
+            else Batch(arguments, _NONE, _NONE)
+        )
 
     def _tensors(self) -> dict[str, Tensor]:
         parts = {"classifier": self.classifier, "critic": self.critic, "generator": self.generator}
-        tensors = {f"{name}.{key}": getattr(part, key) for name, part in parts.items() for key in ("flat", "square")}
+        tensors = {
+            f"{name}.{key}": getattr(part, key)
+            for name, part in parts.items()
+            for key in ("flat", "square")
+        }
         return {**tensors, "best": self._best, "least": self._least, "done": self._done}
 
-    def _save(self, path: Path) -> None:
-        tensors = self._tensors()
-        write_whole(path, save({name: tensor.detach() for name, tensor in tensors.items()}, {"run": self._run()}))
-
-    def _load(self, path: Path) -> None:
-        remedy = f"Train from the beginning: delete {path}"
-        try:
-            with safe_open(path, "pt") as file:
-                found = file.metadata() or {}
-                tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
-        except (SafetensorError, OSError, ValueError) as error:
-            raise InputError(f"the state is damaged: {error}", file=path, remedy=remedy) from None
-        if found.get("run") != self._run():
-            raise InputError("the state of another training", file=path, remedy=remedy)
-        wanted = {name: (tensor.shape, tensor.dtype) for name, tensor in self._tensors().items()}
-        if wanted != {name: (tensor.shape, tensor.dtype) for name, tensor in tensors.items()}:
-            raise InputError("the state is damaged: its arrays are others", file=path, remedy=remedy)
-        for name, tensor in self._tensors().items():
-            tensor.copy_(tensors[name])
-
     def _run(self) -> str:
-        """What a state must agree in to go on from it."""
+        """Return the run's identity: what a state must agree in to go on from it."""
         digest = hashlib.blake2b(digest_size=16)
         for array in (self.table.arguments, self.table.others, self.table.holds):
             digest.update(np.ascontiguousarray(array).data)
@@ -274,13 +275,3 @@ class Trainer:
 
 
 _NONE = torch.zeros(0)
-
-
-def _random(size: int, seed: int, stage: int, block: int) -> torch.Generator:
-    mixed = np.random.SeedSequence([seed, size, stage, block]).generate_state(1)
-    return torch.Generator().manual_seed(int(mixed[0]))
-
-
-def _stack(randoms: Sequence[torch.Generator], draw: Callable[..., Tensor], shape: tuple[int, ...]) -> Tensor:
-    """One draw a model, shape (M, *shape)."""
-    return torch.stack([draw(shape, generator=random) for random in randoms])

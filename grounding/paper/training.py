@@ -1,4 +1,4 @@
-"""From a data set to the paper's models, by name."""
+"""Training of the paper's models from a data set, by name."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from grounding.paper.codes import coded_table
 from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import NumpyEncoder
 from grounding.paper.table import Table, table_of
-from grounding.paper.trainer import SCHEMES, Args, Trainer
+from grounding.paper.trainer import SCHEMES, Trainer
+from grounding.paper.trainer_options import Args
 from grounding.weights import Weights
 from tamp.errors import InputError
 
@@ -31,7 +32,8 @@ def train(
     state: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Weights]:
-    """Train one model for each pair of a size and a seed, all at once, in one thread's worth of small matrices.
+    """Train one model for each pair of a size and a seed, all at once, in one thread's worth of
+    small matrices.
 
     Args:
         data: The training set.
@@ -46,13 +48,21 @@ def train(
         progress: Told how far it is.
 
     Raises:
-        InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another run's state.
+        InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another
+            run's state.
     """
     _check(data, model, scheme, sizes, seeds, encoder)
     table = table or features_of(data, model, encoder, progress, max(sizes))
-    trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations))
+    trainer = Trainer(
+        table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations)
+    )
     trainer.run(state, progress)
-    extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if _clouds(model) and encoder else {}
+    extra = (
+        {f"encoder.{name}": array for name, array in encoder.arrays.items()}
+        if _clouds(model) and encoder
+        else {}
+    )
+
     return [
         Weights(
             {**arrays, **extra},
@@ -63,7 +73,11 @@ def train(
                 "samples": size,
                 "seed": seed,
                 "iterations": iterations,
-                "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
+                "data": {
+                    key: data.card[key]
+                    for key in ("split", "seed", "count", "commit")
+                    if key in data.card
+                },
                 "architecture": {name: list(array.shape) for name, array in arrays.items()},
             },
         )
@@ -72,12 +86,18 @@ def train(
 
 
 def features_of(
-    data: Dataset, model: str, encoder: Weights | None, progress: Callable[[str], None], count: int | None = None
+    data: Dataset,
+    model: str,
+    encoder: Weights | None,
+    progress: Callable[[str], None],
+    count: int | None = None,
 ) -> Table:
-    """The features that a model is trained on, of the first `count` scenes or of all."""
+    """Compute the features that a model is trained on, of the first `count` scenes or of all."""
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
-        return coded_table(data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around)
+        return coded_table(
+            data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around
+        )
     return table_of(data, BoxFeatures(), progress, count)
 
 
@@ -86,7 +106,12 @@ def _clouds(model: str) -> bool:
 
 
 def _check(
-    data: Dataset, model: str, scheme: str, sizes: Sequence[int], seeds: Sequence[int], encoder: Weights | None
+    data: Dataset,
+    model: str,
+    scheme: str,
+    sizes: Sequence[int],
+    seeds: Sequence[int],
+    encoder: Weights | None,
 ) -> None:
     if model not in MODELS:
         raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
@@ -94,9 +119,18 @@ def _check(
         raise InputError(f"unknown scheme '{scheme}'", found=scheme, choices=SCHEMES)
     if len(sizes) != len(seeds) or not sizes:
         raise InputError(f"{len(sizes)} sizes for {len(seeds)} seeds; each model has one of each")
+
     if min(sizes) < 2 or max(sizes) > len(data):
-        raise InputError(f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible")
+        raise InputError(
+            f"training sets of {min(sizes)} to {max(sizes)} examples; 2 to {len(data)} are possible"
+        )
     if not 0 < int(data.holds.sum()) < len(data):
-        raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
+        raise InputError(
+            "the demonstrations are all positive or all negative",
+            remedy="Add some of the other kind.",
+        )
     if _clouds(model) and encoder is None:
-        raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            f"model '{model}' needs an encoder of clouds",
+            remedy="Train one: tamp-learn encoder --help",
+        )

@@ -28,7 +28,8 @@ def train_tree(
     encoder: Weights | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Weights:
-    """A tree of scikit-learn's usual settings, grown to the end on the arguments' features.
+    """Train a decision tree of scikit-learn's usual settings, grown to the end on the arguments'
+    features.
 
     Args:
         data: The training set.
@@ -46,14 +47,22 @@ def train_tree(
     if not 2 <= samples <= len(data):
         raise InputError(f"a training set of {samples} examples; 2 to {len(data)} are possible")
     if model == "tree-pc" and encoder is None:
-        raise InputError(f"model '{model}' needs an encoder of clouds", remedy="Train one: tamp-learn encoder --help")
+        raise InputError(
+            f"model '{model}' needs an encoder of clouds",
+            remedy="Train one: tamp-learn encoder --help",
+        )
     if not 0 < int(data.holds.sum()) < len(data):
-        raise InputError("the demonstrations are all positive or all negative", remedy="Add some of the other kind.")
+        raise InputError(
+            "the demonstrations are all positive or all negative",
+            remedy="Add some of the other kind.",
+        )
+
     table = features_of(data, model, encoder, progress, samples)
     progress(f"a tree of {samples} scenes")
     extra = {f"encoder.{name}": array for name, array in encoder.arrays.items()} if encoder else {}
     arrays = grown(table, samples, seed)
     why = _chance(table, samples, seed) if samples < MANY else None
+
     return Weights(
         {**arrays, **extra},
         {
@@ -61,7 +70,11 @@ def train_tree(
             "model": model,
             "samples": samples,
             "seed": seed,
-            "data": {key: data.card[key] for key in ("split", "seed", "count", "commit") if key in data.card},
+            "data": {
+                key: data.card[key]
+                for key in ("split", "seed", "count", "commit")
+                if key in data.card
+            },
             "architecture": {"nodes": len(arrays["tree.feature"]), "features": table.features},
             **({"classifies": False, REASON: why} if why else {}),
         },
@@ -69,7 +82,7 @@ def train_tree(
 
 
 def _chance(table: Table, samples: int, seed: int) -> str | None:
-    """Why trees of halves of the examples know no more than chance of the other halves."""
+    """Return why trees of halves of the examples know no more than chance of the other halves."""
     from sklearn.tree import DecisionTreeClassifier
 
     arguments, holds = table.arguments[:samples], table.holds[:samples]
@@ -82,7 +95,7 @@ def _chance(table: Table, samples: int, seed: int) -> str | None:
 
 
 def grown(table: Table, samples: int, seed: int) -> dict[str, np.ndarray]:
-    """The tree of the table's first examples, as `trees.TreeModel` wants its arrays."""
+    """Grow the tree of the table's first examples, as `trees.TreeModel` wants its arrays."""
     from sklearn.tree import DecisionTreeClassifier
 
     arguments, holds = table.arguments[:samples], table.holds[:samples]

@@ -1,4 +1,6 @@
-"""The paper's decision trees (section IV-A): one that classifies, and whose positive leaves are boxes to sample in."""
+"""The paper's decision trees (section IV-A): one that classifies, and whose positive leaves are
+boxes to sample in.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,15 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.paper.features import BB, PC, BoxFeatures, CloudFeatures, Features, Observation, poses_of
+from grounding.paper.features import (
+    BB,
+    PC,
+    BoxFeatures,
+    CloudFeatures,
+    Features,
+    Observation,
+    poses_of,
+)
 from grounding.paper.runtime import Arrays, NumpyEncoder, unit
 from grounding.paper.turns import rotations
 from grounding.situation import Situation
@@ -20,16 +30,19 @@ LEAF = -1
 """The feature that a leaf differentiates upon."""
 
 NODES = ("feature", "threshold", "left", "right", "positive")
-"""One number a node: what it looks at; `x <= threshold` goes left, the rest right; its share of positive examples."""
+"""One number a node: what it looks at; `x <= threshold` goes left, the rest right; its share of
+positive examples.
+"""
 
 
 class TreeModel:
     """`tree-bb` or `tree-pc`, as its arrays say.
 
     Args:
-        weights: Arrays `tree.feature`, `tree.threshold`, `tree.left`, `tree.right`, `tree.positive`, shape (nodes,),
-            children after their parents; `tree.low`, `tree.high`, shape (f,), the range of argument 1's features in
-            positive examples; for clouds, `encoder.*`.
+        weights: Arrays `tree.feature`, `tree.threshold`, `tree.left`, `tree.right`,
+            `tree.positive`, shape (nodes,), children after their parents; `tree.low`, `tree.high`,
+            shape (f,), the range of argument 1's features in positive examples; for clouds,
+            `encoder.*`.
 
     Raises:
         InputError: The arrays are not those of such a tree.
@@ -40,7 +53,7 @@ class TreeModel:
         self.tree = Tree(weights.arrays, self._features.size)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, each from a random positive leaf; none when the tree has no such leaf."""
+        """Propose `count` poses, each from a random positive leaf; none when the tree has none."""
         if not len(self.tree.leaves):
             return np.zeros((0, 4, 4))
         seen = self._observe(situation)
@@ -52,7 +65,7 @@ class TreeModel:
         return poses_of(seen, rng.uniform(low, high), turns)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """The share of positive examples in each pose's leaf, shape (n,)."""
+        """Return the share of positive examples in each pose's leaf, shape (n,)."""
         seen = self._observe(situation)
         argument = self._features.at(seen, situation, poses)
         return self.tree.positive[self.tree.leaf(_rows(seen, argument))]
@@ -83,10 +96,20 @@ class Tree:
         if missing:
             raise _refused(f"no '{missing[0]}'")
         columns = [arrays[f"tree.{name}"] for name in NODES]
-        if len({column.shape for column in columns}) > 1 or columns[0].ndim != 1 or not len(columns[0]):
+        if (
+            len({column.shape for column in columns}) > 1
+            or columns[0].ndim != 1
+            or not len(columns[0])
+        ):
             raise _refused("nodes that do not fit each other")
-        self._feature, self._left, self._right = (columns[index].astype(np.intp) for index in (0, 2, 3))
-        self._threshold, self.positive = columns[1].astype(np.float64), columns[4].astype(np.float64)
+
+        self._feature, self._left, self._right = (
+            columns[index].astype(np.intp) for index in (0, 2, 3)
+        )
+        self._threshold, self.positive = (
+            columns[1].astype(np.float64),
+            columns[4].astype(np.float64),
+        )
         inner = self._feature != LEAF
         children = np.stack([self._left, self._right])[:, inner]
         if (children <= np.flatnonzero(inner)).any() or (children >= len(inner)).any():
@@ -104,7 +127,7 @@ class Tree:
             raise _refused("a leaf that no example can reach")
 
     def leaf(self, features: Array) -> NDArray[np.intp]:
-        """The leaves of both arguments' features, shape (n, 2 f); returns (n,)."""
+        """Find the leaves of both arguments' features, shape (n, 2 f); returns (n,)."""
         values = features.astype(np.float32)  # what it was trained on
         node, rows = np.zeros(len(features), np.intp), np.arange(len(features))
         while len(rows):
@@ -115,9 +138,11 @@ class Tree:
         return node
 
     def _limits(self, least: Array, most: Array) -> tuple[Array, Array]:
-        """Of argument 1's features in each node, from the root down, shape (nodes, f).
+        """Compute the limits of argument 1's features in each node, from the root down, shape
+        (nodes, f).
 
-        Edges of the box along the world's axes are unlimited at the root: they follow from position and rotation.
+        Edges of the box along the world's axes are unlimited at the root: they follow from position
+        and rotation.
         """
         size = len(least)
         low, high = np.tile(least, (len(self.positive), 1)), np.tile(most, (len(self.positive), 1))
@@ -132,11 +157,15 @@ class Tree:
         return low, high
 
 
-def position_limits(low: Array, high: Array, turns: Array, seen: Observation) -> tuple[Array, Array]:
-    """Limits of argument 1's position, each shape (n, 3), that limits of its features, shape (n, f), amount to.
+def position_limits(
+    low: Array, high: Array, turns: Array, seen: Observation
+) -> tuple[Array, Array]:
+    """Compute the limits of argument 1's position, each shape (n, 3), that limits of its features,
+    shape (n, f), amount to.
 
-    Of boxes also those of the box along the world's axes, which reaches as far as the rotations, quaternions (n, 4),
-    make it. Limits that contradict each other, for a body of this size, leave the point midway.
+    Of boxes also those of the box along the world's axes, which reaches as far as the rotations,
+    quaternions (n, 4), make it. Limits that contradict each other, for a body of this size, leave
+    the point midway.
     """
     least, most = low[:, :3], high[:, :3]
     if low.shape[1] == BB:
@@ -148,7 +177,7 @@ def position_limits(low: Array, high: Array, turns: Array, seen: Observation) ->
 
 
 def _columns(size: int) -> tuple[slice, slice]:
-    """Where position and quaternion are among a body's features."""
+    """Return the columns of position and quaternion among a body's features."""
     return slice(0, 3), slice(9, 13) if size == BB else slice(3, 7)
 
 
@@ -161,10 +190,17 @@ def _features(arrays: Arrays) -> Features:
     if size == BB:
         return BoxFeatures()
     if size == PC:
-        encoder = {name.removeprefix("encoder."): array for name, array in arrays.items() if "encoder." in name}
+        encoder = {
+            name.removeprefix("encoder."): array
+            for name, array in arrays.items()
+            if "encoder." in name
+        }
         return CloudFeatures(NumpyEncoder(encoder))
     raise _refused(f"a range of {size} features; known: {BB} (boxes), {PC} (clouds)")
 
 
 def _refused(what: str) -> InputError:
-    return InputError(f"the weights have no decision tree: {what}", remedy="Train it again: tamp-learn train --help")
+    return InputError(
+        f"the weights have no decision tree: {what}",
+        remedy="Train it again: tamp-learn train --help",
+    )

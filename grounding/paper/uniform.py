@@ -1,4 +1,6 @@
-"""The paper's sampler baselines (section IV-A): uniform poses, as they come or until a classifier accepts one."""
+"""The paper's sampler baselines (section IV-A): uniform poses, as they come or until a classifier
+accepts one.
+"""
 
 from __future__ import annotations
 
@@ -21,11 +23,12 @@ ACCEPTED = 0.5
 
 
 class UniformModel:
-    """Positions uniform in argument 0's box grown on each side by half its largest half extent; random rotations.
+    """Positions uniform in argument 0's box grown on each side by half its largest half extent;
+    random rotations.
 
     Args:
-        weights: Of `mlp-bb` or `gnn-bb`, whose classifier accepts or rejects; None takes what comes, and classifies
-            nothing.
+        weights: Of `mlp-bb` or `gnn-bb`, whose classifier accepts or rejects; None takes what
+            comes, and classifies nothing.
 
     Raises:
         InputError: The weights have no classifier of boxes.
@@ -36,7 +39,7 @@ class UniformModel:
         self.classifier = None if weights is None else _box_classifier(weights)
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """`count` poses, in no order. Each is the first one accepted, or the last of its 500 tries."""
+        """Propose `count` poses, in no order: the first accepted, or the last of 500 tries."""
         seen = self._features.observe(situation)
         if self.classifier is None:
             return poses_of(seen, *_drawn(seen, count, rng))
@@ -46,21 +49,25 @@ class UniformModel:
         return poses_of(seen, positions, turns)
 
     def classify(self, situation: Situation, poses: Array) -> Array:
-        """What the classifier says, shape (n,); not a number where there is none."""
+        """Return the classifier's probabilities, shape (n,); not a number where there is none."""
         if self.classifier is None:
             return np.full(len(poses), np.nan)
-        return classified(self.classifier, self._features, self._features.observe(situation), situation, poses)
+        return classified(
+            self.classifier, self._features, self._features.observe(situation), situation, poses
+        )
 
 
 def _box_classifier(weights: Weights) -> Network:
     network = Network(weights.arrays, "classifier")
     if features_in(weights.arrays, network).size != BB:
-        raise InputError("this sampler needs a classifier of boxes, and the weights' is one of clouds")
+        raise InputError(
+            "this sampler needs a classifier of boxes, and the weights' is one of clouds"
+        )
     return network
 
 
 def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Array, Array]:
-    """One position (3,) and its quaternion (4,)."""
+    """Sample one accepted position (3,) and its quaternion (4,)."""
     positions, turns, first = np.zeros((1, 3)), np.zeros((1, 4)), 0
     for count in TRIES:
         positions, turns = _drawn(seen, count, rng)
@@ -72,7 +79,9 @@ def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Arra
 
 
 def _drawn(seen: Observation, count: int, rng: Random) -> tuple[Array, Array]:
-    """Positions (n, 3) relative to argument 0, and quaternions (n, 4), w >= 0 as in the features."""
+    """Sample positions (n, 3) relative to argument 0, and quaternions (n, 4), w >= 0 as in the
+    features.
+    """
     low, high = seen.arguments[0, 3:6], seen.arguments[0, 6:9]
     margin = GROWTH * float((high - low).max()) / 2
     positions = rng.uniform(low - margin, high + margin, size=(count, 3))

@@ -1,1 +1,1 @@
-"""Our groundings: poses and scenes described by how bodies stand to each other, not to the world."""
+"""Our groundings: poses and scenes by how bodies stand to each other, not to the world."""

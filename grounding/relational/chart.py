@@ -1,8 +1,10 @@
-"""Relational coordinates, learned from a few demonstrations: what they have in common is a residual near zero.
+"""Relational coordinates, learned from a few demonstrations: what they have in common is a residual
+near zero.
 
-Height is measured between that level of the body and that level of the region whose distance varies least over the
-demonstrations; the horizontal position is a share of the room that is left; rotation is which face is down, a small
-tilt and a yaw. What all demonstrations keep (room at the sides, above, around) bounds what is proposed.
+Height is measured between that level of the body and that level of the region whose distance varies
+least over the demonstrations; the horizontal position is a share of the room that is left; rotation
+is which face is down, a small tilt and a yaw. What all demonstrations keep (room at the sides,
+above, around) bounds what is proposed.
 """
 
 from __future__ import annotations
@@ -44,7 +46,8 @@ class Demonstration:
     """One positive example in relational coordinates.
 
     Attributes:
-        coordinates: Horizontal shares x, y, height residual (m), tilt x, y (sines), cosine and sine of yaw: (7,).
+        coordinates: Horizontal shares x, y, height residual (m), tilt x, y (sines), cosine and sine
+            of yaw: (7,).
         face: Descriptor of the face that is down, (4,).
         size: Logarithms of the body's extents, sorted, (3,).
     """
@@ -60,10 +63,11 @@ class Chart:
 
     Attributes:
         level: Of the body: 0 its lowest point, 1 its middle, 2 its highest one.
-        anchor: Of the region: 0 its plane, 1 its ceiling, 2 the foot of the argument's box, 3 the box's middle.
+        anchor: Of the region: 0 its plane, 1 its ceiling, 2 the foot of the argument's box, 3 the
+            box's middle.
         offset: The usual distance between the two, metres.
-        contained: Whether the whole body stays above the rectangle; else its centre of mass.
-        sides, balance, ceiling, apart, steadiness: What no demonstration falls below (metres, radians).
+        contained: Whether the whole body stays above the rectangle; else its centre of mass. sides,
+        balance, ceiling, apart, steadiness: What no demonstration falls below (metres, radians).
     """
 
     level: int
@@ -78,12 +82,15 @@ class Chart:
 
     @classmethod
     def fit(cls, measured: Sequence[Measures]) -> Chart:
-        """From positive examples, each of one pose."""
-        heights = np.array([_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured])  # (n, 3, 4)
+        """Fit the coordinates to positive examples, each of one pose."""
+        heights = np.array(
+            [_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured]
+        )  # (n, 3, 4)
         finite = np.isfinite(heights).all(axis=0)
         middle = np.median(np.where(finite, heights, 0.0), axis=0)
         spread = np.where(finite, np.median(np.abs(heights - middle), axis=0), np.inf)
-        # Where several keep their distance, as on tables of one height all do, the lowest point above the plane counts.
+        # Where several keep their distance, as on tables of one height all do, the lowest point
+        # above the plane counts.
         level, anchor = (int(v) for v in np.argwhere(spread <= spread.min() + STEADY_LEVEL)[0])
         offset = float(middle[level, anchor])
         sides = np.array([one.sides.min() for one in measured])
@@ -106,7 +113,7 @@ class Chart:
 
     @classmethod
     def from_card(cls, card: Mapping[str, Any]) -> Chart:
-        """The inverse of `card`.
+        """Rebuild the coordinates from a card, the inverse of `card`.
 
         Raises:
             TypeError: An entry is missing, unknown, or no number or truth value as it should be.
@@ -127,13 +134,16 @@ class Chart:
 
     @property
     def card(self) -> dict[str, Any]:
-        """Its entries as JSON knows them, which has no infinite ceiling: None."""
+        """Return the card's entries as JSON knows them, which has no infinite ceiling: None."""
         entries = asdict(self)
         return {**entries, "ceiling": self.ceiling if math.isfinite(self.ceiling) else None}
 
     def encode(self, measured: Measures) -> Demonstration:
-        """One pose in these coordinates."""
-        height = float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor]) - self.offset
+        """Encode one pose in these coordinates."""
+        height = (
+            float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor])
+            - self.offset
+        )
         share = self._share(measured)[0]
         yaw, tilt = float(measured.yaw[0]), measured.tilt[0]
         height = 0.0 if abs(height) < LEVEL else height
@@ -143,7 +153,7 @@ class Chart:
         return Demonstration(coordinates, view.faces.descriptors[measured.face[0]], view.size)
 
     def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Measures:
-        """Poses of faces (n,) and coordinates (n, 7), measured."""
+        """Decode faces (n,) and coordinates (n, 7) to poses, measured."""
         cosine, sine = coordinates[:, 5], coordinates[:, 6]
         length = np.maximum(np.hypot(cosine, sine), 1e-9)
         rotations = turns(cosine / length, sine / length)
@@ -159,17 +169,36 @@ class Chart:
             middle = (still.low + still.high)[:, :2] / 2
             room = view.region.size[:2] / 2 - (still.high - still.low)[:, :2] / 2
         else:
-            middle, room = still.centre[:, :2], np.broadcast_to(view.region.size[:2] / 2, (len(face), 2))
+            middle, room = (
+                still.centre[:, :2],
+                np.broadcast_to(view.region.size[:2] / 2, (len(face), 2)),
+            )
+
         positions = np.empty((len(face), 3))
-        positions[:, :2] = np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle
-        positions[:, 2] = _anchors(view)[self.anchor] + self.offset + coordinates[:, 2] - _levels(still)[:, self.level]
+        positions[:, :2] = (
+            np.minimum(np.maximum(coordinates[:, :2], -1.0), 1.0) * np.maximum(room, 0.0) - middle
+        )
+        positions[:, 2] = (
+            _anchors(view)[self.anchor]
+            + self.offset
+            + coordinates[:, 2]
+            - _levels(still)[:, self.level]
+        )
         return still.moved(positions)
 
     def shortfall(self, measured: Measures) -> Array:
-        """By how much each pose misses what all demonstrations keep, metres, 0 for none; shape (n,)."""
+        """Compute the constraint violation: by how much each pose misses what all demonstrations
+        keep, metres, 0 for none; shape (n,).
+        """
         missing = np.empty(len(measured.poses))
         bounds = (self.sides, self.balance, self.ceiling, self.apart)
-        sizes = (measured.low, measured.high, measured.centre, measured.nearest, measured.view.region.size)
+        sizes = (
+            measured.low,
+            measured.high,
+            measured.centre,
+            measured.nearest,
+            measured.view.region.size,
+        )
         fall_short(*sizes, bounds, SLACK, missing)
         return missing
 
@@ -182,13 +211,15 @@ class Chart:
 
 
 def _levels(measured: Measures) -> Array:
-    """The body's lowest, middle and highest heights, shape (n, 3)."""
+    """Return the body's lowest, middle and highest heights, shape (n, 3)."""
     low, high = measured.low[:, 2], measured.high[:, 2]
     return np.stack([low, (low + high) / 2, high], axis=1)
 
 
 def _anchors(view: View) -> Array:
-    """The region's plane and ceiling, the foot and the middle of the argument's box, in the region's frame, (4,)."""
+    """Return the region's plane and ceiling, the foot and the middle of the argument's box, in the
+    region's frame, (4,).
+    """
     region = view.region
     bottom, top = region.box[0, 2] - region.matrix[2, 3], region.box[1, 2] - region.matrix[2, 3]
     return np.array([0.0, region.size[2], bottom, (bottom + top) / 2])

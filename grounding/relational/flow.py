@@ -1,4 +1,6 @@
-"""`flow`: coordinates from a learned flow that looks, at every step, at what is around where it is; numpy only."""
+"""`flow`: coordinates from a learned flow that looks, at every step, at what is around where it is;
+numpy only.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ STEPS = 4
 """Of Euler's method from noise to coordinates."""
 
 COORDINATES, CONDITION, AROUND, PAIR, POOLED = 7, 14, 6, 10, 32
-"""Numbers of a pose, of a body over a region, of something around, of it and a sample, and of all that is around."""
+"""Numbers of a pose, of a body over a region, of something around, of it and a sample, and of all
+that is around.
+"""
 
 
 class Flow:
@@ -26,7 +30,8 @@ class Flow:
 
     Args:
         chart: The coordinates.
-        arrays: Networks `face`, `pair`, `velocity`, and `scale`, the size of each coordinate, shape (7,).
+        arrays: Networks `face`, `pair`, `velocity`, and `scale`, the size of each coordinate, shape
+            (7,).
 
     Raises:
         KeyError: There is no scale.
@@ -38,17 +43,22 @@ class Flow:
         self.chart, self._scale = chart, arrays["scale"]
         if self._scale.shape != (COORDINATES,) or not (self._scale > 0.0).all():
             raise ValueError(
-                f"the scale has shape {self._scale.shape}, or no size, not one of {COORDINATES} coordinates"
+                f"the scale has shape {self._scale.shape}, or no size, "
+                f"not one of {COORDINATES} coordinates"
             )
         self._face = layers_of(arrays, "face", CONDITION, 1)
         self._pair = layers_of(arrays, "pair", PAIR, POOLED)
-        self._velocity = layers_of(arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES)
+        self._velocity = layers_of(
+            arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES
+        )
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
-        """`count` poses, measured."""
+        """Draw `count` poses, measured."""
         conditions = condition(view)
         logits = dense(self._face, conditions)[:, 0].astype(float)
-        logits = np.where(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3)
+        logits = np.where(
+            view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3
+        )
         face = np.argmax(logits + rng.gumbel(size=(count, len(logits))), axis=1)
         known, around = conditions[face], surroundings(view)
         half = (view.region.size[:2] / 2).astype(np.float32) * self._scale[:2]
@@ -66,7 +76,7 @@ class Flow:
         around: NDArray[np.float32],
         half: NDArray[np.float32],
     ) -> NDArray[np.float32]:
-        """Of samples (n, 7) at times (n, 1), shape (n, 7).
+        """Compute the flow's velocity of samples (n, 7) at times (n, 1), shape (n, 7).
 
         Args:
             x: Coordinates in their scale.
@@ -83,7 +93,9 @@ class Flow:
 
 
 def settled_coordinates(coordinates: Array) -> Array:
-    """Heights and tilts that are within what physics leaves become none, as demonstrations have them."""
+    """Round heights and tilts that are within what physics leaves to none, as demonstrations have
+    them.
+    """
     coordinates[:, 2] = np.where(np.abs(coordinates[:, 2]) < LEVEL, 0.0, coordinates[:, 2])
     tilted = np.hypot(coordinates[:, 3], coordinates[:, 4]) >= FLAT
     coordinates[:, 3:5] *= tilted[:, None]
@@ -91,7 +103,9 @@ def settled_coordinates(coordinates: Array) -> Array:
 
 
 def condition(view: View) -> NDArray[np.float32]:
-    """What is known before a pose is, for each face that may be down, shape (f, CONDITION)."""
+    """Compute the condition, what is known before a pose is, for each face that may be down, shape
+    (f, CONDITION).
+    """
     turned = (view.form.vertices @ view.rotations.reshape(-1, 3).T).reshape(-1, len(view.faces), 3)
     extents = np.ptp(turned, axis=0)  # (f, 3)
     region = np.array([view.region.hollow, *np.minimum(view.region.size, 1.5)])
@@ -100,7 +114,9 @@ def condition(view: View) -> NDArray[np.float32]:
 
 
 def surroundings(view: View) -> NDArray[np.float32]:
-    """Centre x, y, half extents x, y, bottom and top of what is around, metres, shape (m, AROUND)."""
+    """Describe the surroundings: centre x, y, half extents x, y, bottom and top of what is around,
+    metres, shape (m, AROUND).
+    """
     around = view.obstacles
     if not around.count:
         return np.zeros((0, AROUND), np.float32)
@@ -110,7 +126,8 @@ def surroundings(view: View) -> NDArray[np.float32]:
 
 
 def pair_features(places: Any, known: Any, around: Any) -> tuple[Any, ...]:
-    """Of n samples and m things around, parts of shape (n, m, 2) or (n, m, 4), PAIR in all; numpy's arrays or torch's.
+    """Compute the features of n samples and m things around, parts of shape (n, m, 2) or (n, m, 4),
+    PAIR in all; numpy's arrays or torch's.
 
     Args:
         places: Where the samples are, x and y in the region's frame, shape (n, 2), metres.

@@ -1,4 +1,4 @@
-"""Training of the flow: rectified flow on the positive scenes' coordinates, and which face is down."""
+"""Training of the rectified flow on the positive scenes' coordinates, and which face is down."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NARROW = 0.02
 
 @dataclass(frozen=True)
 class Args:
-    """How the flow is trained.
+    """The flow's training options.
 
     Attributes:
         iterations: Batches.
@@ -39,7 +39,8 @@ class Args:
         rate: The largest learning rate; it rises and falls once.
         decay: Of the weights.
         hidden: Width of the velocity's layers.
-        average: Share of the running average of the weights that a step keeps; the average is what is used.
+        average: Share of the running average of the weights that a step keeps; the average is what
+            is used.
         seed: Of initial weights, batches and noise.
     """
 
@@ -59,24 +60,32 @@ class FlowNet(nn.Module):
         super().__init__()
         self.face = dense_layers([CONDITION, 32, 1])
         self.pair = dense_layers([PAIR, 32, POOLED])
-        self.velocity = dense_layers([COORDINATES + 1 + CONDITION + POOLED, hidden, hidden, COORDINATES])
+        self.velocity = dense_layers(
+            [COORDINATES + 1 + CONDITION + POOLED, hidden, hidden, COORDINATES]
+        )
 
     def forward(self, x: Tensor, time: Tensor, scenes: Scenes) -> Tensor:
-        """Velocities (n, 7) of samples (n, 7) at times (n, 1)."""
+        """Compute velocities (n, 7) of samples (n, 7) at times (n, 1)."""
         places = x[:, :2] * scenes.half
         pairs = torch.cat(pair_features(places, scenes.known, scenes.around), dim=2)
-        pooled = run_layers(self.pair, pairs).masked_fill(scenes.missing[..., None], -torch.inf).amax(dim=1)
+        pooled = (
+            run_layers(self.pair, pairs)
+            .masked_fill(scenes.missing[..., None], -torch.inf)
+            .amax(dim=1)
+        )
         pooled = torch.where(scenes.missing.all(dim=1, keepdim=True), 0.0, pooled)
         return run_layers(self.velocity, torch.cat([x, time, scenes.known, pooled], dim=1))
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
-        """The weights as `Flow` reads them."""
+        """Return the weights as `Flow` reads them."""
         return arrays_of(face=self.face, pair=self.pair, velocity=self.velocity)
 
 
 @dataclass(frozen=True, eq=False)
 class Scenes:
-    """Of n positive scenes: what is known, what is around (n, m, AROUND), what of it is missing, half sizes scaled."""
+    """A batch of n positive scenes: what is known, what is around (n, m, AROUND), what of it is
+    missing, half sizes scaled.
+    """
 
     known: Tensor
     around: Tensor
@@ -84,7 +93,7 @@ class Scenes:
     half: Tensor
 
     def take(self, rows: Tensor) -> Scenes:
-        """Some of them."""
+        """Select some of the scenes."""
         return Scenes(self.known[rows], self.around[rows], self.missing[rows], self.half[rows])
 
 
@@ -94,7 +103,7 @@ def train_flow(
     args: Args = Args(),
     progress: Callable[[int, int, float], None] = lambda step, steps, loss: None,
 ) -> dict[str, NDArray[np.float32]]:
-    """The arrays of a `Flow`.
+    """Train a flow by flow matching; return the arrays of a `Flow`.
 
     Args:
         chart: The coordinates.
@@ -113,11 +122,15 @@ def train_flow(
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
         net = FlowNet(args.hidden)
+
     average = {name: value.detach().clone() for name, value in net.named_parameters()}
     steps = min(args.iterations, max(1000, 4 * len(positive)))
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, args.rate, total_steps=steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, args.rate, total_steps=steps, pct_start=0.1
+    )
     total = 0.0
+
     for step in range(1, steps + 1):
         rows = torch.randint(len(data), (min(args.batch, len(data)),), generator=random)
         noise = torch.randn((len(rows), COORDINATES), generator=random)
@@ -134,16 +147,21 @@ def train_flow(
         with torch.no_grad():
             for name, value in net.named_parameters():
                 average[name].lerp_(value, 1 - keep)
+
         total += float(loss.detach())
         if step % max(1, steps // 20) == 0:
             progress(step, steps, total / max(1, steps // 20))
             total = 0.0
+
     net.load_state_dict(average)
     return {**net.arrays(), "scale": scale}
 
 
 def _scenes(
-    positive: Sequence[Measures], conditions: Sequence[NDArray[np.float32]], face: Tensor, scale: NDArray[np.float32]
+    positive: Sequence[Measures],
+    conditions: Sequence[NDArray[np.float32]],
+    face: Tensor,
+    scale: NDArray[np.float32],
 ) -> Scenes:
     known = np.stack([rows[row] for rows, row in zip(conditions, face.tolist(), strict=True)])
     around, missing = _padded([surroundings(one.view) for one in positive], AROUND)
@@ -152,9 +170,12 @@ def _scenes(
 
 
 def _padded(rows: Sequence[NDArray[Any]], width: int) -> tuple[Tensor, Tensor]:
-    """Shape (n, m, width), zero where there are fewer than m, and where that is, (n, m)."""
+    """Pad to shape (n, m, width), zero where there are fewer than m, and where that is, (n, m)."""
     most = max(1, max(len(row) for row in rows))
-    padded, missing = np.zeros((len(rows), most, width), np.float32), np.ones((len(rows), most), bool)
+    padded, missing = (
+        np.zeros((len(rows), most, width), np.float32),
+        np.ones((len(rows), most), bool),
+    )
     for index, row in enumerate(rows):
         padded[index, : len(row)], missing[index, : len(row)] = row, False
     return torch.tensor(padded), torch.tensor(missing)

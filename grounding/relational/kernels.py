@@ -1,6 +1,8 @@
-"""Compiled arithmetic of measures: for a few candidates numpy's calls would cost more than the numbers.
+"""Compiled arithmetic of measures: for a few candidates numpy's calls would cost more than the
+numbers.
 
-The signatures are spelled out, so that numba compiles at import and not within anyone's planning time.
+The signatures are spelled out, so that numba compiles at import and not within anyone's planning
+time.
 """
 
 from __future__ import annotations
@@ -13,16 +15,16 @@ _ROWS, _COLUMN = "float64[:,::1]", "float64[::1]"
 
 
 @njit(
-    f"void(float64[:,:,::1], {_ROWS}, {_ROWS}, {_ROWS}, {_COLUMN}, float64[:,:,::1], {_COLUMN}, {_COLUMN}, boolean,"
-    "float32[:,::1])",
+    f"void(float64[:,:,::1], {_ROWS}, {_ROWS}, {_ROWS}, {_COLUMN}, float64[:,:,::1], "
+    f"{_COLUMN}, {_COLUMN}, boolean, float32[:,::1])",
     cache=True,
 )
 def describe_poses(poses, low, high, centre, nearest, downs, steady, size, hollow, features):
-    """The features of `ranker.features` that are a pose's alone, into `features` (n, POSE).
+    """Compute the features of `ranker.features` that are a pose's alone, into `features` (n, POSE).
 
-    Args: T_region_body (n, 4, 4), the body's least and largest coordinates and its centre of mass (n, 3), the least
-    separation (n,), the matrix that turns the face down (n, 3, 3) and the tilt that it withstands (n,), the region's
-    size (3,) and whether it is hollow.
+    Args: T_region_body (n, 4, 4), the body's least and largest coordinates and its centre of mass
+    (n, 3), the least separation (n,), the matrix that turns the face down (n, 3, 3) and the tilt
+    that it withstands (n,), the region's size (3,) and whether it is hollow.
     """
     for n in range(len(poses)):
         x, y, z = poses[n, 2, 0], poses[n, 2, 1], poses[n, 2, 2]
@@ -53,11 +55,14 @@ def describe_poses(poses, low, high, centre, nearest, downs, steady, size, hollo
 
 
 @njit(
-    f"void({_ROWS}, {_ROWS}, {_ROWS}, {_COLUMN}, {_COLUMN}, UniTuple(float64, 4), float64, {_COLUMN})",
+    f"void({_ROWS}, {_ROWS}, {_ROWS}, {_COLUMN}, {_COLUMN}, "
+    f"UniTuple(float64, 4), float64, {_COLUMN})",
     cache=True,
 )
 def fall_short(low, high, centre, nearest, size, bounds, slack, missing):
-    """`Chart.shortfall` into `missing` (n,); bounds are those of sides, balance, ceiling and distance."""
+    """Compute `Chart.shortfall` into `missing` (n,); bounds are those of sides, balance, ceiling
+    and distance.
+    """
     for n in range(len(missing)):
         sides, balance = math.inf, math.inf
         for k in range(2):
@@ -65,6 +70,11 @@ def fall_short(low, high, centre, nearest, size, bounds, slack, missing):
             balance = min(balance, size[k] / 2 - abs(centre[n, k]))
         ceiling = min(size[2] - high[n, 2], 1.0)
         total = 0.0
-        for value, bound in ((sides, bounds[0]), (balance, bounds[1]), (ceiling, bounds[2]), (nearest[n], bounds[3])):
+        for value, bound in (
+            (sides, bounds[0]),
+            (balance, bounds[1]),
+            (ceiling, bounds[2]),
+            (nearest[n], bounds[3]),
+        ):
             total += max(bound - value - slack, 0.0)
         missing[n] = total

@@ -36,26 +36,28 @@ class View:
         self.faces = resting(self.form.unit)
         half, height = self.region.size[:2] / 2, min(float(self.region.size[2]), 1.0)
         self._room = np.array([[-half[0], -half[1], 0.0], [half[0], half[1], height]])
-        self.obstacles = Obstacles([*self._near(situation.others), *_walls(situation.support.form, situation.region)])
+        self.obstacles = Obstacles(
+            [*self._near(situation.others), *_walls(situation.support.form, situation.region)]
+        )
 
     @cached_property
     def size(self) -> Array:
-        """Logarithms of the body's extents, sorted, shape (3,)."""
+        """Return the logarithms of the body's extents, sorted, shape (3,)."""
         low, high = self.form.corners
         return np.sort(np.log(high - low))
 
     @property
     def rotations(self) -> Array:
-        """What turns the body's faces down, shape (f, 3, 3)."""
+        """Return the rotations that turn the body's faces down, shape (f, 3, 3)."""
         return self.faces.rotations
 
     @property
     def steadiness(self) -> Array:
-        """The tilt that each face withstands, radians, shape (f,)."""
+        """Return the tilt that each face withstands, radians, shape (f,)."""
         return self.faces.steadiness
 
     def measure(self, poses: Array) -> Measures:
-        """Poses T_region_body, shape (n, 4, 4), measured."""
+        """Measure poses T_region_body, shape (n, 4, 4)."""
         return Measures(self, poses)
 
     def _near(self, others: Sequence[Placed]) -> list[Placed]:
@@ -67,28 +69,36 @@ class View:
         reach = REACH + np.array([other.form.radius for other in others])
         near = (away * away).sum(axis=1) < reach * reach
         return [
-            Placed(other.form, matrix) for other, matrix, is_near in zip(others, matrices, near, strict=True) if is_near
+            Placed(other.form, matrix)
+            for other, matrix, is_near in zip(others, matrices, near, strict=True)
+            if is_near
         ]
 
 
 @lru_cache(maxsize=256)
 def _walls(support: Form, region: Region) -> tuple[Placed, ...]:
-    """The support's parts that rise above the region's plane, in the region's frame."""
+    """Return the support's parts that rise above the region's plane, in the region's frame."""
     matrix = inverse(region.matrix)
     boxes = support.piece_boxes
-    tops = boxes.mean(axis=1) @ matrix[2, :3] + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2 + matrix[2, 3]
+    tops = (
+        boxes.mean(axis=1) @ matrix[2, :3]
+        + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2
+        + matrix[2, 3]
+    )
     return tuple(Placed(support.pieces[index], matrix) for index in np.flatnonzero(tops > WALL))
 
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """What the poses have to do with the region; metres and radians, first axis n."""
+    """The measures of poses in a region's frame; metres and radians, first axis n."""
 
     view: View
     poses: Array
 
     def moved(self, positions: Array) -> Measures:
-        """The same rotations, the body's origin at `positions`, shape (n, 3); what is known is not worked out again."""
+        """Move the body's origin to `positions`, shape (n, 3), the same rotations; what is known is
+        not worked out again.
+        """
         poses = self.poses.copy()
         poses[:, :3, 3] = positions
         moved = Measures(self.view, poses)
@@ -98,73 +108,85 @@ class Measures:
 
     @cached_property
     def turned(self) -> tuple[Array, Array, Array]:
-        """Least and largest coordinates and centre of mass of the body turned about its origin, each (n, 3)."""
+        """Rotate the body about its origin: least and largest coordinates and centre of mass, each
+        (n, 3).
+        """
         rotations, form = self.poses[:, :3, :3], self.view.form
-        points = (form.vertices @ rotations.reshape(-1, 3).T).reshape(-1, len(rotations), 3)  # (v, n, 3)
+        points = (form.vertices @ rotations.reshape(-1, 3).T).reshape(
+            -1, len(rotations), 3
+        )  # (v, n, 3)
         return points.min(axis=0), points.max(axis=0), rotations @ form.centre_of_mass
 
     @cached_property
     def low(self) -> Array:
-        """The least coordinates, shape (n, 3)."""
+        """Return the least coordinates, shape (n, 3)."""
         return self.turned[0] + self.poses[:, :3, 3]
 
     @cached_property
     def high(self) -> Array:
-        """The largest coordinates, shape (n, 3)."""
+        """Return the largest coordinates, shape (n, 3)."""
         return self.turned[1] + self.poses[:, :3, 3]
 
     @cached_property
     def centre(self) -> Array:
-        """The centre of mass, shape (n, 3)."""
+        """Return the centre of mass, shape (n, 3)."""
         return self.turned[2] + self.poses[:, :3, 3]
 
     @cached_property
     def face(self) -> NDArray[np.intp]:
-        """The face that is nearest to being down, shape (n,)."""
+        """Return the face that is nearest to being down, shape (n,)."""
         downs = -self.view.rotations[:, 2]
         return np.argmax(-self.poses[:, 2, :3] @ downs.T, axis=1)
 
     @cached_property
     def tilt(self) -> Array:
-        """Where up points in the turned frame of that face, x and y: two sines, shape (n, 2)."""
+        """Return the tilt: where up points in the turned frame of that face, x and y: two sines,
+        shape (n, 2).
+        """
         return np.einsum("nj,nkj->nk", self.poses[:, 2, :3], self.view.rotations[self.face])[:, :2]
 
     @cached_property
     def yaw(self) -> Array:
-        """The turn about the vertical beside the tilt, shape (n,)."""
+        """Return the yaw, the turn about the vertical beside the tilt, shape (n,)."""
         turned = self.poses[:, :3, :3] @ self.view.rotations[self.face].transpose(0, 2, 1)
         turned = turned @ upright(self.tilt).transpose(0, 2, 1)
         return np.arctan2(turned[:, 1, 0], turned[:, 0, 0])
 
     @cached_property
     def sides(self) -> Array:
-        """The least room left between the body and the rectangle's sides, negative when it sticks out; x, y: (n, 2)."""
+        """Return the least room left between the body and the rectangle's sides, negative when it
+        sticks out; x, y: (n, 2).
+        """
         half = self.view.region.size[:2] / 2
         return half - np.maximum(np.abs(self.low[:, :2]), np.abs(self.high[:, :2]))
 
     @cached_property
     def balance(self) -> Array:
-        """The same for the centre of mass, shape (n, 2)."""
+        """Return the least room between the centre of mass and the rectangle's sides, shape (n,
+        2).
+        """
         return self.view.region.size[:2] / 2 - np.abs(self.centre[:, :2])
 
     @cached_property
     def ceiling(self) -> Array:
-        """Room above the body, at most a metre, shape (n,)."""
+        """Return the room above the body, at most a metre, shape (n,)."""
         return np.minimum(self.view.region.size[2] - self.high[:, 2], 1.0)
 
     @cached_property
     def apart(self) -> Array:
-        """Separations from the m bodies around and the support's walls, shape (n, m)."""
+        """Return separations from the m bodies around and the support's walls, shape (n, m)."""
         return separations(self.view.form, self.poses, self.view.obstacles)
 
     @cached_property
     def nearest(self) -> Array:
-        """The least of them, at most REACH, shape (n,)."""
+        """Return the least separation, at most REACH, shape (n,)."""
         return self.apart.min(axis=1, initial=REACH)
 
 
 def upright(tilt: Array) -> Array:
-    """The smallest rotations that turn a tilted up to up: shape (n, 2) of sines to (n, 3, 3)."""
+    """Compute the smallest rotations that turn a tilted up to up: shape (n, 2) of sines to (n, 3,
+    3).
+    """
     a, b = tilt[:, 0], tilt[:, 1]
     c = np.sqrt(np.maximum(1.0 - a * a - b * b, 0.0))
     k = 1.0 / (1.0 + c)
@@ -176,7 +198,7 @@ def upright(tilt: Array) -> Array:
 
 
 def turns(cosine: Array, sine: Array) -> Array:
-    """Rotations about z, shape (n,) to (n, 3, 3)."""
+    """Compute rotations about z, shape (n,) to (n, 3, 3)."""
     result = np.zeros((len(cosine), 3, 3))
     result[:, 0, 0] = result[:, 1, 1] = cosine
     result[:, 0, 1], result[:, 1, 0] = -sine, sine
@@ -191,7 +213,8 @@ class Resting:
     Attributes:
         rotations: What turns each down, shape (f, 3, 3).
         steadiness: The tilt that each withstands, radians, shape (f,).
-        descriptors: What distinguishes them: steadiness, height and width against the others', shape (f, 4).
+        descriptors: What distinguishes them: steadiness, height and width against the others',
+            shape (f, 4).
     """
 
     rotations: Array
@@ -204,7 +227,7 @@ class Resting:
 
 @lru_cache(maxsize=1024)
 def resting(form: Form) -> Resting:
-    """Of a form of scale 1."""
+    """Return the stable faces of a form of scale 1."""
     if not form.faces:
         return Resting(np.zeros((0, 3, 3)), np.zeros(0), np.zeros((0, 4)))
     extent = np.array([face.extent for face in form.faces])
@@ -214,14 +237,19 @@ def resting(form: Form) -> Resting:
         np.stack([face.rotation for face in form.faces]),
         angle,
         np.stack(
-            [angle, angle - angle.max(), np.log(extent / extent.min()), np.log(extent / np.maximum(width, 1e-3))],
+            [
+                angle,
+                angle - angle.max(),
+                np.log(extent / extent.min()),
+                np.log(extent / np.maximum(width, 1e-3)),
+            ],
             axis=1,
         ),
     )
 
 
 def inverse(matrix: Array) -> Array:
-    """Of a rigid transform, shape (4, 4)."""
+    """Invert a rigid transform, shape (4, 4)."""
     result = np.eye(4)
     result[:3, :3] = matrix[:3, :3].T
     result[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]

@@ -1,4 +1,6 @@
-"""A relational grounding: demonstrations or a flow propose, what all demonstrations keep filters, the ranker orders."""
+"""A relational grounding: demonstrations or a flow propose, what all demonstrations keep filters,
+the ranker orders.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +25,17 @@ BEST_OF = 16
 """Candidates of which the best is returned."""
 
 ROUNDS = 5
-"""How often more candidates are drawn, of one pose twice as many each time, when too few keep what all have kept."""
+"""How often more candidates are drawn, of one pose twice as many each time, when too few keep what
+all have kept.
+"""
 
 
 class RelationalModel:
     """A trained grounding in relational coordinates; numpy only.
 
     Args:
-        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations), or `flow.*`, and `rank.*`; the card's
-            `chart`, `ranks` and `classifies`.
+        weights: Arrays `coordinates`, `faces`, `sizes` (the demonstrations), or `flow.*`, and
+            `rank.*`; the card's `chart`, `ranks` and `classifies`.
 
     Raises:
         KeyError: Something is missing.
@@ -45,13 +49,17 @@ class RelationalModel:
         self.chart = Chart.from_card(weights.card["chart"])
         flow, ranks = _named(arrays, "flow."), _named(arrays, "rank.")
         self.proposals: Transfer | Flow = (
-            Flow(self.chart, flow) if flow else Transfer(self.chart, *(arrays[name] for name in DEMONSTRATIONS))
+            Flow(self.chart, flow)
+            if flow
+            else Transfer(self.chart, *(arrays[name] for name in DEMONSTRATIONS))
         )
         self.ranker = Ranker(ranks) if ranks else None
         self._ranks, self._classifies = bool(self.card["ranks"]), bool(self.card["classifies"])
 
     def propose(self, situation: Situation, count: int, rng: Random) -> Array:
-        """At most `count` poses T_world_body, the best first; none for a body that rests on no face."""
+        """Propose at most `count` poses T_world_body, the best first; none for a body that rests on
+        no face.
+        """
         view = View(situation)
         if not len(view.faces):
             return np.zeros((0, 4, 4))
@@ -66,7 +74,9 @@ class RelationalModel:
         return view.T_world_region @ poses[best]
 
     def classify(self, situation: Situation, poses: Array) -> NDArray[np.float64]:
-        """The probability that the relation holds with the body at each pose T_world_body, shape (n,)."""
+        """Return the probability that the relation holds with the body at each pose T_world_body,
+        shape (n,).
+        """
         view = View(situation)
         if not len(view.faces) or not len(poses):
             return np.zeros(len(poses))
@@ -86,7 +96,9 @@ class RelationalModel:
 
 
 STEADY, CLEAR, OVERHANG, SURE = 0.35, 0.01, 0.04, 4.0
-"""A tilt withstood (radians), a distance, an overhang (metres) and a logit beyond which more makes no difference."""
+"""A tilt withstood (radians), a distance, an overhang (metres) and a logit beyond which more makes
+no difference.
+"""
 
 HOPELESS = -1e3
 """The score below which a pose misses what all demonstrations keep."""
@@ -102,13 +114,22 @@ def relational_weights(
     rank: Mapping[str, NDArray[Any]],
     card: Mapping[str, Any],
 ) -> Weights:
-    """What `RelationalModel` is made of; the proposals are demonstrations or the arrays of a `Flow`."""
+    """Assemble the weights of a `RelationalModel`; the proposals are demonstrations or the arrays
+    of a `Flow`.
+    """
     if isinstance(proposals, Transfer):
         arrays = {name: np.asarray(getattr(proposals, name), np.float32) for name in DEMONSTRATIONS}
     else:
         arrays = {f"flow.{name}": array for name, array in proposals.items()}
-    return Weights({**arrays, **{f"rank.{name}": array for name, array in rank.items()}}, {**card, "chart": chart.card})
+    return Weights(
+        {**arrays, **{f"rank.{name}": array for name, array in rank.items()}},
+        {**card, "chart": chart.card},
+    )
 
 
 def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+    return {
+        name.removeprefix(prefix): array
+        for name, array in arrays.items()
+        if name.startswith(prefix)
+    }

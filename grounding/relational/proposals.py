@@ -1,4 +1,6 @@
-"""`transfer`: a demonstration with a body of a similar shape, moved to this scene; no generator has to be trained."""
+"""`transfer`: a demonstration with a body of a similar shape, moved to this scene; no generator has
+to be trained.
+"""
 
 from __future__ import annotations
 
@@ -47,26 +49,32 @@ class Transfer:
 
     @classmethod
     def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
-        """From encoded demonstrations."""
-        columns = zip(*((one.coordinates, one.face, one.size) for one in demonstrations), strict=True)
+        """Build the transfer from encoded demonstrations."""
+        columns = zip(
+            *((one.coordinates, one.face, one.size) for one in demonstrations), strict=True
+        )
         return cls(chart, *(np.stack(column) for column in columns))
 
     def draw(self, view: View, count: int, rng: Random) -> Measures:
-        """`count` poses, measured."""
+        """Draw `count` poses, measured."""
         faces, coordinates = self.choose(view, count, rng)
         return self.chart.decode(view, faces, coordinates)
 
     def choose(self, view: View, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
-        """Faces (n,) and coordinates (n, 7) taken from demonstrations."""
+        """Choose faces (n,) and coordinates (n, 7) from demonstrations."""
         weights = _weights(self, tuple(view.size.tolist()))
         chosen = np.searchsorted(weights, rng.random(count) * weights[-1], side="right")
         chosen = np.minimum(chosen, len(weights) - 1)
-        steady = np.flatnonzero(view.steadiness >= min(self.chart.steadiness, view.steadiness.max()))
+        steady = np.flatnonzero(
+            view.steadiness >= min(self.chart.steadiness, view.steadiness.max())
+        )
         apart = self.faces[chosen][:, None] - view.faces.descriptors[steady]  # (n, f, 4)
         likely = -ALIKE * np.einsum("nfk,nfk->nf", apart, apart)
         faces = steady[np.argmax(likely + rng.gumbel(size=likely.shape), axis=1)]
         coordinates = self.coordinates[chosen]
-        share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(size=(count, 2))
+        share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(
+            size=(count, 2)
+        )
         coordinates[:, :2] = 1.0 - np.abs(np.mod(share - 1.0, 4.0) - 2.0)  # reflected into [-1, 1]
         yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5]) + rng.normal(scale=0.5, size=count)
         coordinates[:, 5], coordinates[:, 6] = np.cos(yaw), np.sin(yaw)
@@ -75,7 +83,9 @@ class Transfer:
 
 @lru_cache(maxsize=256)
 def _weights(transfer: Transfer, size: tuple[float, float, float]) -> Array:
-    """The demonstrations' weights for a body of these logarithms of extents, summed up, shape (n,)."""
+    """Compute the demonstrations' weights for a body of these logarithms of extents, summed up,
+    shape (n,).
+    """
     apart = transfer.sizes - np.array(size)
     logits = -SIMILAR * np.einsum("nk,nk->n", apart, apart)
     return np.cumsum(np.exp(logits - logits.max()))

@@ -1,4 +1,6 @@
-"""The relational classifier: how a pose fits its region, and by max pooling what around it is most in the way."""
+"""The relational classifier: how a pose fits its region, and by max pooling what around it is most
+in the way.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +30,18 @@ class Ranker:
         self._main = layers_of(arrays, "main", POSE + self._pair[-1][0].shape[1], 1)
 
     def logits(self, measured: Measures) -> NDArray[Any]:
-        """Shape (n,): the larger, the likelier that the relation holds."""
+        """Compute the ranker's logits, shape (n,): the larger, the likelier that the relation
+        holds.
+        """
         pose, pair = features(measured)
         pooled = dense(self._pair, pair).max(axis=1)
         return dense(self._main, np.concatenate([pose, pooled], axis=1))[:, 0]
 
 
 def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Of poses, shape (n, POSE), and of pairs with what is around, (n, at least 1, PAIR)."""
+    """Compute the features of poses, shape (n, POSE), and of pairs with what is around, (n, at
+    least 1, PAIR).
+    """
     view, face = measured.view, measured.face
     pose = np.empty((len(face), POSE), np.float32)
     describe_poses(
@@ -46,7 +52,9 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     if not around.count:
         return pose, np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
     apart = np.minimum(measured.apart, REACH).astype(np.float32)
-    over = np.maximum(measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:])
+    over = np.maximum(
+        measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:]
+    )
     over = over.astype(np.float32)
     pair = np.empty((*apart.shape, PAIR), np.float32)
     for row, lengths in enumerate((8 * apart, 100 * apart, 8 * over, 100 * over)):

@@ -1,4 +1,6 @@
-"""Training of the relational ranker: cross entropy on labelled scenes, the best of a validation split."""
+"""Training of the relational ranker: cross entropy on labelled scenes, the best of a validation
+split.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 @dataclass(frozen=True)
 class Args:
-    """How the ranker is trained.
+    """The ranker's training options.
 
     Attributes:
         iterations: Batches.
@@ -49,12 +51,14 @@ class RankerNet(nn.Module):
         self.main = dense_layers([POSE + pooled, hidden, hidden, 1])
 
     def forward(self, pose: Tensor, pair: Tensor, missing: Tensor) -> Tensor:
-        """Logits (n,) of poses (n, POSE), pairs (n, m, PAIR), and which of them are not there (n, m)."""
+        """Compute logits (n,) of poses (n, POSE), pairs (n, m, PAIR), and which of them are not
+        there (n, m).
+        """
         pooled = run_layers(self.pair, pair).masked_fill(missing[..., None], -torch.inf).amax(dim=1)
         return run_layers(self.main, torch.cat([pose, pooled], dim=1))[:, 0]
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
-        """The weights as `layers_of` reads them."""
+        """Return the weights as `layers_of` reads them."""
         return arrays_of(pair=self.pair, main=self.main)
 
 
@@ -64,7 +68,7 @@ def train_ranker(
     args: Args = Args(),
     progress: Callable[[int, int, float], None] = lambda step, steps, accuracy: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
-    """Weights, and their accuracy on the validation split.
+    """Train the ranker; return its weights, and their accuracy on the validation split.
 
     Args:
         measured: Scenes, one pose each.
@@ -81,13 +85,21 @@ def train_ranker(
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
         net = RankerNet(args.hidden, args.pooled)
+
     optimizer = torch.optim.AdamW(net.parameters(), lr=args.rate, weight_decay=args.decay)
     steps = min(args.iterations, max(600, 2 * len(labels)))
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, args.rate, total_steps=steps, pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(
+        optimizer, args.rate, total_steps=steps, pct_start=0.1
+    )
     best, kept = -1.0, net.arrays()
+
     for step in range(1, steps + 1):
-        rows = chosen[torch.randint(len(chosen), (min(args.batch, len(chosen)),), generator=generator)]
-        loss = nn.functional.binary_cross_entropy_with_logits(net(pose[rows], pair[rows], missing[rows]), labels[rows])
+        rows = chosen[
+            torch.randint(len(chosen), (min(args.batch, len(chosen)),), generator=generator)
+        ]
+        loss = nn.functional.binary_cross_entropy_with_logits(
+            net(pose[rows], pair[rows], missing[rows]), labels[rows]
+        )
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
@@ -99,6 +111,7 @@ def train_ranker(
             if accuracy >= best:
                 best, kept = accuracy, net.arrays()
             progress(step, steps, accuracy)
+
     return kept, best
 
 
@@ -108,4 +121,8 @@ def _table(rows: Sequence[tuple[NDArray[Any], NDArray[Any]]]) -> tuple[Tensor, T
     missing = np.ones((len(rows), most), dtype=bool)
     for row, (_, pair) in enumerate(rows):
         pairs[row, : pair.shape[1]], missing[row, : pair.shape[1]] = pair[0], False
-    return torch.tensor(np.concatenate([pose for pose, _ in rows])), torch.tensor(pairs), torch.tensor(missing)
+    return (
+        torch.tensor(np.concatenate([pose for pose, _ in rows])),
+        torch.tensor(pairs),
+        torch.tensor(missing),
+    )

@@ -33,13 +33,14 @@ class Case:
 
     Attributes:
         problem: A shipped problem's name, or a path.
-        sampler: As the user wrote it: NAME, NAME:alone, NAME:mixed, or on=NAME,inside=NAME, or "default"; behind the
-            name of a file stands which one it was: on=mine.py#3f2a9c1b.
+        sampler: As the user wrote it: NAME, NAME:alone, NAME:mixed, or on=NAME,inside=NAME, or
+            "default"; behind the name of a file stands which one it was: on=mine.py#3f2a9c1b.
         seed: Of all randomness; runs of one seed are compared in pairs.
         time: The budget in seconds.
         algorithm: The planner's.
         samplers: Relation to sampler, as `tamp-solve --sampler` takes it.
-        sources: Python files that serve relations, and what stands in them: all runs have the same, wherever they run.
+        sources: Python files that serve relations, and what stands in them: all runs have the same,
+            wherever they run.
     """
 
     problem: str
@@ -52,14 +53,14 @@ class Case:
 
     @property
     def config(self) -> dict[str, Any]:
-        """All that tells it from another run, for the record."""
+        """Return the configuration that tells it from another run, for the record."""
         entries = {**asdict(self), "samplers": dict(self.samplers)}
         del entries["sources"]
         return entries
 
 
 def key(config: Mapping[str, Any]) -> tuple[Any, ...]:
-    """What makes two runs the same one."""
+    """Return the key that makes two runs the same one."""
     return tuple(config[name] for name in IDENTITY)
 
 
@@ -71,7 +72,7 @@ def cases(
     algorithm: str = "adaptive",
     sources: Mapping[str, str] | None = None,
 ) -> list[Case]:
-    """All runs of a benchmark, seed by seed, so that an early look is a fair one.
+    """Return all runs of a benchmark, seed by seed, so that an early look is a fair one.
 
     Args:
         problems: As `named` returns them.
@@ -82,7 +83,15 @@ def cases(
         sources: What stands in the Python files among the samplers, by name.
     """
     return [
-        Case(problem, sampler, seed, time, algorithm, tuple(sorted(chosen.items())), _used(chosen, sources or {}))
+        Case(
+            problem,
+            sampler,
+            seed,
+            time,
+            algorithm,
+            tuple(sorted(chosen.items())),
+            _used(chosen, sources or {}),
+        )
         for seed in seeds
         for problem in dict.fromkeys(problems)
         for sampler, chosen in samplers.items()
@@ -95,7 +104,8 @@ def _used(chosen: Mapping[str, str], sources: Mapping[str, str]) -> tuple[tuple[
 
 
 def named(problem: str) -> str:
-    """The shipped problem's name, or the whole path of a user's own: one name from wherever it is asked for.
+    """Return the shipped problem's name, or the whole path of a user's own: one name from wherever
+    it is asked for.
 
     Raises:
         InputError: There is none, with the choices.
@@ -105,7 +115,7 @@ def named(problem: str) -> str:
 
 
 def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, str]]:
-    """How the results name a sampler, and what stands in its Python files.
+    """Return how the results name a sampler, and what stands in its Python files.
 
     A file is named with the beginning of its hash: when it is changed, it is another sampler.
 
@@ -119,7 +129,14 @@ def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, st
     label, sources = sampler, dict[str, str]()
     for _, text in _pairs(sampler) if "=" in sampler else ():
         name = parted(text)[0]
-        file = next((parted(one)[0] for one in chosen.values() if Path(parted(one)[0]) == Path(name).resolve()), None)
+        file = next(
+            (
+                parted(one)[0]
+                for one in chosen.values()
+                if Path(parted(one)[0]) == Path(name).resolve()
+            ),
+            None,
+        )
         if file is None:
             continue
         content = read_bytes(Path(file), MOST_BYTES)
@@ -130,7 +147,7 @@ def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, st
 
 
 def _pairs(sampler: str) -> list[tuple[str, str]]:
-    """RELATION=NAME,RELATION=NAME as pairs; a file's name may have a comma."""
+    """Parse RELATION=NAME,RELATION=NAME as pairs; a file's name may have a comma."""
     parts = (pair.partition("=") for pair in re.split(r",(?=[^,=]+=)", sampler))
     pairs = [(relation, name) for relation, _, name in parts]
     for relation, count in Counter(relation for relation, _ in pairs).items():
@@ -140,7 +157,7 @@ def _pairs(sampler: str) -> list[tuple[str, str]]:
 
 
 def relations(sampler: str, known: Registry) -> dict[str, str]:
-    """The sampler by relation: a bare name serves every relation that has one of this name.
+    """Return the sampler by relation: a bare name serves every relation that has one of this name.
 
     Args:
         sampler: As in `Case`.
@@ -163,14 +180,23 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
             maker(relation, choice, known)()
             served[relation] = choice.text
         return served
+
     name = sampler.partition(":")[0]
     able = [relation for relation in known if name in known[relation]]
     if not able:
-        names = dict.fromkeys(name for other, makers in known.items() if other != ANY for name in makers)
-        remedy = f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""
-        raise InputError(f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names), remedy=remedy)
+        names = dict.fromkeys(
+            name for other, makers in known.items() if other != ANY for name in makers
+        )
+        remedy = (
+            f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""
+        )
+        raise InputError(
+            f"unknown sampler '{name}'", found=name, choices=(DEFAULT, *names), remedy=remedy
+        )
+
     made: dict[str, str] = {}
     missing: list[InputError] = []
+
     for relation in able:
         choice = parse_choice(relation, sampler, known)
         try:
@@ -178,6 +204,7 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
             made[relation] = choice.text
         except InputError as error:
             missing.append(error)
+
     if not made:
         raise missing[0]
     return made

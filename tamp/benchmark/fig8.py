@@ -9,14 +9,28 @@ from tamp.errors import InputError
 from tamp.geometric.samplers.choice import Registry
 
 FIG8 = (
-    "uniform", "uniform+mlp:alone", "uniform+gnn:alone", "tree-bb:alone", "tree-pc:alone", "mlp-bb:alone",
-    "gnn-bb:alone", "mlp-pc:alone", "gnn-pc:alone", "surface", "transfer", "flow",
-)  # fmt: skip
-"""Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed with it as usual."""
+    "uniform",
+    "uniform+mlp:alone",
+    "uniform+gnn:alone",
+    "tree-bb:alone",
+    "tree-pc:alone",
+    "mlp-bb:alone",
+    "gnn-bb:alone",
+    "mlp-pc:alone",
+    "gnn-pc:alone",
+    "surface",
+    "transfer",
+    "flow",
+)
+"""Uniform and the paper's learned ones, each alone as in the paper; the hand-made one; ours, mixed
+with it as usual.
+"""
 
 
-def chosen(samplers: Sequence[str], known: Registry) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
-    """What of the samplers can be run, by relation, and why the others cannot.
+def chosen(
+    samplers: Sequence[str], known: Registry
+) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
+    """Choose the samplers that can be run, by relation, and say why the others cannot.
 
     Args:
         samplers: As in `Case`.

@@ -1,4 +1,6 @@
-"""A line of a benchmark's results: read, and each of its fields looked at, before any table is made of it."""
+"""A line of a benchmark's results: read, and each of its fields looked at, before any table is made
+of it.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ def read_line(text: bytes, path: Path, number: int) -> Line:
         number: Of the line, from 1.
 
     Raises:
-        InputError: It is no result of tamp-bench, with the file, the line, and the field that is wrong.
+        InputError: It is no result of tamp-bench, with the file, the line, and the field that is
+            wrong.
     """
     try:
         line = parse_json(text.decode("utf-8"), kind="result")
@@ -62,19 +65,26 @@ def _check(line: Line) -> None:
         raise InputError(f"'outcome' is {_shown(line['outcome'])} of a run that is solved")
 
 
-def _check_fields(entries: Mapping[str, Any], fields: Mapping[str, tuple[str, Callable[[Any], bool]]], at: str) -> None:
+def _check_fields(
+    entries: Mapping[str, Any], fields: Mapping[str, tuple[str, Callable[[Any], bool]]], at: str
+) -> None:
     for name, (wanted, fits) in fields.items():
         if name in entries and not fits(entries[name]):
             raise InputError(f"'{at}{name}' is {_shown(entries[name])}, not {wanted}")
 
 
 def _word(value: Any) -> bool:
-    """A word that a table may show."""
+    """Check that a word may stand in a table."""
     return isinstance(value, str) and 0 < len(value) <= 4096 and value.isprintable()
 
 
 def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) and value <= LARGEST
+    return (
+        isinstance(value, int | float)
+        and not isinstance(value, bool)
+        and math.isfinite(value)
+        and value <= LARGEST
+    )
 
 
 def _amount(value: Any) -> bool:
@@ -94,16 +104,22 @@ def _texts(value: Any) -> bool:
 
 
 def _words(value: Any) -> bool:
-    return isinstance(value, dict) and all(_word(name) and _word(one) for name, one in value.items())
+    return isinstance(value, dict) and all(
+        _word(name) and _word(one) for name, one in value.items()
+    )
 
 
 def _amounts(value: Any) -> bool:
-    return isinstance(value, dict) and all(_word(name) and _amount(one) for name, one in value.items())
+    return isinstance(value, dict) and all(
+        _word(name) and _amount(one) for name, one in value.items()
+    )
 
 
 def _machine(value: Any) -> bool:
     return (
-        isinstance(value, dict) and _word(value.get("cpu")) and (value.get("cores") is None or _count(value["cores"]))
+        isinstance(value, dict)
+        and _word(value.get("cpu"))
+        and (value.get("cores") is None or _count(value["cores"]))
     )
 
 
@@ -142,7 +158,10 @@ FIELDS: Mapping[str, tuple[str, Callable[[Any], bool]]] = {
     "outcome": ("a word", _word),
     "solved": ("true or false", lambda value: isinstance(value, bool)),
     "verified": ("true, false or null", _or_none(lambda value: isinstance(value, bool))),
-    **{name: ("a time in seconds", _amount) for name in ("planning_s", "load_s", "cpu_s", "verify_s")},
+    **{
+        name: ("a time in seconds", _amount)
+        for name in ("planning_s", "load_s", "cpu_s", "verify_s")
+    },
     "motion_s": ("a time in seconds", _or_none(_amount)),
     "cost": ("a number", _or_none(_number)),
     "actions": ("a count", _count),

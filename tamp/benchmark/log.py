@@ -30,10 +30,11 @@ MOST_BYTES = 100_000_000
 
 
 def read_log(path: Path) -> list[Line]:
-    """All results of a file, the oldest first. A last line that was cut off is left out.
+    """Read all results of a file, the oldest first. A last line that was cut off is left out.
 
     Raises:
-        InputError: It cannot be read, a line of it is no result, or there are none, or some of several settings.
+        InputError: It cannot be read, a line of it is no result, or there are none, or some of
+            several settings.
     """
     lines = _lines(path, _whole(path))
     if not lines:
@@ -46,11 +47,12 @@ class Log:
     """A file of results that is added to, by one process at a time.
 
     Args:
-        path: JSON lines; made if need be. A last line that was cut off, as by a machine that went down, is removed, and
-            its run done again.
+        path: JSON lines; made if need be. A last line that was cut off, as by a machine that went
+            down, is removed, and its run done again.
 
     Raises:
-        InputError: It cannot be read or written, another process adds to it, or it holds something else.
+        InputError: It cannot be read or written, another process adds to it, or it holds something
+            else.
     """
 
     def __init__(self, path: Path) -> None:
@@ -62,7 +64,10 @@ class Log:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._stream = path.open("ab", buffering=0)
         except OSError as error:
-            raise InputError(f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE) from None
+            raise InputError(
+                f"the results cannot be written: {error.strerror}", file=path, remedy=ELSEWHERE
+            ) from None
+
         try:
             self._lock()
             whole = _whole(path)
@@ -72,13 +77,17 @@ class Log:
         except BaseException:
             self._close()
             raise
+
         self._known = {key(line["config"]) for line in self.lines}
 
     def __enter__(self) -> Log:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self._close()
 
@@ -95,7 +104,7 @@ class Log:
         _check(self.path, self.lines, time, algorithm, ELSEWHERE)
 
     def missing(self, cases: list[Case]) -> list[Case]:
-        """The runs that are not among the results, each once."""
+        """Return the runs that are not among the results, each once."""
         wanted = {key(case.config): case for case in cases}
         return [case for identity, case in wanted.items() if identity not in self._known]
 
@@ -112,7 +121,9 @@ class Log:
             with contextlib.suppress(OSError):  # no half a line
                 self._stream.truncate(size)
             what = f"the results cannot be written: {error.strerror}"
-            raise InputError(what, file=self.path, remedy="The same command goes on where this one was") from None
+            raise InputError(
+                what, file=self.path, remedy="The same command goes on where this one was"
+            ) from None
         self.lines.append(plain)
         self._known.add(key(plain["config"]))
 
@@ -126,7 +137,9 @@ class Log:
             fcntl.flock(self._stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             what = "another process is adding to these results"
-            raise InputError(what, file=self.path, remedy=f"Wait for it, or n{ELSEWHERE[1:]}") from None
+            raise InputError(
+                what, file=self.path, remedy=f"Wait for it, or n{ELSEWHERE[1:]}"
+            ) from None
 
 
 def _check(path: Path, lines: list[Line], time: float, algorithm: str, remedy: str = "") -> None:
@@ -143,13 +156,17 @@ def _settings(line: Line) -> tuple[float, str]:
 
 
 def _check_own(path: Path) -> None:
-    """Refuse to add to, or to mend, what tamp-bench has not written; whole lines are looked at when they are read.
+    """Refuse to add to, or to mend, what tamp-bench has not written; whole lines are looked at when
+    they are read.
 
     Raises:
-        InputError: It is no regular file, or its only line, which may have been cut off, begins as none of ours.
+        InputError: It is no regular file, or its only line, which may have been cut off, begins as
+            none of ours.
     """
     if not os.path.isfile(path):
-        raise InputError("the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE)
+        raise InputError(
+            "the results cannot be written: it is no regular file", file=path, remedy=ELSEWHERE
+        )
     with path.open("rb") as stream:
         head = stream.read(LONGEST_LINE)
     if b"\n" not in head and head[: len(BEGINNING)] != BEGINNING[: len(head)]:
@@ -157,17 +174,20 @@ def _check_own(path: Path) -> None:
 
 
 def _whole(path: Path) -> bytes:
-    """The file up to the end of its last whole line."""
+    """Read the file up to the end of its last whole line."""
     content = read_bytes(path, MOST_BYTES, kind="file of results")
     return content[: content.rfind(b"\n") + 1]
 
 
 def _lines(path: Path, whole: bytes) -> list[Line]:
-    return [read_line(line, path, number) for number, line in enumerate(whole.split(b"\n")[:-1], start=1)]
+    return [
+        read_line(line, path, number)
+        for number, line in enumerate(whole.split(b"\n")[:-1], start=1)
+    ]
 
 
 def _plain(value: Any) -> Any:
-    """JSON knows no infinities."""
+    """Replace infinities, which JSON does not know."""
     if isinstance(value, dict):
         return {str(name): _plain(inner) for name, inner in value.items()}
     if isinstance(value, list | tuple):

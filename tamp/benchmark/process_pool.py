@@ -62,7 +62,7 @@ class Processes:
             worker.pipe.send(case)
 
     def finished(self) -> list[Ended]:
-        """Runs that have ended since; waits for a fifth of a second at most.
+        """Return runs that have ended since; waits for a fifth of a second at most.
 
         Raises:
             InputError: A process ended before it was ready: the next one would, too.
@@ -106,7 +106,9 @@ class Processes:
     def _replace(self, worker: _Worker) -> None:
         _end(worker)
         if not worker.ready:
-            raise InputError("a worker's process ended before its first run", remedy="What it said is above")
+            raise InputError(
+                "a worker's process ended before its first run", remedy="What it said is above"
+            )
         self._workers[self._workers.index(worker)] = self._hire()
 
 
@@ -124,7 +126,7 @@ def _received(worker: _Worker) -> Any:
 
 
 def _serve(pipe: Connection, work: Work, prepare: Callable[[], None]) -> None:
-    """What a worker's process does all day."""
+    """Serve runs in a worker's process, all day."""
     guard.obey_only_parent()
     prepare()
     try:

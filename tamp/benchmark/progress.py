@@ -1,4 +1,4 @@
-"""What is said while the runs go on."""
+"""Progress of the runs, as lines of text."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Watch:
         weakref.finalize(self, self._meanwhile.end)
 
     def ended(self, line: Mapping[str, Any], left: int) -> None:
-        """A run has ended, and so many are still to come."""
+        """Report that a run has ended, and how many are still to come."""
         self._done += 1
         self._solved += succeeded(line)
         self._meanwhile.begin(f"{self._total - left}/{self._total} runs ended")
@@ -45,14 +45,17 @@ class Watch:
         terminal = self._stream.isatty()
         if self._quiet or (not terminal and left and now - self._last < SELDOM):
             return
+
         self._last = now
         minutes, seconds = divmod(round((now - self._started) / self._done * left), 60)
         config = line["config"]
         rejected = " REJECTED" if line["solved"] and not succeeded(line) else ""
         text = (
             f"{self._total - left}/{self._total} runs · {self._solved} of {self._done} solved · "
-            f"{minutes}:{seconds:02d} left · {short(config['problem'])} {config['sampler']} seed {config['seed']}: "
+            f"{minutes}:{seconds:02d} left · {short(config['problem'])} "
+            f"{config['sampler']} seed {config['seed']}: "
             f"{line['outcome']}{rejected} {line['planning_s']:.2f} s"
         )
+
         end = "" if terminal and left else "\n"
         print(f"\r{text}\x1b[K" if terminal else text, end=end, file=self._stream, flush=True)

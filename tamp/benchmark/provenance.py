@@ -1,4 +1,4 @@
-"""Where a figure comes from: commit, machine, versions. Without them it is worth nothing."""
+"""Provenance of a figure: commit, machine, versions. Without them it is worth nothing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ FOLDER = Path(__file__).resolve().parent
 
 @cache
 def origin() -> dict[str, Any]:
-    """Commit (of the checkout that runs, with +changes, or "unknown"), machine and versions."""
+    """Return the provenance: commit (of the checkout that runs, with +changes, or "unknown"),
+    machine and versions.
+    """
     git = ["git", "-C", str(FOLDER)]
     commit = _said([*git, "rev-parse", "--short", "HEAD"])
     changed = _said([*git, "status", "--porcelain", "-uno"])

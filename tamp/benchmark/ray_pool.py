@@ -43,16 +43,22 @@ class RayCrew:
         InputError: Ray is not installed, or there is no cluster at this address.
     """
 
-    def __init__(self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None) -> None:
+    def __init__(
+        self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None
+    ) -> None:
         _check_somebody_listens(address)
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody else is told
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         try:
             import ray
         except ImportError:
-            raise InputError("--ray needs Ray, which is not installed", remedy=install_command("ray")) from None
+            raise InputError(
+                "--ray needs Ray, which is not installed", remedy=install_command("ray")
+            ) from None
+
         self._ray: Any = ray
         quiet = {"log_to_driver": False, "logging_level": "error"}
+
         try:
             if address == LOCAL:
                 ray.init(address=LOCAL, num_cpus=size, include_dashboard=False, **quiet)
@@ -61,9 +67,11 @@ class RayCrew:
         except Exception as error:  # Ray says it in many ways
             said = str(error).strip().splitlines() or [type(error).__name__]
             raise InputError(f"no Ray cluster at '{address}': {said[0]}", remedy=REMEDY) from None
+
         guard.listen()  # Ray has taken SIGTERM for itself
         self.size = size or max(1, int(ray.cluster_resources().get("CPU", 1)))
-        # A lost run is given out again by whoever leads, who knows what was written down: Ray does not retry.
+        # A lost run is given out again by whoever leads, who knows what was written down: Ray does
+        # not retry.
         self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
         self._job = (work, prepare)
         self._under_way: dict[Any, tuple[Case, float]] = {}
@@ -73,34 +81,46 @@ class RayCrew:
         self._under_way[self._do.remote(*self._job, case)] = case, time.monotonic()
 
     def finished(self) -> list[Ended]:
-        """Runs that have ended since; waits for a fifth of a second at most."""
+        """Return runs that have ended since; waits for a fifth of a second at most."""
         ready, pending = self._ray.wait(list(self._under_way), num_returns=1, timeout=0.2)
         ended: list[Ended] = []
         for reference in ready:
             case, _ = self._under_way.pop(reference)
             try:
                 ended.append((case, self._ray.get(reference, timeout=GRACE)))
-            except self._ray.exceptions.RayTaskError as error:  # not lost: it cannot be done there at all
+            except (
+                self._ray.exceptions.RayTaskError
+            ) as error:  # not lost: it cannot be done there at all
                 said = str(error.cause)
-                raise InputError(f"a worker of the cluster failed: {said}", remedy="Is tamp installed there?") from None
-            except self._ray.exceptions.RayError:  # its process, its machine or the way to it is gone
+                raise InputError(
+                    f"a worker of the cluster failed: {said}", remedy="Is tamp installed there?"
+                ) from None
+            except (
+                self._ray.exceptions.RayError
+            ):  # its process, its machine or the way to it is gone
                 ended.append((case, None))
+
         for reference in pending:
             case, since = self._under_way[reference]
             if time.monotonic() - since > case.time + GRACE + STARTING:
                 self._ray.cancel(reference, force=True)
                 del self._under_way[reference]
                 ended.append((case, None))
+
         return ended
 
     def close(self) -> None:
-        """Leave the cluster; one of our own ends. In a command that was asked to end, all of that is who guards it."""
+        """Leave the cluster; one of our own ends. In a command that was asked to end, all of that
+        is who guards it.
+        """
         if not guard.asked():
             self._ray.shutdown()
 
 
 def _check_somebody_listens(address: str) -> None:
-    """Ray itself tries for minutes before it says that nobody is there."""
+    """Check that a cluster answers: Ray itself tries for minutes before it says that nobody is
+    there.
+    """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if not host or not port.isdigit():
         return
@@ -117,5 +137,5 @@ def _prepared_work(work: Work, prepare: Callable[[], None], case: Case) -> dict[
 
 @cache
 def _prepare_once(prepare: Callable[[], None]) -> None:
-    """Per process."""
+    """Prepare the process, once for each."""
     prepare()

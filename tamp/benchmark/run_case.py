@@ -34,7 +34,8 @@ def warm_up() -> None:
 def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
     """Run a case; what comes back is one line of the results. Times in seconds.
 
-    An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on, and shows it.
+    An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on,
+    and shows it.
 
     Args:
         case: What to run.
@@ -81,17 +82,27 @@ def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
             for name, one in solution.statistics.items()
             if one.calls
         },
-        "samplers": {relation: [_account(one) for one in found] for relation, found in solution.samplers.items()},
+        "samplers": {
+            relation: [_account(one) for one in found]
+            for relation, found in solution.samplers.items()
+        },
         "verified": None,
     }
     if solution.solved:
-        line |= {"actions": len(solution.plan), "cost": solution.cost, "motion_s": solution.duration}
+        line |= {
+            "actions": len(solution.plan),
+            "cost": solution.cost,
+            "motion_s": solution.duration,
+        }
         line |= _verdict(solution)
+
     return line
 
 
 def parts(solution: Solution) -> dict[str, float]:
-    """Where the time went, in the words of a robot's planner; "symbolic" is all that is not spent in streams."""
+    """Split the time by what it went to, in the words of a robot's planner; "symbolic" is all that
+    is not spent in streams.
+    """
     beginnings = {
         "sample-": "sampling",
         "inverse-kinematics": "ik",
@@ -100,7 +111,9 @@ def parts(solution: Solution) -> dict[str, float]:
     }
     times = dict.fromkeys(("symbolic", *beginnings.values(), "other streams", "timing"), 0.0)
     for name, statistics in solution.statistics.items():
-        part = next((part for start, part in beginnings.items() if name.startswith(start)), "other streams")
+        part = next(
+            (part for start, part in beginnings.items() if name.startswith(start)), "other streams"
+        )
         times[part] += statistics.seconds
     times["timing"] = solution.seconds.get("timing", 0.0)
     times["symbolic"] = max(0.0, solution.seconds.get("total", 0.0) - sum(times.values()))

@@ -17,14 +17,17 @@ LOST = "LOST"
 """The outcome of such a run."""
 
 
-def lead(cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any], int], None]) -> None:
+def lead(
+    cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any], int], None]
+) -> None:
     """Do all runs that the log does not have. The crew stays.
 
     Args:
         cases: All of them.
         crew: Who does them.
         log: What is known, and where each line is written as soon as its run has ended.
-        ended: Called for each run that has ended, with its line and the number of runs that are still to come.
+        ended: Called for each run that has ended, with its line and the number of runs that are
+            still to come.
     """
     waiting = deque(log.missing(cases))
     losses: Counter[Case] = Counter()
@@ -46,7 +49,9 @@ def lead(cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any
 
 
 def lost(case: Case) -> dict[str, Any]:
-    """The line of a run whose workers were lost each time: it counts as one that took all its time in vain."""
+    """Return the line of a run whose workers were lost each time: it counts as one that took all
+    its time in vain.
+    """
     return {
         "config": case.config,
         "seed": case.seed,

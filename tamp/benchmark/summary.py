@@ -1,4 +1,6 @@
-"""What the runs of a benchmark amount to: success with its interval, times, paired comparison, time by part."""
+"""Statistics of a benchmark's runs: success with its interval, times, paired comparison, time by
+part.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ class Summary:
         p95: The same, 95th percentile.
         par2: Mean planning time; a run without a plan counts as twice the budget.
         cpu: Median processor time of all runs.
-        speedup: Median over the paired seeds of the baseline's time by this one's, both as for PAR-2; or None.
+        speedup: Median over the paired seeds of the baseline's time by this one's, both as for
+            PAR-2; or None.
         parts: Mean time by part, and None when no run tells.
     """
 
@@ -49,12 +52,13 @@ class Summary:
 
 
 def succeeded(line: Mapping[str, Any]) -> bool:
-    """Whether a run ended with a plan that the judge accepts."""
+    """Check whether a run ended with a plan that the judge accepts."""
     return line["solved"] and line["verified"] is True
 
 
 def summaries(lines: Iterable[Mapping[str, Any]], baseline: str | None = None) -> list[Summary]:
-    """One for each problem and sampler, in the order in which they first appear, the problems together.
+    """Summarize the runs, once for each problem and sampler, in the order in which they first
+    appear, the problems together.
 
     Args:
         lines: Results of one budget and algorithm.
@@ -72,17 +76,19 @@ def summaries(lines: Iterable[Mapping[str, Any]], baseline: str | None = None) -
 
 
 def times(lines: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Planning times, infinite without a plan, the shortest first."""
+    """Return planning times, infinite without a plan, the shortest first."""
     return sorted(line["planning_s"] if succeeded(line) else math.inf for line in lines)
 
 
 def penalised(line: Mapping[str, Any]) -> float:
-    """The planning time, twice the budget without a plan."""
+    """Return the penalised planning time: twice the budget without a plan."""
     return line["planning_s"] if succeeded(line) else PENALTY * line["config"]["time"]
 
 
 def percentile(ordered: Sequence[float], q: float) -> float:
-    """The q-th percentile, 0 to 100, of sorted values, linear between the two nearest; NaN of nothing."""
+    """Compute the q-th percentile, 0 to 100, of sorted values, linear between the two nearest; NaN
+    of nothing.
+    """
     if not ordered:
         return math.nan
     place = q / 100 * (len(ordered) - 1)
@@ -92,7 +98,8 @@ def percentile(ordered: Sequence[float], q: float) -> float:
 
 
 def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
-    """Wilson's score interval of a success rate, 95 % by default; (0, 1) when nothing was tried.
+    """Compute Wilson's score interval of a success rate, 95 % by default; (0, 1) when nothing was
+    tried.
 
     Source: E. B. Wilson, Journal of the American Statistical Association 22 (1927), 209-212.
     """
@@ -106,7 +113,10 @@ def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
 
 
 def _summary(
-    problem: str, sampler: str, lines: list[Mapping[str, Any]], against: list[Mapping[str, Any]] | None
+    problem: str,
+    sampler: str,
+    lines: list[Mapping[str, Any]],
+    against: list[Mapping[str, Any]] | None,
 ) -> Summary:
     ordered = times(lines)
     solved = sum(map(succeeded, lines))
@@ -141,4 +151,8 @@ def _speedup(lines: list[Mapping[str, Any]], against: list[Mapping[str, Any]]) -
 def _parts(lines: list[Mapping[str, Any]]) -> dict[str, float] | None:
     told = [line["parts_s"] for line in lines if "parts_s" in line]
     names = dict.fromkeys(name for parts in told for name in parts)
-    return {name: sum(parts.get(name, 0.0) for parts in told) / len(told) for name in names} if told else None
+    return (
+        {name: sum(parts.get(name, 0.0) for parts in told) / len(told) for name in names}
+        if told
+        else None
+    )

@@ -17,7 +17,7 @@ MOST_WARNINGS = 10
 
 
 def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> str:
-    """Success and times, time by part, and where the figures come from.
+    """Format the report: success and times, time by part, and where the figures come from.
 
     Args:
         lines: Results of one budget and algorithm, at least one.
@@ -27,12 +27,17 @@ def report(lines: Sequence[Mapping[str, Any]], baseline: str | None = None) -> s
     tables = [table([_success(one, baseline) for one in found])]
     told = [(one, one.parts) for one in found if one.parts]
     if told:
-        tables += ["Mean seconds by part, of all runs:", table([_parts(one, parts) for one, parts in told])]
+        tables += [
+            "Mean seconds by part, of all runs:",
+            table([_parts(one, parts) for one, parts in told]),
+        ]
     return "\n\n".join([*tables, *_sidelined(lines), _origins(lines)])
 
 
 def _sidelined(lines: Iterable[Mapping[str, Any]]) -> list[str]:
-    """What was said of samplers that took no part to the end, once for each: without them the figures are others'."""
+    """Describe the samplers that took no part to the end, once for each: without them the figures
+    are others'.
+    """
     said = Counter(
         (line["config"]["sampler"], warning)
         for line in lines
@@ -41,25 +46,35 @@ def _sidelined(lines: Iterable[Mapping[str, Any]]) -> list[str]:
     )
     if not said:
         return []
-    shown = [f"{count} x {sampler}: {warning}" for (sampler, warning), count in said.most_common(MOST_WARNINGS)]
+    shown = [
+        f"{count} x {sampler}: {warning}"
+        for (sampler, warning), count in said.most_common(MOST_WARNINGS)
+    ]
     more = len(said) - len(shown)
-    return ["\n".join(["Samplers that were sidelined:", *shown, *([f"and {more} more"] if more > 0 else [])])]
+    return [
+        "\n".join(
+            ["Samplers that were sidelined:", *shown, *([f"and {more} more"] if more > 0 else [])]
+        )
+    ]
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Rows of cells under the first one's keys, numbers to the right."""
+    """Format rows of cells under the first one's keys, numbers to the right."""
     head = list(rows[0])
     widths = [max(len(name), *(len(row[name]) for row in rows)) for name in head]
     left = [name in ("problem", "sampler") for name in head]
     rule = [
-        "-" * (width + 2) if to_left else "-" * (width + 1) + ":" for width, to_left in zip(widths, left, strict=True)
+        "-" * (width + 2) if to_left else "-" * (width + 1) + ":"
+        for width, to_left in zip(widths, left, strict=True)
     ]
     written = [_written(head, widths, left), f"|{'|'.join(rule)}|"]
-    return "\n".join([*written, *(_written([row[name] for name in head], widths, left) for row in rows)])
+    return "\n".join(
+        [*written, *(_written([row[name] for name in head], widths, left) for row in rows)]
+    )
 
 
 def short(problem: str) -> str:
-    """A problem's name: that of its file, when it is a path."""
+    """Shorten a problem's name to that of its file, when it is a path."""
     return Path(problem).stem if "/" in problem else problem
 
 
@@ -90,7 +105,10 @@ def _success(one: Summary, baseline: str | None) -> Row:
 
 def _parts(one: Summary, parts: Mapping[str, float]) -> Row:
     total = sum(parts.values())
-    cells = {name: f"{seconds:.3f} ({100 * seconds / max(total, 1e-9):.0f} %)" for name, seconds in parts.items()}
+    cells = {
+        name: f"{seconds:.3f} ({100 * seconds / max(total, 1e-9):.0f} %)"
+        for name, seconds in parts.items()
+    }
     return {"problem": short(one.problem), "sampler": one.sampler, **cells, "total": f"{total:.3f}"}
 
 
@@ -106,7 +124,9 @@ def _origins(lines: Sequence[Mapping[str, Any]]) -> str:
     load = f", load {min(loads):.1f}-{max(loads):.1f}" if loads else ""
     commits = _listed(line["commit"] for line in lines if "commit" in line)
     machines = _listed(
-        f"{line['machine']['cpu']}, {line['machine']['cores']} cores" for line in lines if "machine" in line
+        f"{line['machine']['cpu']}, {line['machine']['cores']} cores"
+        for line in lines
+        if "machine" in line
     )
     return (
         f"{len(lines)} runs of {config['time']:g} s, {config['algorithm']}; "

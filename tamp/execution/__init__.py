@@ -1,1 +1,3 @@
-"""Plans carried out in physics: what follows from them when things have mass, fingers slip, and somebody interferes."""
+"""Plans carried out in physics: what follows from them when things have mass, fingers slip, and
+somebody interferes.
+"""

@@ -1,4 +1,6 @@
-"""What `tamp-execute` and `tamp-solve --execute` have in common: from a plan file to a report."""
+"""The execution that `tamp-execute` and `tamp-solve --execute` have in common: from a plan file to
+a report.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ from tamp.planner.solve import ALGORITHMS
 
 @dataclass(frozen=True)
 class Options:
-    """How a plan file is to be carried out: see `tamp-execute --help`."""
+    """The options of an execution: see `tamp-execute --help`."""
 
     grasp: str = "friction"
     replan: bool = False
@@ -58,8 +60,8 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         registry: The learned groundings, for their opinion of the goal and for planning anew.
 
     Raises:
-        InputError: The plan file is malformed, of another version, or what it was made from has changed; a sampler
-            that it needs for planning anew is not to be had.
+        InputError: The plan file is malformed, of another version, or what it was made from has
+            changed; a sampler that it needs for planning anew is not to be had.
     """
     check(options)
     chosen = sampler_choices(options.sampler)
@@ -79,7 +81,9 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
 
 
 def _check_options(stored: Stored, named: Mapping[str, str]) -> None:
-    """The plan's own options; an object in Python that served a relation of the user's own is not in the file."""
+    """Check the plan's own options; an object in Python that served a relation of the user's own is
+    not in the file.
+    """
     algorithm = stored.plan.algorithm
     if algorithm not in ALGORITHMS:
         what = f"options.algorithm: unknown algorithm '{algorithm}'"

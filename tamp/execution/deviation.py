@@ -1,4 +1,4 @@
-"""Where what is seen is not what the plan expects."""
+"""Detection of deviations: what is seen beside what the plan expects."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Deviation:
-    """One thing that is not as expected: its kind of KINDS, the body, a sentence, metres and radians."""
+    """One thing that is not as expected: its kind of KINDS, the body, a sentence, metres and
+    radians.
+    """
 
     kind: str
     body: str
@@ -48,7 +50,9 @@ class Deviation:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What is seen: T_world_body (4, 4) of all bodies that can move, the body in the hand, the tool (4, 4), facts."""
+    """An observation: T_world_body (4, 4) of all bodies that can move, the body in the hand, the
+    tool (4, 4), facts.
+    """
 
     poses: Mapping[str, Array]
     held: str | None
@@ -64,7 +68,7 @@ def deviations(
     active: str | None,
     new: frozenset[str] = frozenset(),
 ) -> Iterator[Deviation]:
-    """What differs.
+    """Yield the deviations of what is seen from what is expected.
 
     Args:
         poses: T_world_body expected of bodies that stand.

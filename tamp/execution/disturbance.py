@@ -1,4 +1,6 @@
-"""What somebody may do to the scene while a plan is carried out, when, and with which body: all by a seed."""
+"""Disturbances of the scene while a plan is carried out: what happens, when, and to which body, all
+by a seed.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ TRIES = 100
 
 @dataclass(frozen=True)
 class Happening:
-    """What a disturbance works on: the world, the player of segments, what is expected, and randomness."""
+    """The circumstances of a disturbance: the world, the player of segments, what is expected, and
+    randomness.
+    """
 
     world: Actuated
     player: Player
@@ -47,7 +51,9 @@ class Happening:
 
 @dataclass(frozen=True)
 class Scheduled:
-    """A disturbance at a share of the time of a segment of an action; `happen` does it and says what was done."""
+    """A disturbance at a share of the time of a segment of an action; `happen` does it and says
+    what was done.
+    """
 
     action: int
     segment: int
@@ -56,7 +62,7 @@ class Scheduled:
 
 
 def schedule(kind: str, plan: PlanFile, rng: Generator) -> Scheduled | None:
-    """When a disturbance takes place in a plan; None when the plan has no moment for it.
+    """Choose when a disturbance takes place in a plan; None when the plan has no moment for it.
 
     Raises:
         InputError: An unknown disturbance.
@@ -89,12 +95,12 @@ def _any(plan: PlanFile) -> Iterator[Moment]:
 
 
 def _carrying(plan: PlanFile) -> Iterator[Moment]:
-    """While the base drives with a body in hand."""
+    """Yield the moments while the base drives with a body in hand."""
     return (moment for moment, segment in _moving(plan) if segment.part == "base" and segment.holding)
 
 
 def _before_a_place(plan: PlanFile) -> Iterator[Moment]:
-    """While there is still something to be put down, in actions before."""
+    """Yield the moments while there is still something to be put down, in actions before."""
     last = max((number for number, action in enumerate(plan.actions) if _puts(action.segments)), default=0)
     return (moment for moment, _ in _moving(plan) if moment[0] < last)
 
@@ -107,7 +113,7 @@ def _puts(segments: tuple[Segment, ...]) -> bool:
 
 
 def _move(now: Happening) -> str:
-    """A body slides to another place on what it stands on."""
+    """Slide a body to another place on what it stands on."""
     world, rng = now.world, now.rng
     with Room(world) as room:
         for name in rng.permutation(room.untouched):
@@ -124,14 +130,16 @@ def _move(now: Happening) -> str:
 
 
 def _drop(now: Happening) -> str:
-    """The fingers open."""
+    """Open the fingers, so that the body drops."""
     held = now.world.bound or _carried(now)
     now.player.let_go()
     return f"{held} is dropped"
 
 
 def _slip(now: Happening) -> str:
-    """The body in the hand slides down between the pads and turns a little about the closing axis."""
+    """Let the body in the hand slip: it slides down between the pads and turns a little about the
+    closing axis.
+    """
     world, rng = now.world, now.rng
     held = world.bound or _carried(now)
     if held is None:
@@ -153,7 +161,7 @@ def _slip(now: Happening) -> str:
 
 
 def _remove(now: Happening) -> str:
-    """A body that is not in the hand is taken away."""
+    """Remove a body that is not in the hand."""
     world = now.world
     with Room(world) as room:
         choices = room.untouched
@@ -167,7 +175,7 @@ def _remove(now: Happening) -> str:
 
 
 def _block(now: Happening) -> str:
-    """A box that cannot be moved is put where the plan wants to put something down."""
+    """Block a place: put a box that cannot be moved where the plan wants to put something down."""
     world, expected = now.world, now.expected
     wanted = [
         (name, value.data)

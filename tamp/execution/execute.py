@@ -49,7 +49,7 @@ MOVED = (0.005, 0.09)
 
 @dataclass(frozen=True)
 class Circumstances:
-    """How a plan is carried out.
+    """The circumstances of an execution: how a plan is carried out.
 
     Attributes:
         grasp: "friction", or "constraint": the fingers bind what they close on.
@@ -76,8 +76,9 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for hours, or out of the
-            robot's ranges; a goal that needs a relation not to hold that has no classifier.
+        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for
+            hours, or out of the robot's ranges; a goal that needs a relation not to hold that has
+            no classifier.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
@@ -115,7 +116,7 @@ class _Run:
         self._known = frozenset(world.scene.bodies)
 
     def all(self) -> None:
-        """Every action of the plan, and of those that take its place."""
+        """Execute every action of the plan, and of those that take its place."""
         self._world.wait(SETTLE)
         while self._queue and not self._explanation:
             action = self._queue.pop(0)
@@ -125,7 +126,7 @@ class _Run:
             self._done.append(done)
 
     def result(self) -> Execution:
-        """What came of it."""
+        """Return the execution's outcome."""
         self._world.wait(SETTLE)
         truth = self._look()
         goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own)
@@ -202,7 +203,9 @@ class _Run:
     # What is seen
 
     def _held(self) -> str | None:
-        """The body in the hand: bound to it, or between the fingers and off the ground that it stood on."""
+        """Return the body in the hand: bound to it, or between the fingers and off the ground that
+        it stood on.
+        """
         world = self._world
         if world.bound is not None or not world.squeezing:
             return world.bound

@@ -1,4 +1,4 @@
-"""What should be so after each action, by the plan and PDDL's meaning."""
+"""The expected state after each action, by the plan and PDDL's meaning."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Expected:
         self._bodies = {name.lower(): name for name in self.scene.bodies}
 
     def apply(self, action: TimedAction) -> None:
-        """The action's effects; an action that the domain does not know has none."""
+        """Apply the action's effects; an action that the domain does not know has none."""
         lifted = self.semantics.actions.get(action.name)
         if lifted is not None and len(lifted.parameters) == len(action.arguments):
             self.state = self.semantics.apply(lifted, action.arguments, self.state)
@@ -52,7 +52,7 @@ class Expected:
 
     @property
     def poses(self) -> dict[str, Array]:
-        """T_world_body (4, 4) of the bodies that stand somewhere."""
+        """Return T_world_body (4, 4) of the bodies that stand somewhere."""
         found: dict[str, Array] = {}
         for terms in self.state.all("at-pose"):
             value = self.plan.values.get(terms[-1])
@@ -64,7 +64,7 @@ class Expected:
 
     @property
     def held(self) -> tuple[str, Array] | None:
-        """The body in the hand and its T_tool_body."""
+        """Return the body in the hand and its T_tool_body."""
         for terms in self.state.all("holding"):
             value = self.plan.values.get(terms[-1])
             if len(terms) == 2 and terms[0] in self._bodies and value is not None and isinstance(value.data, Hold):
@@ -73,7 +73,9 @@ class Expected:
 
     @property
     def facts(self) -> frozenset[Fact]:
-        """Which body should be on and inside what, among surfaces and cavities; PDDL's names."""
+        """Derive the facts of which body should be on and inside what, among surfaces and cavities;
+        PDDL's names.
+        """
         found: set[Fact] = set()
         for predicate, places in zip(RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True):
             if predicate not in self.domain.predicates or len(self.domain.predicates[predicate].parameters) != 2:

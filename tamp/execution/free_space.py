@@ -19,7 +19,9 @@ APART = 0.005
 
 
 class Room:
-    """A copy of the world without time and robot, in which places are tried. Use it as a context manager."""
+    """A copy of the world without time and robot, in which places are tried. Use it as a context
+    manager.
+    """
 
     def __init__(self, world: Actuated) -> None:
         self._scene = world.scene
@@ -37,7 +39,7 @@ class Room:
         self._copy.close()
 
     def fits(self, name: str, T_world_body: Array) -> bool:
-        """Whether a body stands there on the same as before, apart from all others."""
+        """Check whether a body stands there on the same as before, apart from all others."""
         before = self._copy.pose(name)
         on = self._supports.stand(name).on
         self._copy.place(name, _lifted(T_world_body))
@@ -47,7 +49,7 @@ class Room:
         return fine
 
     def free(self, body: Body) -> bool:
-        """Whether a new body would be apart from all others, but for what is under it."""
+        """Check whether a new body would be apart from all others, but for what is under it."""
         lifted = replace(body, pose=replace(body.pose, position=_up(body.pose.position)))
         scene = replace(self._scene, bodies=MappingProxyType({**self._scene.bodies, body.name: lifted}))
         with World(scene) as world:
@@ -60,7 +62,9 @@ class Room:
                                                        if one in world.solids)  # fmt: skip
 
     def lowest(self, word: str, T_world_body: Array) -> float | None:
-        """The height of the lowest point of the body of a PDDL name at a pose, less the planner's air; metres."""
+        """Compute the height of the lowest point of the body of a PDDL name at a pose, less the
+        planner's air; metres.
+        """
         name = next((one for one in self._scene.bodies if one.lower() == word), None)
         if name is None:
             return None

@@ -1,4 +1,4 @@
-"""Whether the goal holds in what is seen."""
+"""Evaluation of the goal in what is seen."""
 
 from __future__ import annotations
 
@@ -34,10 +34,11 @@ def judged(
     classifiers: Mapping[str, tuple[str, Classifier]],
     own: Own = NONE,
 ) -> tuple[GoalFact, ...]:
-    """Each part of the goal, by the geometry; and what the classifiers of its relations say.
+    """Evaluate each part of the goal, by the geometry; and what the classifiers of its relations
+    say.
 
-    Classifiers of the user's own relations decide about these. Others than them, `on` and `inside` hold as the plan has
-    them for bodies that are where the plan put them.
+    Classifiers of the user's own relations decide about these. Others than them, `on` and `inside`
+    hold as the plan has them for bodies that are where the plan put them.
     """
     facts = {(name, *row) for name, rows in expected.state.facts.items() for row in rows if name not in FLUENTS}
     facts |= {("hand-empty",)} if held is None else set()
@@ -61,7 +62,9 @@ def judged(
 
 
 def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
-    """Relation to the name and the object of the first learned classifier whose weights are there."""
+    """Load, for each relation, the name and the object of the first learned classifier whose
+    weights are there.
+    """
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
         if relation == ANY:
@@ -102,7 +105,7 @@ def _classified(
 
 
 def _with_poses(semantics: Semantics, at: Mapping[str, str]) -> Semantics:
-    """The same with names for the poses that bodies are seen at."""
+    """Bind names for the poses that bodies are seen at."""
     domain = semantics.domain
     kind = POSE if POSE in domain.types else "object"
     new = {pose: (kind,) for pose in at.values() if pose not in semantics.objects}
@@ -110,7 +113,9 @@ def _with_poses(semantics: Semantics, at: Mapping[str, str]) -> Semantics:
 
 
 def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tuple[str, str]]:
-    """Bodies and poses, in PDDL's names, of those that are seen where the plan has them."""
+    """Yield the bodies and poses, in PDDL's names, of those that are seen where the plan has
+    them.
+    """
     bodies = {name.lower(): name for name in truth.scene.movable if name != held}
     for terms in expected.state.all("at-pose"):
         value = expected.plan.values.get(terms[-1])
@@ -122,7 +127,9 @@ def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tu
 
 
 def _moved(part: Formula, there: Mapping[str, str], expected: Expected, own: Own) -> str | None:
-    """That a body of a relation of the user's own is elsewhere than the plan has it, where no classifier decides."""
+    """Describe a body of a relation of the user's own that is elsewhere than the plan has it, where
+    no classifier decides.
+    """
     if not isinstance(part, Atom) or part.predicate in RELATIONS or part.predicate in own.asked:
         return None
     placed = {terms[0] for terms in expected.state.all("at-pose")}

@@ -1,4 +1,4 @@
-"""What is noticed while an action is carried out: how far the robot lags, and what touches what."""
+"""Execution monitoring: how far the robot lags behind its trajectory, and what touches what."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ FELT = 1.0
 
 @dataclass(frozen=True)
 class Touch:
-    """Two things that should not touch: names of a link or body and a body, and the most that was felt, newtons."""
+    """Two things that should not touch: names of a link or body and a body, and the most that was
+    felt, newtons.
+    """
 
     first: str
     second: str
@@ -55,10 +57,10 @@ class Watch:
             self.touches[pair] = max(self.touches.get(pair, 0.0), force)
 
     def unwanted(self) -> tuple[Touch, ...]:
-        """What should not have touched, at the action's end.
+        """Return the unwanted contacts at the action's end.
 
-        A body may touch what it touches before or after the action: that is what it rests on. The hand may touch
-        what it handles.
+        A body may touch what it touches before or after the action: that is what it rests on. The
+        hand may touch what it handles.
         """
         resting = self._before | frozenset(self.world.touches())
         robot = self.world.robot_links

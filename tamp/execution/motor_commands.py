@@ -64,7 +64,7 @@ class Player:
         return self._follow(segment, watch, event, at, guard if segment.part == "base" else None)
 
     def finish(self) -> None:
-        """At an action's end: a body that was let go is felt again."""
+        """Finish an action: a body that was let go is felt again."""
         if self._passing is not None:
             if self._passing in self._world.solids and self._world.bound != self._passing:
                 self._world.pass_through(self._passing, False)
@@ -116,7 +116,9 @@ class Player:
             world.bind(body)
 
     def _between(self, body: str | None) -> TypeGuard[str]:
-        """Whether the body is where the fingers close: what is not there is not held by a constraint either."""
+        """Check whether the body is where the fingers close: what is not there is not held by a
+        constraint either.
+        """
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 
     def _wait(self, seconds: float, watch: Watch) -> None:

@@ -1,4 +1,6 @@
-"""What is on and inside what, by the bodies' geometry where they are seen; and the scene as it is then."""
+"""Observation of what is on and inside what, by the bodies' geometry where they are seen; and the
+scene as it is then.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ STILL = 0.0005
 """Metres, and 5 times as many radians, within which a body counts as where it was seen before."""
 
 LIFTED = 0.004
-"""Metres by which a seen body is at most lifted or lowered, for the planner's air under what rests."""
+"""Metres by which a seen body is at most lifted or lowered, for the planner's air under
+what rests.
+"""
 
 AWAY = Pose((500.0, 0.0, 0.0)).matrix
 """Where the body in the hand carries nobody."""
@@ -30,7 +34,8 @@ class Truth:
     """The scene as it is seen.
 
     Attributes:
-        scene: Movable bodies where they are, with what they stand on; one in the hand keeps its old place.
+        scene: Movable bodies where they are, with what they stand on; one in the hand keeps its old
+            place.
         facts: ("on", body, surface or body) and ("inside", body, cavity), in PDDL's names.
         reasons: Why another such fact of a body and a place is not so.
     """
@@ -41,7 +46,8 @@ class Truth:
 
 
 class Observer:
-    """Asks a second world without robot and without time; bodies that did not move are not asked again.
+    """Asks a second world without robot and without time; bodies that did not move are not asked
+    again.
 
     Use it as a context manager.
     """
@@ -59,13 +65,15 @@ class Observer:
         self._world.close()
 
     def become(self, scene: Scene) -> None:
-        """Bodies were added or taken away."""
+        """Rebuild the observer when bodies were added or taken away."""
         if self._scene.bodies.keys() != scene.bodies.keys():
             self._world.close()
             self.__init__(scene)
 
     def see(self, poses: Mapping[str, Array], base: Array, held: str | None) -> Truth:
-        """The truth about movable bodies at their T_world_body (4, 4), the base (3,) and the body in the hand."""
+        """Observe the truth about movable bodies at their T_world_body (4, 4), the base (3,) and
+        the body in the hand.
+        """
         standing = [name for name in self._scene.movable if name in poses and name != held]
         if held is not None:
             self._seen.pop(held, None)
@@ -87,7 +95,9 @@ class Observer:
         return Truth(scene, frozenset(facts), reasons)
 
     def _place(self, poses: Mapping[str, Array], standing: list[str]) -> None:
-        """Put bodies where they are seen, the planner's air under those that rest: physics presses them together."""
+        """Put bodies where they are seen, the planner's air under those that rest: physics presses
+        them together.
+        """
         moved = []
         for name in standing:
             T = poses[name]
@@ -104,7 +114,9 @@ class Observer:
                 self._world.place(name, _raised(self._world.pose(name), rise))
 
     def _feel(self, name: str, stand: Stand, facts: set[Fact], reasons: dict[Fact, str]) -> str | None:
-        """Add what is so about a body; what it stands on as the scene has it, None for the floor and for nothing."""
+        """Add what is so about a body; what it stands on as the scene has it, None for the floor
+        and for nothing.
+        """
         support: str | None = None
         scene, supports = self._scene, self._supports
         asked = [("on", one.name, supports.on(name, one, stand)) for one in scene.surfaces.values()]

@@ -17,7 +17,7 @@ MOST_SECONDS = 7_200.0
 
 
 def without_pauses(plan: PlanFile) -> tuple[PlanFile, float]:
-    """The plan with its long pauses cut, and the seconds that were left out.
+    """Cut the plan's long pauses; return the plan, and the seconds that were left out.
 
     Raises:
         InputError: Times of a segment do not increase, or the plan moves for hours.

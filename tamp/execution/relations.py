@@ -31,7 +31,8 @@ class Own:
 
     Attributes:
         asked: Those with a classifier: the relation, what the classifier is called, and itself.
-        trusted: Those on which the goal rests without one: what the plan certified holds while its bodies are there.
+        trusted: Those on which the goal rests without one: what the plan certified holds while its
+            bodies are there.
     """
 
     asked: Mapping[str, tuple[Relation, str, Classifier]]
@@ -40,7 +41,9 @@ class Own:
     def observe(
         self, truth: Truth, held: str | None, expected: Expected, at: Mapping[str, str]
     ) -> dict[str, Observation]:
-        """What the classifiers say of what is seen, by relation; `at` names the poses of bodies that stand."""
+        """Observe what the classifiers say of what is seen, by relation; `at` names the poses of
+        bodies that stand.
+        """
         scene = moved(truth.scene, {}, held)
         facts = expected.plan.initial
         return {
@@ -49,7 +52,9 @@ class Own:
         }
 
     def missed(self, truth: Truth, held: str | None, expected: Expected) -> frozenset[Fact]:
-        """Relations that should hold by the plan and do not, as (relation, *arguments) in PDDL's names."""
+        """Return relations that should hold by the plan and do not, as (relation, *arguments) in
+        PDDL's names.
+        """
         at = {row[0]: row[1] for row in expected.state.all("at-pose") if len(row) == 2}
         standing = {name.lower() for name in truth.scene.movable if name != held}
         there = {body: pose for body, pose in at.items() if body in standing}
@@ -68,7 +73,7 @@ class Own:
 
 
 def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Named) -> Own:
-    """The user's own relations that a plan's goal rests on, or its actions.
+    """Collect the user's own relations that a plan's goal rests on, or its actions.
 
     Args:
         stored: The plan.
@@ -109,9 +114,11 @@ def named_classifiers(
     registry: Registry,
     files: Mapping[str, str],
 ) -> dict[str, tuple[str, Classifier]]:
-    """The classifiers of the user's own relations: of files that the plan or the command line names, and of objects.
+    """Load the classifiers of the user's own relations: of files that the plan or the command line
+    names, and of objects.
 
-    What the plan names and is not there any more is left out; what the command line names must be there.
+    What the plan names and is not there any more is left out; what the command line names must be
+    there.
 
     Args:
         stored: The plan.

@@ -1,4 +1,6 @@
-"""Planning from what is seen: whether the rest of a plan still holds, and a new one when it does not."""
+"""Planning from what is seen: whether the rest of a plan still holds, and a new one when it does
+not.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +30,16 @@ from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.initial_state import apart
 
 SAME = (0.003, 0.04)
-"""Metres and radians by which a body that is still to be grasped may stand elsewhere for the old grasp to serve."""
+"""Metres and radians by which a body that is still to be grasped may stand elsewhere for the old
+grasp to serve.
+"""
 
 
 @dataclass(frozen=True)
 class Mended:
-    """Whether the rest of the plan is kept, else a new plan, else why there is none."""
+    """The result of replanning: the rest of the plan is kept, else a new plan, else why there is
+    none.
+    """
 
     keeps: bool = False
     plan: PlanFile | None = None
@@ -67,7 +73,7 @@ class Replanner:
         self._samplers, self._groundings = {**own, **samplers}, groundings
 
     def grasp(self, body: str, T_tool_body: Array, opening: float) -> Grasp:
-        """What is in the hand, as the planner has it."""
+        """Return the grasp of what is in the hand, as the planner has it."""
         return Grasp(body, Pose.from_matrix(T_tool_body), opening)
 
     def mend(
@@ -129,7 +135,9 @@ class Replanner:
         found: Sequence[Deviation],
         expected: Expected,
     ) -> bool:
-        """Whether what is still to be done can be done among the bodies as they stand, and leads to the goal."""
+        """Check whether what is still to be done can be done among the bodies as they stand, and
+        leads to the goal.
+        """
         if any(one.kind not in ("misplaced", "displaced", "toppled", "new", "gone") for one in found):
             return False
         there = {name.lower() for name in truth.scene.bodies}
@@ -172,7 +180,9 @@ class Replanner:
 
 
 def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
-    """Bodies, in PDDL's names, of which the goal asks what another pose may not give; all of them for a variable."""
+    """Return the bodies, in PDDL's names, of which the goal asks what another pose may not give;
+    all of them for a variable.
+    """
     terms = {term for atom, _ in signed_atoms(goal) if atom.predicate not in RELATIONS for term in atom.terms}
     return {*bodies} if any(term.startswith("?") for term in terms) else terms
 
@@ -183,5 +193,5 @@ def _same(first: Array, second: Array) -> bool:
 
 
 def is_given(sampler: str) -> bool:
-    """Whether a plan's sampler was an object, which no file keeps."""
+    """Check whether a plan's sampler was an object, which no file keeps."""
     return sampler.partition(":")[0] == GIVEN

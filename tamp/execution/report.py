@@ -1,4 +1,4 @@
-"""What came of a plan in physics, for people and for programs."""
+"""Report of a plan's execution in physics, for people and for programs."""
 
 from __future__ import annotations
 
@@ -54,7 +54,9 @@ class Done:
 
 @dataclass(frozen=True)
 class GoalFact:
-    """A part of the goal: whether it holds by the bodies' geometry, why not, and what a classifier says."""
+    """A part of the goal: whether it holds by the bodies' geometry, why not, and what a classifier
+    says.
+    """
 
     fact: str
     holds: bool
@@ -78,7 +80,8 @@ class Execution:
         kept: How often the rest of the plan was good enough after a deviation.
         disturbance: What was done to the scene, and when.
         explanation: Why the goal was not reached.
-        on_trust: Relations of the goal without a classifier: they hold where the plan put their bodies, as it says.
+        on_trust: Relations of the goal without a classifier: they hold where the plan put their
+            bodies, as it says.
         simulated: Seconds in physics.
         notes: What was not done as the plan says.
         seconds: Seconds that it took.
@@ -101,12 +104,12 @@ class Execution:
 
     @property
     def kinds(self) -> dict[str, int]:
-        """How often each kind of deviation occurred."""
+        """Count how often each kind of deviation occurred."""
         counts = Counter(one.kind for action in self.actions for one in action.deviations)
         return dict(sorted(counts.items()))
 
     def text(self) -> str:
-        """For people: a line an action, the goal, and a summary."""
+        """Format the report for people: a line an action, the goal, and a summary."""
         lines = [line for number, action in enumerate(self.actions, 1) for line in _action(number, action)]
         lines.append("")
         lines += [_goal(fact) for fact in self.goal]
@@ -122,7 +125,7 @@ class Execution:
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:
-        """For programs: metres, radians, seconds, newtons."""
+        """Return the report for programs: metres, radians, seconds, newtons."""
         return {"format": "tamp-execution", "version": 1, **asdict(self), "kinds": self.kinds}
 
 

@@ -22,7 +22,7 @@ NANOSECONDS = 10**9
 
 
 def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """The actions with their stretches, times from the plan's start."""
+    """Format the actions with their stretches as JSON, times from the plan's start."""
     document = {
         "format": "tamp-trajectory",
         "version": 1,
@@ -44,14 +44,19 @@ def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> s
 
 
 def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """One row a sample with all joints, those that stand still too; the columns of velocities begin with v_."""
+    """Format the trajectory as CSV, one row a sample with all joints, those that stand still too;
+    the columns of velocities begin with v_.
+    """
     arm, fingers = _names(robot)
     joints = (*BASE_JOINTS, *arm, *fingers)
     column = {name: at for at, name in enumerate(joints)}
     standing = _start(plan, robot)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(("time", "number", "action", "part", "holding", *joints, *(f"v_{name}" for name in joints)))
+    writer.writerow(
+        ("time", "number", "action", "part", "holding", *joints, *(f"v_{name}" for name in joints))
+    )
+
     for number, action in enumerate(actions, start=1):
         for stretch in action.stretches:
             moving = [column[name] for name in stretch.joints]
@@ -62,14 +67,26 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
                 standing[moving], rates[moving] = positions, velocities
                 numbers = (*_rounded(standing), *_rounded(rates))
                 holding = stretch.holding or ""
-                writer.writerow((round(float(time), DIGITS), number, action.name, stretch.part, holding, *numbers))
+                writer.writerow(
+                    (
+                        round(float(time), DIGITS),
+                        number,
+                        action.name,
+                        stretch.part,
+                        holding,
+                        *numbers,
+                    )
+                )
+
     return file.getvalue()
 
 
 def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
-    """trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which they are to be sent.
+    """Format trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which
+    they are to be sent.
 
-    `time_from_start` counts from the message's own start. Beside each message stands what it belongs to.
+    `time_from_start` counts from the message's own start. Beside each message stands what it
+    belongs to.
     """
     messages = [
         {
@@ -86,7 +103,13 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
         for number, action in enumerate(actions, start=1)
         for stretch in action.stretches
     ]
-    return json.dumps({"format": "tamp-ros", "version": 1, "robot": plan.robot, "trajectories": messages}) + "\n"
+
+    return (
+        json.dumps(
+            {"format": "tamp-ros", "version": 1, "robot": plan.robot, "trajectories": messages}
+        )
+        + "\n"
+    )
 
 
 FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
@@ -98,12 +121,18 @@ FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
 
 
 def _names(robot: Robot) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    return tuple(joint.name for joint in robot.joints), tuple(finger.name for finger in robot.fingers)
+    return tuple(joint.name for joint in robot.joints), tuple(
+        finger.name for finger in robot.fingers
+    )
 
 
 def _start(plan: PlanFile, robot: Robot) -> Array:
-    """All joints before the first action: each part stands where its first segment begins, if it ever moves."""
-    places = [plan.values.get(fact[1]) for fact in plan.initial if fact[0] == "at-base" and len(fact) == 2]
+    """Return all joints before the first action: each part stands where its first segment begins,
+    if it ever moves.
+    """
+    places = [
+        plan.values.get(fact[1]) for fact in plan.initial if fact[0] == "at-base" and len(fact) == 2
+    ]
     known = [value.data for value in places if value is not None and value.type == "base-conf"]
     base = known[0] if known else np.zeros(3)
     arm, opening = np.array(robot.home), robot.opening

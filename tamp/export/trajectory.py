@@ -12,7 +12,9 @@ from tamp.plan.read import PlanFile
 from tamp.plan.read import Segment as StoredSegment
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
-"""What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the yaw are kept."""
+"""What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the
+yaw are kept.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,7 @@ class TimedAction:
 
 
 def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
-    """The plan's motions in the plan's time."""
+    """Time the plan's motions from the plan's start."""
     joints = {
         "base": BASE_JOINTS,
         "arm": tuple(joint.name for joint in robot.joints),
@@ -64,7 +66,11 @@ def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
         for segment in action.segments:
             stretches.append(_stretch(segment, joints[segment.part], clock))
             clock += float(segment.times[-1])
-        actions.append(TimedAction(action.name, action.arguments, action.start, action.duration, tuple(stretches)))
+        actions.append(
+            TimedAction(
+                action.name, action.arguments, action.start, action.duration, tuple(stretches)
+            )
+        )
     return tuple(actions)
 
 
@@ -85,10 +91,11 @@ def _stretch(segment: StoredSegment, joints: tuple[str, ...], clock: float) -> S
 
 
 def rates(times: Array, positions: Array) -> Array:
-    """Velocities (n, d) at samples of a motion from rest to rest: the mean of the slopes before and after each one.
+    """Differentiate samples of a motion from rest to rest: velocities (n, d), the mean of the
+    slopes before and after each one.
 
-    Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that the slopes keep
-    are kept.
+    Weighted so that constant acceleration is met exactly; a slope is never exceeded, so limits that
+    the slopes keep are kept.
 
     Args:
         times: Shape (n,), seconds, increasing.
@@ -98,5 +105,7 @@ def rates(times: Array, positions: Array) -> Array:
     if len(times) > 2:
         spans = np.diff(times)[:, None]
         slopes = np.diff(positions, axis=0) / spans
-        velocities[1:-1] = (slopes[:-1] * spans[1:] + slopes[1:] * spans[:-1]) / (spans[:-1] + spans[1:])
+        velocities[1:-1] = (slopes[:-1] * spans[1:] + slopes[1:] * spans[:-1]) / (
+            spans[:-1] + spans[1:]
+        )
     return velocities

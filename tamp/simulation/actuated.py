@@ -20,17 +20,22 @@ RATE = 240
 """Steps a second."""
 
 FORCE = 50.0
-"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N for a moment."""
+"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N
+for a moment.
+"""
 
 TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
 """The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
 
 ROLLING = 0.001
-"""Metres: rolling and spinning friction of bodies, without which a can that lies would never come to rest."""
+"""Metres: rolling and spinning friction of bodies, without which a can that lies would never come
+to rest.
+"""
 
 SLEEPY = 0.003
-"""Metres and radians a second: a body that was slower for two seconds is left out of the computation until something
-touches it. With seven bodies at rest a step costs a quarter of what it costs otherwise."""
+"""Metres and radians a second: a body that was slower for two seconds is left out of the
+computation until something touches it. With seven bodies at rest a step costs a quarter of what it
+costs otherwise."""
 
 NEAR = 0.004
 """Metres from both fingers within which a body counts as between them."""
@@ -40,7 +45,8 @@ FINGER_SPEED = 0.05
 
 
 class Actuated(World):
-    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies have mass and fall.
+    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
+    have mass and fall.
 
     Attributes:
         conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
@@ -96,7 +102,9 @@ class Actuated(World):
     # Time
 
     def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """One step of 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the trajectory's speeds there."""
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+        trajectory's speeds there.
+        """
         bullet, client = self._bullet, self.client
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
@@ -120,21 +128,21 @@ class Actuated(World):
 
     @property
     def time(self) -> float:
-        """Seconds since the beginning."""
+        """Return the simulated time, seconds since the beginning."""
         return self._steps / RATE
 
     def actual(self) -> Array:
-        """The configuration (10,) as it is."""
+        """Return the actual configuration (10,)."""
         states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
         return np.array([state[0] for state in states])
 
     def width(self) -> float:
-        """How far the fingers are apart, metres."""
+        """Return how far the fingers are apart, metres."""
         states = self._bullet.getJointStates(self._mover, self._fingers, physicsClientId=self.client)
         return float(sum(state[0] for state in states))
 
     def tool(self) -> Array:
-        """T_world_tool (4, 4) as it is."""
+        """Return the actual T_world_tool (4, 4)."""
         state = self._bullet.getLinkState(
             self._mover, self._hand, computeForwardKinematics=1, physicsClientId=self.client
         )  # fmt: skip
@@ -142,12 +150,13 @@ class Actuated(World):
         return Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])).matrix @ self._T_hand_tool
 
     def speed(self, body: str) -> tuple[float, float]:
-        """Of a movable body: metres and radians a second."""
+        """Return the speed of a movable body: metres and radians a second."""
         moving = self._bullet.getBaseVelocity(self.solids[body][0].handle, physicsClientId=self.client)
         return float(np.linalg.norm(moving[0])), float(np.linalg.norm(moving[1]))
 
     def touches(self) -> dict[tuple[str, str], float]:
-        """Newtons between the robot's links and bodies, and between pairs of bodies one of which can move.
+        """Return the contact forces, newtons, between the robot's links and bodies, and between
+        pairs of bodies one of which can move.
 
         The link comes first in a pair; two bodies are sorted. "floor" is a body.
         """
@@ -163,7 +172,7 @@ class Actuated(World):
         return found
 
     def near_fingers(self, body: str, reach: float = NEAR) -> bool:
-        """Whether both fingers are this near to a body, metres."""
+        """Check whether both fingers are this near to a body, metres."""
         handle = self.solids[body][0].handle
         return all(
             self._bullet.getClosestPoints(self._mover, handle, reach, finger, -1, physicsClientId=self.client)
@@ -188,13 +197,15 @@ class Actuated(World):
         self.pass_through(body, True)
 
     def unbind(self) -> None:
-        """Undo `bind`; the robot still passes through the body until `pass_through` says otherwise."""
+        """Undo `bind`; the robot still passes through the body until `pass_through`
+        says otherwise.
+        """
         if self.bound is not None:
             self._bullet.removeConstraint(self._constraint, physicsClientId=self.client)
             self.bound = None
 
     def pass_through(self, body: str, passes: bool) -> None:
-        """Whether the robot and a body do not feel each other."""
+        """Switch collisions between the robot and a body: whether they do not feel each other."""
         for link in range(-1, self._bullet.getNumJoints(self._mover, physicsClientId=self.client)):
             self._bullet.setCollisionFilterPair(
                 self._mover, self.solids[body][0].handle, link, -1, 0 if passes else 1, physicsClientId=self.client
@@ -208,7 +219,9 @@ class Actuated(World):
             self._bullet.resetBaseVelocity(solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
 
     def become(self, scene: Scene) -> None:
-        """Take bodies away that a scene does not have, and add those that only it has, where it says."""
+        """Take bodies away that a scene does not have, and add those that only it has, where it
+        says.
+        """
         for name in self.scene.bodies.keys() - scene.bodies.keys():
             if self.bound == name:
                 self.unbind()
@@ -223,7 +236,9 @@ class Actuated(World):
         self.attend(self.bound)
 
     def attend(self, body: str | None) -> None:
-        """Wake all bodies; this one, which is handled, stays awake when it is at rest in the hand."""
+        """Wake all bodies; this one, which is handled, stays awake when it is at rest
+        in the hand.
+        """
         bullet = self._bullet
         for name in self.scene.movable:
             state = (

@@ -1,4 +1,5 @@
-"""Drop tests by the thousand: one engine, shapes made once, one body at a time let go among bodies that stand still.
+"""Drop tests by the thousand: one engine, shapes made once, one body at a time let go among bodies
+that stand still.
 
 Measured (tests/simulation/test_drop.py): compounds give the same distances as their pieces alone.
 """
@@ -41,7 +42,9 @@ class Item:
 
 @dataclass(frozen=True)
 class Contact:
-    """How far argument and obstacle are apart: metres, negative when they lie in each other."""
+    """The contact of argument and obstacle: the distance in metres, negative when they lie in each
+    other.
+    """
 
     obstacle: int
     distance: float
@@ -73,7 +76,9 @@ class Drops:
         self._bullet.disconnect(physicsClientId=self.client)
 
     def set_up(self, body: Item, obstacles: Sequence[tuple[Item, Array]]) -> None:
-        """Replace the scene: a body that can fall, and obstacles that stand still at their T_world_obstacle (4, 4)."""
+        """Replace the scene: a body that can fall, and obstacles that stand still at their
+        T_world_obstacle (4, 4).
+        """
         for handle, _ in [*self._obstacles, *([self._body] if self._body else [])]:
             self._bullet.removeBody(handle, physicsClientId=self.client)
         self._obstacles = [(self._add(item, matrix, fixed=True), item) for item, matrix in obstacles]
@@ -81,7 +86,9 @@ class Drops:
         self._body = (self._add(body, np.eye(4), fixed=False), body)
 
     def contacts(self, T_world_body: Array, reach: float = 0.005) -> list[Contact]:
-        """The obstacles that are nearer to the body at this pose than `reach` metres; the floor is obstacle -1."""
+        """Find the obstacles that are nearer to the body at this pose than `reach` metres; the
+        floor is obstacle -1.
+        """
         handle, item = self._placed(T_world_body)
         low, high = bounds(item.parts, Pose.from_matrix(T_world_body))
         found = [Contact(-1, float(low[2]))] if low[2] < reach else []
@@ -98,7 +105,9 @@ class Drops:
         return found
 
     def drop(self, T_world_body: Array, seconds: float) -> Array:
-        """Let the body go at rest; T_world_body (4, 4) afterwards. Ends early when it has come to rest."""
+        """Let the body go at rest; T_world_body (4, 4) afterwards. Ends early when it has come to
+        rest.
+        """
         handle, item = self._placed(T_world_body)
         bullet, client = self._bullet, self.client
         for step in range(math.ceil(seconds / STEP)):

@@ -19,7 +19,8 @@ _LIMIT = '<limit lower="-200000" upper="200000" effort="100000" velocity="10"/>'
 
 
 def mobile_urdf(robot: Robot) -> str:
-    """The arm and hand of the robot's own URDF on a base that slides along x and y and turns. Meshes by full path.
+    """Write the URDF of the robot's own arm and hand on a base that slides along x and y and turns.
+    Meshes by full path.
 
     Raises:
         InputError: The robot's base is not one box.

@@ -1,7 +1,7 @@
 """The only file that knows pybullet: bodies and the robot in an engine of their own.
 
-Measured (tests/simulation/test_physics.py): distances between boxes, cylinders and spheres are exact; Bullet pads a
-convex hull by 1 mm, which is added back here. (A hull whose pad is set to zero is measured wrongly when it penetrates.)
+Measured (tests/simulation/test_physics.py): distances of boxes, cylinders and spheres are exact;
+hulls are padded by 1 mm, added back here. (With a pad of zero, penetration is measured wrongly.)
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ class Solid:
 
 
 class World:
-    """The scene's bodies and its robot in one pybullet client without a window. Use it as a context manager.
+    """The scene's bodies and its robot in a pybullet client without a window, a context manager.
 
     Args:
         scene: Its bodies, at their starts.
         robot: The arm and hand of its URDF on its base; None leaves the robot out.
-        dynamic: Movable bodies have mass and fall, and every body is one piece. Otherwise nothing moves by itself and
-            every convex part is a piece of its own, which makes distances exact.
+        dynamic: Movable bodies have mass and fall, each one piece. Otherwise nothing moves by
+            itself, and each convex part is a piece of its own, which makes distances exact.
     """
 
     def __init__(self, scene: Scene, robot: Robot | None = None, *, dynamic: bool = False) -> None:
@@ -93,7 +93,7 @@ class World:
     # Where things are
 
     def pose(self, body: str) -> Array:
-        """T_world_body, shape (4, 4)."""
+        """Return T_world_body, shape (4, 4)."""
         if not self.dynamic:
             return self._poses[body]
         handle = self.solids[body][0].handle
@@ -109,7 +109,7 @@ class World:
             self._move(solid.handle, T_world_body @ solid.offset)
 
     def set_robot(self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float) -> None:
-        """Put the base at x, y, yaw, the arm at its joints' angles, each finger at opening / 2; metres and radians."""
+        """Put base at x, y, yaw, arm at joint angles, fingers at opening / 2; metres, radians."""
         at = (float(base[0]), float(base[1]), float(base[2]))
         if at != self._base_at:
             T_world_base = Pose.from_xyz_yaw(at[0], at[1], 0.0, at[2]).matrix
@@ -123,12 +123,12 @@ class World:
         self._bullet.resetJointStatesMultiDof(self._arm, self._joints, values, physicsClientId=self.client)
 
     def link_frames(self) -> Array:
-        """Position (m) and quaternion x, y, z, w of each link's frame, in the order of `links`, shape (l, 7)."""
+        """Return each link's frame, position (m) and quaternion xyzw, shape (l, 7), as `links`."""
         states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
         return np.array(self._base_frames + [link_frame(state) for state in states])
 
     def link_poses(self) -> dict[str, Array]:
-        """T_world_link of the links as they stand, shape (4, 4) each; the base has its frame on the floor."""
+        """Return T_world_link (4, 4) of the links as they stand; the base's is on the floor."""
         frames = self.link_frames().tolist()
         return {
             name: Pose((x, y, z), (qx, qy, qz, qw)).matrix
@@ -138,7 +138,7 @@ class World:
     # What touches what
 
     def distance(self, first: Solid, second: Solid, reach: float = 0.02) -> float:
-        """Metres between two solids, negative when they penetrate; infinite when farther apart than `reach`."""
+        """Compute two solids' distance, metres; negative in penetration, infinite past `reach`."""
         pads = first.pad + second.pad
         points = self._bullet.getClosestPoints(
             first.handle, second.handle, reach, first.link, second.link, physicsClientId=self.client
@@ -146,12 +146,12 @@ class World:
         return min((point[8] + pads for point in points), default=math.inf)
 
     def body_distance(self, first: str, second: str, reach: float = 0.02) -> float:
-        """The same between two bodies."""
+        """Compute the distance of two bodies as that of two solids."""
         pairs = itertools.product(self.solids[first], self.solids[second])
         return min((self.distance(a, b, reach) for a, b in pairs), default=math.inf)
 
     def rays(self, starts: Array, ends: Array) -> list[tuple[str | None, float]]:
-        """What rays hit first: the owner's name or None, and the fraction of the way. Shapes (n, 3), metres."""
+        """Cast rays (n, 3), metres: the owner's name of what each hits or None, and how far (0-1)."""
         hits: list[tuple[str | None, float]] = []
         for at in range(0, len(starts), 8192):  # more at a time overflow the engine's shared memory
             some = slice(at, at + 8192)
@@ -291,7 +291,7 @@ class World:
 
 
 def load_bullet() -> ModuleType:
-    """pybullet, without the build time that it prints when imported."""
+    """Import pybullet, without the build time that it prints when imported."""
     if "pybullet" in sys.modules:
         return sys.modules["pybullet"]
     with silence():

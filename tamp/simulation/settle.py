@@ -1,4 +1,4 @@
-"""Whether bodies stay where they are put, when gravity is on."""
+"""Stability test: do bodies stay where they are put, when gravity is on?"""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from tamp.simulation.physics import World
 
 @dataclass(frozen=True)
 class Settled:
-    """How far a body went while it settled: metres of its frame's origin, radians of its orientation."""
+    """The displacement of a body while it settled: metres of its frame's origin, radians of its
+    orientation.
+    """
 
     moved: float
     turned: float
 
 
 def settle(scene: Scene, poses: Mapping[str, Pose], seconds: float = 2.0) -> dict[str, Settled]:
-    """Let the movable bodies go at given poses and say how far each went after some time under gravity.
+    """Let the movable bodies go at given poses and say how far each went after some time under
+    gravity.
 
     Args:
         scene: Movable bodies that `poses` leaves out stand at their starts.

@@ -1,4 +1,6 @@
-"""Extents, volumes and surface points of convex shapes. The simulation's own: shared with nothing that plans."""
+"""Extents, volumes and surface points of convex shapes. The simulation's own: shared with nothing
+that plans.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ ROUND = 48
 
 
 def half_extents(shape: Shape) -> tuple[Array, Array]:
-    """Centre (3,) and half edge lengths (3,) of the box around a shape in its own frame, metres."""
+    """Return the bounding box of a shape in its own frame: centre (3,) and half edge lengths (3,),
+    metres.
+    """
     if isinstance(shape, Box):
         return np.zeros(3), np.array(shape.size) / 2
     if isinstance(shape, Cylinder):
@@ -28,7 +32,8 @@ def half_extents(shape: Shape) -> tuple[Array, Array]:
 
 
 def points(shape: Shape) -> Array:
-    """Points on the shape's surface that reach its extents, in its own frame, shape (n, 3), metres.
+    """Return points on the shape's surface that reach its extents, in its own frame, shape (n, 3),
+    metres.
 
     The vertices of a box or hull; the two rims of a cylinder; rings of a sphere.
     """
@@ -47,12 +52,14 @@ def points(shape: Shape) -> Array:
 
 
 def body_points(parts: Iterable[Part]) -> Array:
-    """`points` of all parts in the body's frame, shape (n, 3), metres."""
+    """Return `points` of all parts in the body's frame, shape (n, 3), metres."""
     return np.concatenate([part.pose.apply(points(part.shape)) for part in parts])
 
 
 def centre_of_mass(parts: Iterable[Part]) -> Array:
-    """Of a body of uniform density in its own frame, shape (3,), metres. Overlapping parts count twice."""
+    """Compute the centre of mass of a body of uniform density in its own frame, shape (3,), metres.
+    Overlapping parts count twice.
+    """
     total, moment = 0.0, np.zeros(3)
     for part in parts:
         volume, centre = _volume_and_centre(part.shape)
@@ -62,7 +69,9 @@ def centre_of_mass(parts: Iterable[Part]) -> Array:
 
 
 def floor_under(scene: Scene) -> tuple[Array, Array]:
-    """Centre (3,) and half edge lengths (3,) of a floor that reaches 50 m beyond the room and all bodies."""
+    """Return centre (3,) and half edge lengths (3,) of a floor that reaches 50 m beyond the room
+    and all bodies.
+    """
     room = scene.room
     spots = [(x, y) for x in room.x for y in room.y]
     spots += [body.pose.position[:2] for body in scene.bodies.values()]
@@ -71,10 +80,11 @@ def floor_under(scene: Scene) -> tuple[Array, Array]:
 
 
 def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
-    """Position (m) and quaternion (xyzw) of a link's frame from pybullet's state of the link.
+    """Return position (m) and quaternion (xyzw) of a link's frame from pybullet's state of the
+    link.
 
-    pybullet tells the frame of a link in single precision, that of its centre of mass in double: far from the world's
-    origin (0.06 mm at 1 km) the frame is taken from the latter.
+    pybullet tells the frame of a link in single precision, that of its centre of mass in double:
+    far from the world's origin (0.06 mm at 1 km) the frame is taken from the latter.
     """
     if max(abs(state[4][0]), abs(state[4][1])) < _SINGLE:
         return (*state[4], *state[5])
@@ -83,7 +93,7 @@ def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
 
 
 def obj(shape: Shape) -> str:
-    """A hull as the text of an OBJ file."""
+    """Write a hull as the text of an OBJ file."""
     if not isinstance(shape, Hull):
         raise TypeError(f"not a hull: {shape}")
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in shape.vertices]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def silence() -> Iterator[None]:
-    """Nothing that C code prints comes out: some releases write to stdout, some to stderr."""
+    """Silence what C code prints: some releases write to stdout, some to stderr."""
     sys.stdout.flush()
     sys.stderr.flush()
     kept = [os.dup(stream) for stream in (1, 2)]

@@ -1,4 +1,4 @@
-"""What bodies and the robot look like."""
+"""The appearance of bodies and of the robot: their meshes and colours."""
 
 from __future__ import annotations
 
@@ -18,20 +18,26 @@ BASE_COLOUR = (0.25, 0.3, 0.38, 1.0)
 ROBOT_COLOUR = (0.93, 0.93, 0.95, 1.0)
 
 CELL = 0.006
-"""Metres: details of the robot that are smaller are not drawn; a third of the Panda's triangles stay."""
+"""Metres: details of the robot that are smaller are not drawn; a third of the Panda's triangles
+stay.
+"""
 
 LARGE = 20_000
 """Triangles of a body's mesh above which it is drawn with details of a hundredth of its size."""
 
 
 def body_meshes(body: Body) -> tuple[Mesh, ...]:
-    """A body in its own frame: what its file shows, where that can be read, else its parts."""
+    """Return the meshes of a body in its own frame: what its file shows, where that can be read,
+    else its parts.
+    """
     drawn, _ = _drawing(body)
     return drawn or tuple(_part(part, body.colour) for part in body.parts)
 
 
 def undrawable(bodies: Iterable[Body]) -> tuple[str, ...]:
-    """For each body of whose file the drawing cannot be read, a sentence that says so; its parts are drawn."""
+    """Describe each body of whose file the drawing cannot be read, in a sentence; its parts are
+    drawn.
+    """
     sentences: list[str] = []
     for body in bodies:
         _, why = _drawing(body)
@@ -42,7 +48,7 @@ def undrawable(bodies: Iterable[Body]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def _drawing(body: Body) -> tuple[tuple[Mesh, ...], str]:
-    """The meshes of a body's visuals, or none and why they cannot be read."""
+    """Read the meshes of a body's visuals, or return none and why they cannot be read."""
     meshes: list[Mesh] = []
     try:
         for visual in body.visuals:
@@ -66,7 +72,9 @@ def _visual(visual: Visual, body: Body) -> Iterator[Mesh]:
 
 
 def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
-    """Each link in its own frame: the base's parts, and what the arm's URDF shows."""
+    """Return the meshes of each link in its own frame: the base's parts, and what the arm's URDF
+    shows.
+    """
     visuals = read_visuals(robot.urdf)
     looks: dict[str, tuple[Mesh, ...]] = {}
     for link in robot.links:
@@ -76,7 +84,9 @@ def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
                 meshes += [_part(part, ROBOT_COLOUR) for part in primitive_parts(element)]
             if element.mesh is not None:
                 coloured = element.mesh.with_suffix(".mtl").is_file()
-                read = read_mesh(element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL)
+                read = read_mesh(
+                    element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL
+                )
                 meshes += [mesh.moved(element.pose.matrix) for mesh in read]
         colour = BASE_COLOUR if link is robot.links[0] else ROBOT_COLOUR
         looks[link.name] = tuple(meshes) or tuple(_part(part, colour) for part in link.parts)

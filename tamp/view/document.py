@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,82 +23,121 @@ GRID = 65_535
 
 
 def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dict[str, Any]:
-    """The film, the samples and the story; assets/page.js reads it."""
-    scene, robot = film.scene, film.robot
-    looks = robot_meshes(robot)
+    """Describe the film, the samples and the story as the document that assets/page.js reads."""
     return {
-        "title": scene.name,
-        "robot": {
-            "links": [{"name": link.name, "meshes": _meshes(looks[link.name])} for link in robot.links],
-            "T_base_arm": _matrix(robot.T_base_arm.matrix),
-            "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
-            "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
-            "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
-            "fingers": [
-                {
-                    "link": finger.child,
-                    "origin": _matrix(finger.origin.matrix),
-                    "axis": list(finger.axis),
-                }
-                for finger in robot.fingers
-            ],
-        },
-        "bodies": [
-            {
-                "name": name,
-                "movable": body.movable,
-                "height": float(bounds(body.parts, Pose())[1][2]),
-                "meshes": _meshes(body_meshes(body)),
-                "stays": [
-                    {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)} for stay in film.stays[name]
-                ] if name in film.stays else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix)}],
-            }
-            for name, body in scene.bodies.items()
-        ],
-        "surfaces": [
-            {"name": place.name, "T": _matrix(scene.world_pose(place).matrix), "size": list(place.size[:2])}
-            for place in (*scene.surfaces.values(), *scene.cavities.values())
-        ],
-        "room": {"x": list(scene.room.x), "y": list(scene.room.y)},
-        "actions": [
-            {
-                "name": action.name,
-                "about": action.text.removeprefix(action.name).strip(),
-                "text": action.text,
-                "start": action.start,
-                "end": action.end,
-            }
-            for action in film.actions
-        ],
+        "title": film.scene.name,
+        "robot": _robot(film),
+        "bodies": _bodies(film),
+        "surfaces": _surfaces(film),
+        "room": {"x": list(film.scene.room.x), "y": list(film.scene.room.y)},
+        "actions": _actions(film),
         "times": _packed(film.times.astype("<f4")),
         "rows": _packed(film.rows.astype("<f4")),
-        "samples": [
-            {
-                "kind": shot.kind,
-                "body": shot.body,
-                "T": _matrix(shot.T),
-                "used": shot.used,
-                "test": shot.test,
-                "why": shot.why,
-                "others": list(shot.others),
-                "text": shot.text,
-            }
-            for shot in shots
-        ],
-        "story": {
-            "head": story.head,
-            "why": list(story.why),
-            "skeletons": [{"text": text, "lines": list(lines)} for text, lines in story.skeletons],
-            "search": story.search,
-            "streams": [list(row) for row in story.streams],
-            "time": [list(row) for row in story.time],
-        },
+        "samples": _samples(shots),
+        "story": _story(story),
         "view": _view(film),
-    }  # fmt: skip
+    }
+
+
+def _robot(film: Film) -> dict[str, Any]:
+    """Describe the robot's links, and the frames from one to the next."""
+    robot = film.robot
+    looks = robot_meshes(robot)
+
+    return {
+        "links": [{"name": link.name, "meshes": _meshes(looks[link.name])} for link in robot.links],
+        "T_base_arm": _matrix(robot.T_base_arm.matrix),
+        "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
+        "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
+        "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
+        "fingers": [
+            {
+                "link": finger.child,
+                "origin": _matrix(finger.origin.matrix),
+                "axis": list(finger.axis),
+            }
+            for finger in robot.fingers
+        ],
+    }
+
+
+def _bodies(film: Film) -> list[dict[str, Any]]:
+    """Describe the bodies: their meshes, and the poses that they take in turn."""
+    return [
+        {
+            "name": name,
+            "movable": body.movable,
+            "height": float(bounds(body.parts, Pose())[1][2]),
+            "meshes": _meshes(body_meshes(body)),
+            "stays": [
+                {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)}
+                for stay in film.stays[name]
+            ]
+            if name in film.stays
+            else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix)}],
+        }
+        for name, body in film.scene.bodies.items()
+    ]
+
+
+def _surfaces(film: Film) -> list[dict[str, Any]]:
+    """Describe the surfaces, and the floors of the cavities, as rectangles."""
+    scene = film.scene
+    return [
+        {
+            "name": place.name,
+            "T": _matrix(scene.world_pose(place).matrix),
+            "size": list(place.size[:2]),
+        }
+        for place in (*scene.surfaces.values(), *scene.cavities.values())
+    ]
+
+
+def _actions(film: Film) -> list[dict[str, Any]]:
+    """Describe the plan's actions, and when each begins and ends, seconds."""
+    return [
+        {
+            "name": action.name,
+            "about": action.text.removeprefix(action.name).strip(),
+            "text": action.text,
+            "start": action.start,
+            "end": action.end,
+        }
+        for action in film.actions
+    ]
+
+
+def _samples(shots: Sequence[Shot]) -> list[dict[str, Any]]:
+    """Describe the samples that were tried."""
+    return [
+        {
+            "kind": shot.kind,
+            "body": shot.body,
+            "T": _matrix(shot.T),
+            "used": shot.used,
+            "test": shot.test,
+            "why": shot.why,
+            "others": list(shot.others),
+            "text": shot.text,
+        }
+        for shot in shots
+    ]
+
+
+def _story(story: Story) -> dict[str, Any]:
+    """Describe how the plan was found, for the page's panel."""
+    return {
+        "head": story.head,
+        "why": list(story.why),
+        "skeletons": [{"text": text, "lines": list(lines)} for text, lines in story.skeletons],
+        "search": story.search,
+        "streams": [list(row) for row in story.streams],
+        "time": [list(row) for row in story.time],
+    }
 
 
 def _view(film: Film) -> dict[str, Any]:
-    """The first camera, and the ball in which shadows are drawn."""
+    """Describe the first camera, and the ball in which shadows are drawn."""
     camera = framing(film, (1000, 800))
     target, out = np.array(camera.target), np.array(camera.eye) - np.array(camera.target)
     distance = float(np.linalg.norm(out))

@@ -26,37 +26,45 @@ ROUND = 40
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles of one colour: vertices (n, 3) in metres, faces (m, 3), counter-clockwise from outside."""
+    """Triangles of one colour: vertices (n, 3) in metres, faces (m, 3), counter-clockwise from
+    outside.
+    """
 
     vertices: Array
     faces: NDArray[np.integer]
     colour: Colour
 
     def moved(self, T_a_b: Array) -> Mesh:
-        """The mesh of frame b in frame a; T_a_b of shape (4, 4)."""
+        """Transform the mesh of frame b to frame a; T_a_b of shape (4, 4)."""
         return Mesh(self.vertices @ T_a_b[:3, :3].T + T_a_b[:3, 3], self.faces, self.colour)
 
 
 def unit(vectors: Array) -> Array:
-    """Vectors of length 1 in the same directions, shape (..., 3); what has no direction stays 0."""
+    """Normalize vectors to length 1, shape (..., 3); what has no direction stays 0."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
 def shape_mesh(shape: Shape, colour: Colour) -> Mesh:
-    """A convex shape in its own frame."""
+    """Triangulate a convex shape in its own frame."""
     if isinstance(shape, Box):
         return _box(shape, colour)
     if isinstance(shape, Cylinder):
         half = shape.height / 2
-        return _turned([(0.0, -half), (shape.radius, -half), (shape.radius, half), (0.0, half)], colour)
+        return _turned(
+            [(0.0, -half), (shape.radius, -half), (shape.radius, half), (0.0, half)], colour
+        )
     if isinstance(shape, Sphere):
         tilts = np.linspace(-math.pi / 2, math.pi / 2, ROUND // 2)
-        return _turned([(shape.radius * math.cos(a), shape.radius * math.sin(a)) for a in tilts], colour)
+        return _turned(
+            [(shape.radius * math.cos(a), shape.radius * math.sin(a)) for a in tilts], colour
+        )
     return Mesh(np.asarray(shape.vertices, dtype=float), shape.faces, colour)
 
 
-def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0) -> list[Mesh]:
-    """The triangles of a mesh file, a mesh for each of its colours.
+def read_mesh(
+    file: Path, scale: Sequence[float], colour: Colour | None, cell: float = 0.0
+) -> list[Mesh]:
+    """Read the triangles of a mesh file, a mesh for each of its colours.
 
     Args:
         file: OBJ, STL, PLY, COLLADA or glTF.
@@ -72,7 +80,9 @@ def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: f
     mirrored = float(np.prod(scale)) < 0
     for vertices, faces, own in pieces:
         if not np.isfinite(vertices).all():
-            raise InputError(f"the mesh '{file.name}' holds coordinates that are not finite numbers")
+            raise InputError(
+                f"the mesh '{file.name}' holds coordinates that are not finite numbers"
+            )
         turned = faces[:, ::-1] if mirrored else faces
         groups.setdefault(colour or own, []).append((vertices * np.asarray(scale), turned))
     meshes = [_joined(pieces, own) for own, pieces in groups.items()]
@@ -80,7 +90,7 @@ def read_mesh(file: Path, scale: Sequence[float], colour: Colour | None, cell: f
 
 
 def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]:
-    """The geometries of a file with the colours of their materials."""
+    """Yield the geometries of a file with the colours of their materials."""
     if file.suffix.lower() == ".dae":
         yield *read_triangles(file), _GREY
         return
@@ -95,24 +105,37 @@ def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]
             io.BytesIO(content), file_type=file.suffix.lower()[1:], resolver=beside, process=False
         )  # fmt: skip
         found = [
-            (np.asarray(one.vertices, dtype=float), np.asarray(one.faces, dtype=np.int64), _material(one))
+            (
+                np.asarray(one.vertices, dtype=float),
+                np.asarray(one.faces, dtype=np.int64),
+                _material(one),
+            )
             for one in loaded.dump()
             if isinstance(one, trimesh.Trimesh)
         ]
     except Exception as error:  # trimesh raises whatever its readers stumble on
-        raise InputError(f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}") from None
+        raise InputError(
+            f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}"
+        ) from None
     yield from found
 
 
 def simplified(mesh: Mesh, cell: float) -> Mesh:
-    """A coarser mesh: the vertices in each cube of that many metres become one, their mean (vertex clustering)."""
+    """Simplify a mesh by vertex clustering: the vertices in each cube of that many metres become
+    one, their mean.
+    """
     cubes = np.round(mesh.vertices / cell).astype(np.int64)
     _, member = np.unique(cubes, axis=0, return_inverse=True)
     member = member.ravel()
     counts = np.bincount(member)
-    means = np.stack([np.bincount(member, mesh.vertices[:, axis]) for axis in range(3)], axis=1) / counts[:, None]
+    means = (
+        np.stack([np.bincount(member, mesh.vertices[:, axis]) for axis in range(3)], axis=1)
+        / counts[:, None]
+    )
     faces = member[mesh.faces]
-    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])]
+    faces = faces[
+        (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])
+    ]
     return Mesh(means, faces, mesh.colour)
 
 
@@ -140,9 +163,14 @@ def _box(shape: Box, colour: Colour) -> Mesh:
 
 
 def _turned(profile: list[tuple[float, float]], colour: Colour) -> Mesh:
-    """A profile of (radius, z), from the bottom to the top, turned about z."""
+    """Make the surface of revolution of a profile of (radius, z), from the bottom to the top, about
+    z.
+    """
     angles = np.linspace(0.0, 2 * math.pi, ROUND, endpoint=False)
-    rings = [np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1) for r, z in profile]
+    rings = [
+        np.stack([r * np.cos(angles), r * np.sin(angles), np.full(ROUND, z)], axis=1)
+        for r, z in profile
+    ]
     faces: list[tuple[int, int, int]] = []
     for ring in range(len(profile) - 1):
         low, high = ring * ROUND, (ring + 1) * ROUND

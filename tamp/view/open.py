@@ -1,4 +1,4 @@
-"""From what a user names, or has just planned, to a film and its story."""
+"""The way from what a user names, or has just planned, to a film and its story."""
 
 from __future__ import annotations
 
@@ -25,9 +25,11 @@ def _read(files: Sequence[Path], meshes: Sequence[Path]) -> None:
 
 
 def open_film(
-    what: str, problem: str | None = None, read: Callable[[Sequence[Path], Sequence[Path]], None] = _read
+    what: str,
+    problem: str | None = None,
+    read: Callable[[Sequence[Path], Sequence[Path]], None] = _read,
 ) -> Opened:
-    """A plan file (.json), or a problem by file or name.
+    """Open a plan file (.json), or a problem by file or name.
 
     Args:
         what: The file or the name.
@@ -55,7 +57,9 @@ def open_film(
 
 
 def film_of_solution(solution: Solution) -> Opened:
-    """What `solve` returned: the plan, or, when there is none, the scene with what was tried."""
+    """Make the film of what `solve` returned: the plan, or, when there is none, the scene with what
+    was tried.
+    """
     problem = solution.problem
     robot = problem.context.robot
     if solution.solved:

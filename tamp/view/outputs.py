@@ -1,4 +1,4 @@
-"""What a user wants to see, and showing it."""
+"""The outputs that a user asks for (page, picture, video), and how they are written."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_PIXELS = 4096
 
 @dataclass(frozen=True)
 class Wishes:
-    """Where a film is to be shown.
+    """A request for outputs: where a film is to be shown.
 
     Attributes:
         html: A page to write.
@@ -48,24 +48,25 @@ class Wishes:
 
     @property
     def page(self) -> bool:
-        """Whether the page is wanted, with the samples that were tried."""
+        """Check whether the page is wanted, with the samples that were tried."""
         return self.view or self.html is not None
 
     @property
     def outputs(self) -> dict[str, Path | None]:
-        """What is written, by option."""
+        """Return the files to be written, by option."""
         return {"--html": self.html, "--png": self.png, "--video": self.video}
 
     @property
     def any(self) -> bool:
-        """Whether anything is wanted."""
+        """Check whether anything is wanted."""
         return self.page or self.png is not None or self.video is not None
 
     def check(self) -> None:
         """Refuse what cannot be done before time is spent.
 
         Raises:
-            InputError: An output that cannot be written, an ending or a number that is not possible, no browser.
+            InputError: An output that cannot be written, an ending or a number that is not
+                possible, no browser.
         """
         from tamp.view.server import check_browser
 
@@ -84,14 +85,20 @@ class Wishes:
             raise InputError(f"--speed: {self.speed:g} is not between 0 and 1000")
         if self.size is not None and not all(16 <= side <= MOST_PIXELS for side in self.size):
             raise InputError(
-                f"--size: {self.size[0]}x{self.size[1]} is not between 16x16 and {MOST_PIXELS}x{MOST_PIXELS}"
+                f"--size: {self.size[0]}x{self.size[1]} is not between "
+                f"16x16 and {MOST_PIXELS}x{MOST_PIXELS}"
             )
         if self.view and self.browser:
             check_browser()
 
 
 def fulfil(
-    wishes: Wishes, film: Film, story: Story, document: Mapping[str, Any], file: Path | None, say: Callable[[str], None]
+    wishes: Wishes,
+    film: Film,
+    story: Story,
+    document: Mapping[str, Any],
+    file: Path | None,
+    say: Callable[[str], None],
 ) -> None:
     """Show a film.
 

@@ -31,5 +31,9 @@ def check_inside(meshes: Iterable[Path], problem: Path) -> None:
 
 def _public() -> list[Path]:
     found = [importlib.util.find_spec(name) for name in PUBLIC]
-    folders = [Path(spec.origin).resolve().parent for spec in found if spec is not None and spec.origin is not None]
+    folders = [
+        Path(spec.origin).resolve().parent
+        for spec in found
+        if spec is not None and spec.origin is not None
+    ]
     return folders

@@ -1,4 +1,6 @@
-"""One HTML file that shows a scene or plays a plan: everything is in it, it asks for nothing from anywhere."""
+"""One HTML file that shows a scene or plays a plan: everything is in it, it asks for nothing from
+anywhere.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ ASSETS = Path(__file__).resolve().parent / "assets"
 
 
 def page(document: Mapping[str, Any]) -> str:
-    """The page of a document from `page_document`."""
+    """Render the HTML page of a document from `page_document`."""
     document = _harmless(dict(document))
     data = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     parts = {
@@ -30,7 +32,7 @@ def page(document: Mapping[str, Any]) -> str:
 
 
 def _harmless(value: Any) -> Any:
-    """A document with what hides or turns text around, in names out of files, written in backslashes."""
+    """Escape what hides or turns text around, in names out of files, in backslashes."""
     if isinstance(value, str):
         return printable(value)
     if isinstance(value, dict):

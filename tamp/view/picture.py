@@ -6,7 +6,6 @@ import io
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,24 +18,16 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array
 from tamp.system.outputs import write_whole
 from tamp.view.appearance import body_meshes, robot_meshes
-from tamp.view.mesh import Mesh, simplified, unit
+from tamp.view.mesh import Mesh, simplified
 from tamp.view.rasterizer import Camera, Triangles, render, triangles
-from tamp.view.timeline import Film, holding, tool_path
+from tamp.view.timeline import Film
+from tamp.view.trails import trails
 from tamp.view.video_formats import MOVING, check_suffix
 
 if TYPE_CHECKING:
     from PIL import Image
 
 FLOOR_COLOURS = ((0.86, 0.85, 0.83, 1.0), (0.83, 0.82, 0.8, 1.0))
-EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (0.2, 0.45, 0.85, 1.0), (0.95, 0.45, 0.1, 1.0), (0.3, 0.3, 0.35, 1.0)
-"""Of the hand's path, empty and with a body in it, and of the base's."""
-
-THICK = 0.006
-"""Half the thickness of a path's line, metres."""
-
-STEP = 0.02
-"""A path's line leaves out points that are nearer to each other, metres."""
-
 VIEW = np.array([0.28, -0.86, 0.62])
 """Where from the scene's middle the eye is."""
 
@@ -62,21 +53,8 @@ TILES = 100
 """Of the floor, on each side at most."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Trail:
-    """The line of a path, and when each of its triangles is passed, shape (n,), increasing."""
-
-    line: Triangles
-    passed: Array
-
-    def until(self, time: float) -> Triangles:
-        """What was passed by then."""
-        count = int(np.searchsorted(self.passed, time, side="right"))
-        return Triangles(self.line.corners[:count], self.line.normals[:count], self.line.colours[:count])
-
-
 class Studio:
-    """What is drawn of a film, prepared once for all its pictures.
+    """The renderer of a film: what is drawn of it, prepared once for all its pictures.
 
     Args:
         film: What happens.
@@ -89,18 +67,22 @@ class Studio:
         self.camera = camera or framing(film, size)
         self._kinematics = Kinematics(film.robot)
         looks = robot_meshes(film.robot)
-        self._robot = {name: [triangles(mesh) for mesh in meshes if len(mesh.faces)] for name, meshes in looks.items()}
+        self._robot = {
+            name: [triangles(mesh) for mesh in meshes if len(mesh.faces)]
+            for name, meshes in looks.items()
+        }
         bodies = film.scene.bodies
         meshes = {name: body_meshes(body) for name, body in bodies.items()}
         crowd = sum(len(mesh.faces) for some in meshes.values() for mesh in some) > MOST_TRIANGLES
         self._bodies = {
-            name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some] for name, some in meshes.items()
+            name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some]
+            for name, some in meshes.items()
         }
         self._floor = _floor(film)
-        self._trails = _trails(film, self._kinematics)
+        self._trails = trails(film, self._kinematics)
 
     def frame(self, time: float) -> NDArray[np.uint8]:
-        """The picture at a time, with the paths up to then; rows x columns x RGB."""
+        """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
         row = self.film.row(time)
         links = self._kinematics.link_poses(row[:10], float(row[10]))
         parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
@@ -111,11 +93,20 @@ class Studio:
 
 
 def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
-    """A camera that has all bodies, and the robot wherever it goes, in view."""
+    """Place a camera that has all bodies, and the robot wherever it goes, in view."""
     boxes = [bounds(body.parts, body.pose) for body in film.scene.bodies.values()]
-    boxes += [(np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4])) for x, y in film.rows[::20, :2]]
+    boxes += [
+        (np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4]))
+        for x, y in film.rows[::20, :2]
+    ]
     boxes += [(np.array([*film.rows[0, :2], 0.4]), np.array([*film.rows[0, :2], 1.1]))]
-    corners = np.array([corner for low, high in boxes for corner in itertools.product(*zip(low, high, strict=True))])
+    corners = np.array(
+        [
+            corner
+            for low, high in boxes
+            for corner in itertools.product(*zip(low, high, strict=True))
+        ]
+    )
     ahead = -VIEW / np.linalg.norm(VIEW)
     right = np.cross(ahead, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
@@ -128,11 +119,15 @@ def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
         distance = float(np.max(np.abs(seen[:, :2]) / reach - seen[:, 2:]))
         plane = seen[:, :2] / (seen[:, 2:] + distance)
         target = target + (plane.min(axis=0) + plane.max(axis=0)) / 2 * distance @ frame[:2]
+
     return Camera(_three(target - ahead * distance), _three(target), angle)
 
 
-def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)) -> None:
-    """One picture, or one beside the other for several times; by default a plan's start, middle and end.
+def write_png(
+    film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)
+) -> None:
+    """Write one picture, or one beside the other for several times; by default a plan's start,
+    middle and end.
 
     Raises:
         InputError: The file cannot be written.
@@ -148,36 +143,49 @@ def write_png(film: Film, file: Path, times: Sequence[float] = (), size: tuple[i
     _save(file, image, "PNG", {"optimize": True})
 
 
-def write_video(film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)) -> float:
-    """A moving picture of the plan, `speed` times as fast as the robot; the seconds of long pauses that were cut.
+def write_video(
+    film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)
+) -> float:
+    """Write a video of the plan, `speed` times as fast as the robot; return the seconds of long
+    pauses that were cut.
 
     Raises:
-        InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it cannot be written.
+        InputError: Nothing moves, it would be far too long, the file's ending is unknown, or it
+            cannot be written.
     """
     from PIL import Image
 
     check_suffix(file)
     suffix = file.suffix.lower()
     if not film.actions:
-        raise InputError("nothing moves without a plan", file=file, remedy="A picture is made by --png")
+        raise InputError(
+            "nothing moves without a plan", file=file, remedy="A picture is made by --png"
+        )
     moments, cut = moments_of(film, speed)
     deep = 1 if suffix == ".gif" else 3
     most = MOST_BYTES // (size[0] * size[1] * deep)
     if len(moments) > most:
-        what = f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, and {most:,} are the most"
+        what = (
+            f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, "
+            f"and {most:,} are the most"
+        )
         faster = math.ceil(speed * len(moments) / most)
-        raise InputError(what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room")
+        raise InputError(
+            what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room"
+        )
     studio = Studio(film, size)
     images = [Image.fromarray(studio.frame(float(moments[len(moments) // 2])))]
     palette = images[0].quantize(128, dither=Image.Dither.NONE) if suffix == ".gif" else None
-    images = [_coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments]
+    images = [
+        _coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments
+    ]
     options = {"save_all": True, "append_images": images[1:], "duration": 1000 // FRAMES, "loop": 0}
     _save(file, images[0], MOVING[suffix], options)
     return cut
 
 
 def moments_of(film: Film, speed: float) -> tuple[Array, float]:
-    """The times of a moving picture's frames, and how many seconds of pauses they leave out.
+    """Choose the times of a video's frames, and return how many seconds of pauses they leave out.
 
     Raises:
         InputError: There would be more than anybody has memory for.
@@ -194,7 +202,7 @@ def moments_of(film: Film, speed: float) -> tuple[Array, float]:
 
 
 def _coloured(image: Image.Image, palette: Image.Image | None) -> Image.Image:
-    """With colours that the scene has, the same in all frames."""
+    """Quantize a picture to colours that the scene has, the same in all frames."""
     from PIL import Image
 
     return image if palette is None else image.quantize(palette=palette, dither=Image.Dither.NONE)
@@ -216,49 +224,27 @@ def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> N
 
 
 def _floor(film: Film) -> list[Triangles]:
-    """Tiles of two shades, a metre wide (larger ones in a hall), under the room and around it."""
+    """Make tiles of two shades, a metre wide (larger ones in a hall), under the room and around
+    it.
+    """
     room = film.scene.room
     side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
-    xs, ys = (range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND) for low, high in (room.x, room.y))
+    xs, ys = (
+        range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND)
+        for low, high in (room.x, room.y)
+    )
     tiles: list[Triangles] = []
     for shade, colour in enumerate(FLOOR_COLOURS):
         corners = [(x, y) for x in xs for y in ys if (x + y) % 2 == shade]
         around = ((0, 0), (1, 0), (1, 1), (0, 1))
-        vertices = [(side * (x + dx), side * (y + dy), 0.0) for x, y in corners for dx, dy in around]
-        faces = [(4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))]
+        vertices = [
+            (side * (x + dx), side * (y + dy), 0.0) for x, y in corners for dx, dy in around
+        ]
+        faces = [
+            (4 * i, 4 * i + a, 4 * i + b) for i in range(len(corners)) for a, b in ((1, 2), (2, 3))
+        ]
         tiles.append(triangles(Mesh(np.array(vertices), np.array(faces), colour)))
     return tiles
-
-
-def _trails(film: Film, kinematics: Kinematics) -> list[_Trail]:
-    full = np.array([*holding(film), False])
-    tool = tool_path(film, kinematics)
-    base = np.column_stack([film.rows[:, :2], np.full(len(film.rows), 0.01)])
-    lines = [(tool, ~full, EMPTY_COLOUR), (tool, full, FULL_COLOUR), (base, np.full(len(full), True), DRIVE_COLOUR)]
-    trails = [_trail(points, film.times, shown, colour) for points, shown, colour in lines]
-    return [trail for trail in trails if len(trail.passed)]
-
-
-def _trail(points: Array, times: Array, shown: NDArray[np.bool_], colour: tuple[float, float, float, float]) -> _Trail:
-    """Three-sided rods along the stretches of a polyline that are shown."""
-    kept = [0]
-    for i in range(1, len(points)):
-        if np.linalg.norm(points[i] - points[kept[-1]]) >= STEP or shown[i] != shown[kept[-1]]:
-            kept.append(i)
-    ends = np.array([(a, b) for a, b in itertools.pairwise(kept) if shown[a]], dtype=int).reshape(-1, 2)
-    starts, stops = points[ends[:, 0]], points[ends[:, 1]]
-    along = stops - starts
-    steep = np.abs(along[:, 2]) > 0.9 * np.linalg.norm(along, axis=1)
-    side = unit(np.cross(along, np.where(steep[:, None], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])))
-    up = unit(np.cross(side, along))
-    turns = np.array([0.5, 2.6, 4.7])[:, None, None]
-    ring = THICK * (np.cos(turns) * side + np.sin(turns) * up)
-    vertices = np.concatenate([starts + ring, stops + ring]).transpose(1, 0, 2).reshape(-1, 3)
-    rod = [(i, j, 3 + j) for i, j in ((0, 1), (1, 2), (2, 0))] + [
-        (i, 3 + j, 3 + i) for i, j in ((0, 1), (1, 2), (2, 0))
-    ]
-    faces = (6 * np.arange(len(ends))[:, None, None] + np.array(rod)).reshape(-1, 3)
-    return _Trail(triangles(Mesh(vertices, faces, colour)), np.repeat(times[ends[:, 1]], len(rod)))
 
 
 def _three(vector: Array) -> tuple[float, float, float]:

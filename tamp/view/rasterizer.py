@@ -1,4 +1,6 @@
-"""Triangles to pixels, without a window, a graphics card or a driver: a depth buffer, a light and its shadows."""
+"""Triangles to pixels, without a window, a graphics card or a driver: a depth buffer, a light and
+its shadows.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ BACKGROUND = (0.94, 0.95, 0.96)
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the eye is and what it looks at, metres in the world; the angle of view from top to bottom, degrees."""
+    """A camera: where the eye is and what it looks at, metres in the world; the angle of view from
+    top to bottom, degrees.
+    """
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
@@ -54,13 +58,15 @@ class Triangles:
     colours: Array
 
     def moved(self, T_a_b: Array) -> Triangles:
-        """The same of frame b in frame a."""
+        """Transform the triangles of frame b to frame a."""
         turn = T_a_b[:3, :3].T
         return Triangles(self.corners @ turn + T_a_b[:3, 3], self.normals @ turn, self.colours)
 
 
 def triangles(mesh: Mesh) -> Triangles:
-    """A mesh with the normals of its corners: shared where faces meet smoothly, the face's own at edges."""
+    """Shade a mesh with the normals of its corners: shared where faces meet smoothly, the face's
+    own at edges.
+    """
     corners = mesh.vertices[mesh.faces]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     _, member = np.unique(np.round(mesh.vertices, 5), axis=0, return_inverse=True)
@@ -76,7 +82,7 @@ def triangles(mesh: Mesh) -> Triangles:
 
 
 def render(parts: Sequence[Triangles], camera: Camera, size: tuple[int, int]) -> NDArray[np.uint8]:
-    """A picture.
+    """Render a picture.
 
     Args:
         parts: In the world.
@@ -105,7 +111,7 @@ def render(parts: Sequence[Triangles], camera: Camera, size: tuple[int, int]) ->
 
 
 def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
-    """Columns, rows and distances of corners, shape (n, 3, 3)."""
+    """Project corners to columns, rows and distances, shape (n, 3, 3)."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     ahead = unit((target - eye)[None])[0]
     right = unit(np.cross(ahead, [0.0, 0.0, 1.0])[None])[0]
@@ -117,7 +123,9 @@ def _screen(corners: Array, camera: Camera, columns: int, rows: int) -> Array:
 
 
 def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
-    """What the sun sees: the axes (3, 3) of its view, the scale and offset (3,) of its map, the map of distances."""
+    """Compute the shadow map, what the sun sees: the axes (3, 3) of its view, the scale and offset
+    (3,) of its map, the map of distances.
+    """
     side = unit(np.cross(SUN, np.array([0.0, 0.0, 1.0])))
     frame = np.stack([side, np.cross(SUN, side), -SUN], axis=1)
     raised = corners[corners[:, :, 2].max(axis=1) > 0.001]  # the floor throws no shadow
@@ -133,7 +141,9 @@ def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
 
 @njit(cache=True)
 def _fill(screen, perspective, depth, ids, weights):
-    """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the eye are left out."""
+    """Enter triangles (n, 3, [column, row, distance]) into a depth buffer; those partly behind the
+    eye are left out.
+    """
     rows, columns = depth.shape
     for n in range(screen.shape[0]):
         ax, ay, az = screen[n, 0, 0], screen[n, 0, 1], screen[n, 0, 2]
@@ -146,6 +156,7 @@ def _fill(screen, perspective, depth, ids, weights):
             continue
         left, right = max(0, int(min(ax, bx, cx))), min(columns - 1, int(max(ax, bx, cx)))
         top, bottom = max(0, int(min(ay, by, cy))), min(rows - 1, int(max(ay, by, cy)))
+
         for row in range(top, bottom + 1):
             y = row + 0.5
             for column in range(left, right + 1):
@@ -161,6 +172,7 @@ def _fill(screen, perspective, depth, ids, weights):
                     u, v, w = u * z, v * z, w * z
                 else:
                     z = u * az + v * bz + w * cz
+
                 if z < depth[row, column]:
                     depth[row, column] = z
                     ids[row, column] = n
@@ -171,8 +183,24 @@ def _fill(screen, perspective, depth, ids, weights):
 
 
 @njit(cache=True)
-def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame, scale, offset, shadows, pixels):
-    """Colours of pixels from the triangles that they see: some light from everywhere, some from above, the sun's."""
+def _shade(
+    ids,
+    weights,
+    corners,
+    normals,
+    colours,
+    eye,
+    sun,
+    background,
+    frame,
+    scale,
+    offset,
+    shadows,
+    pixels,
+):
+    """Shade pixels by the triangles that they see: some light from everywhere, some from above, the
+    sun's.
+    """
     rows, columns = ids.shape
     last = shadows.shape[0] - 1
     point, normal = np.zeros(3), np.zeros(3)
@@ -182,7 +210,9 @@ def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame,
             if n < 0:
                 pixels[row, column] = background
                 continue
+
             facing, length, lit = 0.0, 0.0, 0.0
+
             for axis in range(3):
                 point[axis], normal[axis] = 0.0, 0.0
                 for corner in range(3):
@@ -190,6 +220,7 @@ def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame,
                     normal[axis] += weights[row, column, corner] * normals[n, corner, axis]
                 facing += normal[axis] * (eye[axis] - point[axis])
                 length += normal[axis] * normal[axis]
+
             sign = (1.0 if facing >= 0.0 else -1.0) / max(
                 np.sqrt(length), 1e-9
             )  # the inside of what is open shows, too
@@ -207,6 +238,7 @@ def _shade(ids, weights, corners, normals, colours, eye, sun, background, frame,
                         c, r = min(max(int(x + across), 0), last), min(max(int(y + along), 0), last)
                         light += 0.25 * (SHADOW if z - BIAS > shadows[r, c] else 1.0)
                 lit *= light
+
             brightness = 0.5 + 0.12 * sign * normal[2] + 0.45 * max(lit, 0.0)
             for axis in range(3):
                 pixels[row, column, axis] = min(max(colours[n, axis] * brightness, 0.0), 1.0)

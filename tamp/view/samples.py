@@ -40,7 +40,8 @@ class Shot:
 
 
 def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -> tuple[Shot, ...]:
-    """The samples of a plan file's record, and the poses and grasps that the plan itself has.
+    """Collect the samples of a plan file's record, and the poses and grasps that the plan itself
+    has.
 
     Raises:
         InputError: The record is not what the format says.
@@ -51,7 +52,11 @@ def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -
     if record is not None:
         found = [_shot(item, names, scene) for item in record["samples"].items()]
         return tuple(shot for shot in found if shot is not None)
-    grasps = [field for field in (root["values"].fields().values() if "values" in root else ()) if _is_grasp(field)]
+    grasps = [
+        field
+        for field in (root["values"].fields().values() if "values" in root else ())
+        if _is_grasp(field)
+    ]
     made = []
     for field in grasps:
         body = names.get(field["body"].text(), "")
@@ -77,10 +82,13 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
         for item in field["refusals"].items()
     ]
     body, *places = arguments
-    reasons = "; ".join(f"{who}: {why}" + (f" ({times} times)" if times > 1 else "") for who, why, times in refusals)
+    reasons = "; ".join(
+        f"{who}: {why}" + (f" ({times} times)" if times > 1 else "") for who, why, times in refusals
+    )
     what = f"grasp of {body}" if grasp else " ".join([f"{body} by {stream}", *places])
     verdict = "in the plan" if used else "rejected" if refusals else "accepted"
     words = {word.lower() for _, why, _ in refusals for word in re.findall(r"[\w-]+", why)}
+
     return Shot(
         kind="grasp" if grasp else "placement",
         body=body,

@@ -53,17 +53,17 @@ class PageServer(ThreadingHTTPServer):
 
     @property
     def names(self) -> tuple[str, str]:
-        """What a browser on this machine calls us."""
+        """Return the names that a browser on this machine calls us."""
         port = self.server_address[1]
         shown = "" if port == 80 else f":{port}"
         return f"{HOST}{shown}", f"localhost{shown}"
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """Nothing: who asks wrongly, or goes away, is no matter of the user's."""
+        """Ignore the error: who asks wrongly, or goes away, is no matter of the user's."""
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """Return the URL of the page."""
         return f"http://{HOST}:{self.server_address[1]}/"
 
 
@@ -72,19 +72,21 @@ class _Handler(BaseHTTPRequestHandler):
     server: PageServer  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def do_GET(self) -> None:
-        """The page, or not found."""
+        """Send the page, or not found."""
         self._answer(body=True)
 
     def do_HEAD(self) -> None:
-        """The same without its content."""
+        """Send the headers of the page without its content."""
         self._answer(body=False)
 
     def log_message(self, format: str, *args: object) -> None:
-        """Nothing: the terminal is the user's."""
+        """Log nothing: the terminal is the user's."""
 
     def _answer(self, body: bool) -> None:
         if self.headers.get("Host", "").lower() not in self.server.names:
-            self.send_error(421, "asked for by another name")  # a page from elsewhere whose name was turned to us
+            self.send_error(
+                421, "asked for by another name"
+            )  # a page from elsewhere whose name was turned to us
             return
         found = self.path.partition("?")[0] in ("/", "/index.html")
         content = self.server.content if found else b"not found\n"
@@ -110,11 +112,14 @@ def check_browser() -> None:
     except webbrowser.Error:
         raise InputError(
             "no browser was found to open",
-            remedy="Write a page with --html FILE or a picture with --png FILE, or serve with tamp-view --no-browser",
+            remedy="Write a page with --html FILE or a picture with --png FILE, "
+            "or serve with tamp-view --no-browser",
         ) from None
 
 
-def serve(content: bytes, say: Callable[[str], None], *, port: int = 0, browser: bool = True) -> None:
+def serve(
+    content: bytes, say: Callable[[str], None], *, port: int = 0, browser: bool = True
+) -> None:
     """Serve a page and open it, until interrupted.
 
     Raises:

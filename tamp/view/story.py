@@ -1,4 +1,6 @@
-"""How a plan was found, for a panel: what was searched, which streams were asked, where the time went."""
+"""Summary of how a plan was found, for a panel: what was searched, which streams were asked, where
+the time went.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,7 @@ class Story:
 
 
 def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
-    """What a plan file, or the summary of a run that found no plan, tells of the run.
+    """Summarize what a plan file, or the summary of a run that found no plan, tells of the run.
 
     Args:
         document: Their content.
@@ -54,20 +56,35 @@ def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
     """
     root = Field(dict(document), "", file)
     statistics, timing, record = root.get("statistics"), root.get("timing"), root.get("record")
-    seconds = {} if timing is None else {name: part.number(0.0) for name, part in timing.fields().items()}
+    seconds = (
+        {} if timing is None else {name: part.number(0.0) for name, part in timing.fields().items()}
+    )
     if statistics is None:
         return Story(_head(root, seconds))
     numbers = statistics.fields()
     streams = numbers["streams"].fields() if "streams" in numbers else {}
-    counts = [(words, numbers[name].number(0.0)) for name, words in COUNTS.items() if name in numbers]
+    counts = [
+        (words, numbers[name].number(0.0)) for name, words in COUNTS.items() if name in numbers
+    ]
     texts = [f"{count:,.0f} {words[0] if count == 1 else words[1]}" for words, count in counts]
+
     return Story(
         head=_head(root, seconds),
-        why=tuple(line.text() for line in (root["explanation"].items() if "explanation" in root else ())),
-        skeletons=() if record is None else tuple(_skeleton(item) for item in record["skeletons"].items()[:MOST]),
+        why=tuple(
+            line.text() for line in (root["explanation"].items() if "explanation" in root else ())
+        ),
+        skeletons=()
+        if record is None
+        else tuple(_skeleton(item) for item in record["skeletons"].items()[:MOST]),
         search=" · ".join(texts),
-        streams=tuple(_stream(name, field, seconds.get(name, 0.0)) for name, field in streams.items() if _asked(field)),
-        time=tuple((name, "", f"{spent:.3f}") for name, spent in seconds.items() if name not in streams),
+        streams=tuple(
+            _stream(name, field, seconds.get(name, 0.0))
+            for name, field in streams.items()
+            if _asked(field)
+        ),
+        time=tuple(
+            (name, "", f"{spent:.3f}") for name, spent in seconds.items() if name not in streams
+        ),
     )
 
 
@@ -98,7 +115,11 @@ def _asked(field: Field) -> bool:
 def _stream(name: str, field: Field, seconds: float) -> tuple[str, str, str, str, str]:
     calls, kept = field["calls"].number(0.0), field["successes"].number(0.0)
     refusals = field.get("rejections")
-    reasons = {} if refusals is None else {reason: count.number() for reason, count in refusals.fields().items()}
+    reasons = (
+        {}
+        if refusals is None
+        else {reason: count.number() for reason, count in refusals.fields().items()}
+    )
     most = sorted(reasons.items(), key=lambda pair: -pair[1])[:3]
     note = ", ".join(f"{count:.0f} {reason}" for reason, count in most)
     return name, note, f"{calls:,.0f}", f"{100 * kept / calls:.0f} %", f"{seconds:.2f} s"

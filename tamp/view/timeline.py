@@ -1,4 +1,4 @@
-"""Where the robot and the bodies are at each moment of a plan."""
+"""The timeline of a plan: where the robot and the bodies are at each moment."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from tamp.symbolic.pddl.structs import Fact
 
 @dataclass(frozen=True)
 class Shown:
-    """An action: its name, the scene's objects among its arguments, when it starts and ends (seconds).
+    """An action: its name, the scene's objects among its arguments, when it starts and ends
+    (seconds).
 
     `where` says from where a body is taken, or where it is put, as far as the plan's facts tell.
     """
@@ -31,13 +32,15 @@ class Shown:
 
     @property
     def text(self) -> str:
-        """In a few words."""
+        """Describe the action in a few words."""
         return " ".join(word for word in (self.name, *self.objects, self.where) if word)
 
 
 @dataclass(frozen=True, eq=False)
 class Stay:
-    """Where a body is from `since` on: T_world_body, or, while it is held, T_tool_body; shape (4, 4)."""
+    """The pose of a body from `since` on: T_world_body, or, while it is held, T_tool_body; shape
+    (4, 4).
+    """
 
     since: float
     held: bool
@@ -53,7 +56,8 @@ class Film:
         robot: Of the scene.
         actions: In order; none without a plan.
         times: Seconds, shape (n,), not decreasing.
-        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in between.
+        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in
+            between.
         stays: Where each movable body is, one after the other.
     """
 
@@ -66,15 +70,17 @@ class Film:
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Return the duration, seconds."""
         return float(self.times[-1])
 
     def row(self, time: float) -> Array:
-        """The robot at a time, shape (11,); before the start and after the end it stands."""
+        """Interpolate the robot at a time, shape (11,); before the start and after the end it
+        stands.
+        """
         return np.array([np.interp(time, self.times, column) for column in self.rows.T])
 
     def poses(self, time: float, kinematics: Kinematics) -> dict[str, Array]:
-        """T_world_body (4, 4) of all bodies at a time."""
+        """Return T_world_body (4, 4) of all bodies at a time."""
         poses = {name: np.array(body.pose.matrix) for name, body in self.scene.bodies.items()}
         for name, stays in self.stays.items():
             stay = [stay for stay in stays if stay.since <= time or stay is stays[0]][-1]
@@ -92,7 +98,9 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     for action in () if plan is None else plan.actions:
         objects = tuple(places[name] for name in action.arguments if name in places)
         end = action.start + action.duration
-        actions.append(Shown(action.name, objects, action.start, end, _where(action, facts, places, scene)))
+        actions.append(
+            Shown(action.name, objects, action.start, end, _where(action, facts, places, scene))
+        )
         clock = action.start
         for segment in action.segments:
             maker.follow(segment, clock)
@@ -102,12 +110,21 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
     return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
 
 
-def _where(action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene) -> str:
-    """What a fact such as (supported mug p1 table) says of a body and a pose among the action's arguments."""
+def _where(
+    action: TimedAction, facts: Sequence[Fact], places: Mapping[str, str], scene: Scene
+) -> str:
+    """Find what a fact such as (supported mug p1 table) says of a body and a pose among the
+    action's arguments.
+    """
     said = [fact for fact in facts if len(fact) == 4 and {*fact[1:3]} <= {*action.arguments}]
-    firm = [fact for fact in said if fact[0] in ("supported", "contained")]  # others may speak of another place
+    firm = [
+        fact for fact in said if fact[0] in ("supported", "contained")
+    ]  # others may speak of another place
     names = {fact[3] for fact in firm or said}
-    place = next((places[name] for name in sorted(names) if name in places and name not in action.arguments), None)
+    place = next(
+        (places[name] for name in sorted(names) if name in places and name not in action.arguments),
+        None,
+    )
     if place is None:
         return ""
     if any(segment.attach is not None for segment in action.segments):
@@ -119,12 +136,15 @@ class _Maker:
     def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
         self.times: list[float] = [0.0]
         self.rows: list[Array] = [row]
-        self.stays = {name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))] for name in scene.movable}
+        self.stays = {
+            name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))]
+            for name in scene.movable
+        }
         self._names = {name.lower(): name for name in scene.movable}
         self._kinematics = Kinematics(robot)
 
     def follow(self, segment: Segment, clock: float) -> None:
-        """One part moves."""
+        """Move one part along a segment."""
         if segment.detach in self._names:
             body = self._names[segment.detach]
             tool = self._kinematics.tool(self.rows[-1][:10])
@@ -143,12 +163,12 @@ class _Maker:
 
 
 def tool_path(film: Film, kinematics: Kinematics) -> Array:
-    """The tool's positions at the film's times, shape (n, 3), metres in the world."""
+    """Return the tool's positions at the film's times, shape (n, 3), metres in the world."""
     return np.array([kinematics.tool(row[:10])[:3, 3] for row in film.rows])
 
 
 def holding(film: Film) -> list[bool]:
-    """Whether something is in the hand between each of the film's times and the next."""
+    """Check whether something is in the hand between each of the film's times and the next."""
     spans = [
         (stay.since, after.since if after else film.duration)
         for stays in film.stays.values()

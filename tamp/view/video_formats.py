@@ -1,4 +1,4 @@
-"""Which moving pictures can be written."""
+"""The video formats that can be written."""
 
 from __future__ import annotations
 

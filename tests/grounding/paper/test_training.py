@@ -3,7 +3,8 @@ import pytest
 import torch
 
 from grounding.paper.runtime import PaperModel
-from grounding.paper.trainer import SCHEMES, Args, Trainer
+from grounding.paper.trainer import SCHEMES, Trainer
+from grounding.paper.trainer_options import Args
 from grounding.paper.training import features_of, train
 from tamp.errors import InputError
 

@@ -1,0 +1,36 @@
+"""Options of the networks' training."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Args:
+    """The training options of the networks.
+
+    Attributes:
+        iterations: Of the classifier, and then of the generator.
+        batch: Scenes a step and model.
+        rate: RMSprop's learning rate.
+        penalty: Weight of the critic's gradient penalty, the paper's lambda.
+        critic_steps: Steps of the critic before each of the generator.
+        critic_catches_up: The same for the first `first` steps of the generator, and for every
+            `every`-th.
+        validate_every: Iterations between looks at the validation split.
+        save_every: Iterations between saved states, a multiple of `block`.
+        block: Iterations whose random numbers are drawn together, from seed, size, stage and the
+            first of them.
+    """
+
+    iterations: int = 30_000
+    batch: int = 16
+    rate: float = 1e-3
+    penalty: float = 10.0
+    critic_steps: int = 5
+    critic_catches_up: int = 100
+    first: int = 24
+    every: int = 500
+    validate_every: int = 500
+    save_every: int = 2000
+    block: int = 500
