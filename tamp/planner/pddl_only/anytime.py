@@ -46,8 +46,8 @@ def optimize_symbolic(
 
     def improve() -> None:
         nonlocal best
-        grounded = instantiate(problem.task)
-        start = search(grounded, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
+        instantiated = instantiate(problem.task)
+        start = search(instantiated, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
         best = replace(best, bound=min(start.bound, best.cost))
         improved(best)
         for name, heuristic, weight in LADDER:
@@ -56,7 +56,7 @@ def optimize_symbolic(
             while best.bound < best.cost:
                 started = time.perf_counter()
                 found = search(
-                    grounded, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
+                    instantiated, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
                 )  # fmt: skip
                 best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
                 if refutation(problem.task, found.plan) is not None:

@@ -14,7 +14,7 @@ from tamp.symbolic.algorithms.result import Outcome, StreamTask
 from tamp.symbolic.pddl.structs import Formula, Task
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Grounded, Operator
+from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
 from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
 from tamp.system.deadline import Deadline, OutOfTime
@@ -117,11 +117,11 @@ def solve_symbolic(
 def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline) -> SymbolicSolution:
     started = time.perf_counter()
     task = problem.task
-    grounded = instantiate(task)
+    instantiated = instantiate(task)
     ready = time.perf_counter()
     refuted: list[str] = []
     for way in ((name, heuristic), *OTHERS):
-        found = search(grounded, search=way[0], heuristic=way[1], deadline=deadline)
+        found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline)
         reason = refutation(task, found.plan)
         if reason is None:
             name, heuristic = way
@@ -139,11 +139,11 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
         optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=tuple(dict.fromkeys(refuted)) + (_why(problem, grounded, deadline) if infeasible else ()),
+        explanation=tuple(dict.fromkeys(refuted)) + (_why(problem, instantiated, deadline) if infeasible else ()),
         expanded=found.expanded,
         evaluated=found.evaluated,
-        operators=len(grounded.operators),
-        facts=len(grounded.reachable | grounded.initial),
+        operators=len(instantiated.operators),
+        facts=len(instantiated.reachable | instantiated.initial),
         seconds={"total": done - started, "instantiation": ready - started, "search": done - ready},
         refuted=len(refuted),
     )
@@ -157,12 +157,12 @@ def refutation(task: Task, plan: Plan | None) -> str | None:
     return None if reason is None else f"{REFUTED}: {reason}"
 
 
-def _why(problem: SymbolicProblem, grounded: Grounded, deadline: Deadline) -> tuple[str, ...]:
+def _why(problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Deadline) -> tuple[str, ...]:
     task = problem.task
-    facts = {*task.initial, *type_facts(task), *grounded.reachable, *grounded.initial}
+    facts = {*task.initial, *type_facts(task), *instantiated.reachable, *instantiated.initial}
     missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
 
-    def towards(goal: Formula) -> Grounded:
+    def towards(goal: Formula) -> InstantiatedTask:
         return instantiate(replace(task, goal=goal))
 
-    return explain_infeasible(StreamTask(task, (), {}), grounded, {}, missing, deadline, towards)
+    return explain_infeasible(StreamTask(task, (), {}), instantiated, {}, missing, deadline, towards)

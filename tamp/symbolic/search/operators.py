@@ -94,7 +94,7 @@ class Goal:
 
 
 @dataclass(frozen=True)
-class Grounded:
+class InstantiatedTask:
     """A task without variables.
 
     Attributes:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import derive, supports
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
-from tamp.symbolic.search.operators import NONE, Facts, Grounded, Guard, Operator
+from tamp.symbolic.search.operators import NONE, Facts, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,60 +59,62 @@ class Trace:
     open: bool = False
 
 
-def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None) -> Trace:
+def trace(
+    instantiated: InstantiatedTask, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None
+) -> Trace:
     """Replay a plan's operators from the initial state.
 
     Args:
-        grounded: The task.
+        instantiated: The task.
         operators: The plan.
         price: Of static facts; what is derived rests on the cheapest ones.
 
     Raises:
         ValueError: An operator is not applicable, or the goal does not hold in the end.
     """
-    state = grounded.initial
+    state = instantiated.initial
     steps: list[Step] = []
-    ways = Counter(axiom.head for axiom in grounded.axioms)
+    ways = Counter(axiom.head for axiom in instantiated.axioms)
     several = frozenset(head for head, count in ways.items() if count > 1)
     open_ = False
     for operator in operators:
-        step, state = _applied(grounded, operator, state, price)
+        step, state = _applied(instantiated, operator, state, price)
         steps.append(step)
         open_ = open_ or not several.isdisjoint(step.heads)
-    why = derive(grounded.axioms, state, price)
+    why = derive(instantiated.axioms, state, price)
     holds = state | why.keys()
-    if not grounded.goal.positive <= holds or not grounded.goal.negative.isdisjoint(holds):
+    if not instantiated.goal.positive <= holds or not instantiated.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
-    goal = supports(why, grounded.goal.positive)
-    end = End(state, grounded.goal.static | goal.static, goal.static, goal.read)
+    goal = supports(why, instantiated.goal.positive)
+    end = End(state, instantiated.goal.static | goal.static, goal.static, goal.read)
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
-def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
+def replayed(instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
     """Whether actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
-    for operator in grounded.operators:
+    for operator in instantiated.operators:
         operators.setdefault((operator.name, operator.arguments), []).append(operator)
-    states = {grounded.initial}
+    states = {instantiated.initial}
     for action in actions:
         after: set[Facts] = set()
         for state in states:  # several where the condition is a disjunction
             for operator in operators.get(action, ()):
                 try:
-                    after.add(_applied(grounded, operator, state)[1])
+                    after.add(_applied(instantiated, operator, state)[1])
                 except ValueError:
                     continue
         states = after
-    goal = grounded.goal
-    holding = (state | derive(grounded.axioms, state).keys() for state in states)
+    goal = instantiated.goal
+    holding = (state | derive(instantiated.axioms, state).keys() for state in states)
     return any(goal.positive <= holds and goal.negative.isdisjoint(holds) for holds in holding)
 
 
 def _applied(
-    grounded: Grounded, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
+    instantiated: InstantiatedTask, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
 ) -> tuple[Step, Facts]:
     """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
-    why = derive(grounded.axioms, state, price)
+    why = derive(instantiated.axioms, state, price)
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
         raise ValueError(f"{operator} is not applicable")

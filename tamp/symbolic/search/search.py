@@ -14,7 +14,7 @@ from tamp.symbolic.search.expansion import Plan as Plan
 from tamp.symbolic.search.expansion import Reason as Reason
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS
 from tamp.symbolic.search.lazy import lazy
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.successors import Price, Successors
 from tamp.system.deadline import Deadline
 
@@ -59,7 +59,7 @@ def split_heuristics(heuristic: str) -> tuple[str, ...]:
 
 
 def search(
-    grounded: Grounded,
+    instantiated: InstantiatedTask,
     *,
     search: str = "wastar",
     heuristic: str = "ff",
@@ -73,7 +73,7 @@ def search(
     """Search for a plan.
 
     Args:
-        grounded: The task.
+        instantiated: The task.
         search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax", "blind") is optimal;
             "wastar" and "greedy" are lazy and use preferred operators, "eager" is plain greedy best-first search.
         heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues to each, "astar"
@@ -93,9 +93,9 @@ def search(
     if below < math.inf and search not in ("wastar", "astar"):
         raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
     names = split_heuristics(heuristic)
-    if not grounded.goal.positive <= grounded.reachable | grounded.initial:
+    if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
-    successors = Successors(grounded, price if price is not None else {})
+    successors = Successors(instantiated, price if price is not None else {})
     run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
     try:
         plan = SEARCHES[search](run, weight)
@@ -105,15 +105,15 @@ def search(
     return Result(plan, reason, run.expanded, run.evaluated, run.bound if ADMISSIBLE.issuperset(names) else 0.0)
 
 
-def unreachable(grounded: Grounded) -> tuple[Fact, ...]:
+def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:
     """The goal facts that hold in no state of the delete relaxation, sorted.
 
     A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that stand for a
-    subformula are explained in `grounded.meanings`.
+    subformula are explained in `instantiated.meanings`.
     """
-    goal = grounded.goal
-    never = sorted(goal.positive - grounded.reachable - grounded.initial)
-    deleted = {fact for o in grounded.operators for fact in o.deleted}
-    deleted |= {fact for o in grounded.operators for effect in o.conditional for fact in effect.deleted}
-    kept = sorted(("not", *fact) for fact in (goal.negative & grounded.initial) - deleted)
+    goal = instantiated.goal
+    never = sorted(goal.positive - instantiated.reachable - instantiated.initial)
+    deleted = {fact for o in instantiated.operators for fact in o.deleted}
+    deleted |= {fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted}
+    kept = sorted(("not", *fact) for fact in (goal.negative & instantiated.initial) - deleted)
     return (*never, *kept)

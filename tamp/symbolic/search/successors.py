@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row
 from tamp.symbolic.search.instantiation.lazy_guards import Blocking, LazyGuards
-from tamp.symbolic.search.operators import Facts, Grounded
+from tamp.symbolic.search.operators import Facts, InstantiatedTask
 
 State = int
 Price = Callable[[Fact], float] | Mapping[Fact, float]
@@ -39,24 +39,24 @@ class _Stratum:
 
 
 class Successors:
-    """A grounded task with numbered facts and priced operators.
+    """An instantiated task with numbered facts and priced operators.
 
     Facts that no condition mentions are left out of the states, operators whose price is infinite are never applied.
 
     Attributes:
         facts: By number, sorted.
-        operators: Indices into `grounded.operators` are kept: entry i is about operator i.
+        operators: Indices into `instantiated.operators` are kept: entry i is about operator i.
         cost: The operators' costs with the prices of their static facts.
         axiom_cost: The prices of the axioms' static facts.
         initial: The initial state, without derived facts.
     """
 
-    def __init__(self, grounded: Grounded, price: Price) -> None:
-        self.grounded = grounded
+    def __init__(self, instantiated: InstantiatedTask, price: Price) -> None:
+        self.instantiated = instantiated
         self._listed: Mapping[Fact, float] | None = None if callable(price) else price
         self._ask: Callable[[Fact], float] = price if callable(price) else lambda fact: price.get(fact, 0.0)
         self._prices: dict[Fact, float] = {}
-        self.operators = grounded.operators
+        self.operators = instantiated.operators
         self._guarded: dict[Facts, list[tuple[int, Fact | None]]] = {}
         self._blocked: dict[Blocking, dict[Row, list[int]]] = {}
         self._collect_guards()
@@ -74,12 +74,12 @@ class Successors:
             tuple((mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted)) for c in o.conditional)
             for o in self.operators
         ]
-        self.initial = mask(grounded.initial)
-        self.goal = mask(grounded.goal.positive)
-        self.goal_absent = mask(grounded.goal.negative)
-        self.derived_mask = mask(axiom.head for axiom in grounded.axioms)
+        self.initial = mask(instantiated.initial)
+        self.goal = mask(instantiated.goal.positive)
+        self.goal_absent = mask(instantiated.goal.negative)
+        self.derived_mask = mask(axiom.head for axiom in instantiated.axioms)
         self._strata = self._sort_axioms()
-        self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in grounded.axioms]
+        self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in instantiated.axioms]
         self._watched, self._always = self._watch()
         self._watch_mask = sum(1 << i for i in self._watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}
@@ -234,16 +234,16 @@ class Successors:
                     self._guarded.setdefault(guard.facts, []).append((index, guard.lifted_by))
 
     def _mentioned(self) -> set[Fact]:
-        grounded = self.grounded
-        mentioned = set(grounded.goal.positive | grounded.goal.negative).union(*self._guarded)
+        instantiated = self.instantiated
+        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(*self._guarded)
         fluents = {blocking.fluent for blocking in self._blocked}
-        mentioned |= {fact for fact in grounded.reachable | grounded.initial if fact[0] in fluents}
-        for operator in grounded.operators:
+        mentioned |= {fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents}
+        for operator in instantiated.operators:
             mentioned |= operator.positive
             mentioned |= operator.negative
             for effect in operator.conditional:
                 mentioned |= effect.positive | effect.negative
-        for axiom in grounded.axioms:
+        for axiom in instantiated.axioms:
             mentioned.add(axiom.head)
             mentioned |= axiom.positive | axiom.negative
         return mentioned
@@ -251,9 +251,9 @@ class Successors:
     def _sort_axioms(self) -> list[_Stratum]:
         strata: dict[int, _Stratum] = {}
         heads: dict[int, int] = {}
-        for axiom in self.grounded.axioms:
+        for axiom in self.instantiated.axioms:
             heads[axiom.stratum] = heads.get(axiom.stratum, 0) | self.mask((axiom.head,))
-        for axiom in self.grounded.axioms:
+        for axiom in self.instantiated.axioms:
             stratum = strata.setdefault(axiom.stratum, _Stratum())
             positive, negative = self.mask(axiom.positive), self.mask(axiom.negative)
             head = self.mask((axiom.head,))

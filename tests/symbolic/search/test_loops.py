@@ -19,16 +19,18 @@ from tamp.symbolic.search.heuristics.loops.compiled import LOOPS
 from tamp.symbolic.search.heuristics.loops.rows import Rows, rows_of
 from tamp.symbolic.search.heuristics.registry import HEURISTICS
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.search import search
 from tamp.symbolic.search.successors import Successors
 from tests.symbolic.search.test_prices import random_prices
 from tests.symbolic.search.test_random_tasks import random_task
 
 
-def walk(grounded: Grounded, rng: Random) -> list[float | tuple[int, ...]]:
+def walk(instantiated: InstantiatedTask, rng: Random) -> list[float | tuple[int, ...]]:
     """What all heuristics say along a random walk, under random prices."""
-    successors = Successors(grounded, random_prices(rng, frozenset().union(*(o.static for o in grounded.operators))))
+    successors = Successors(
+        instantiated, random_prices(rng, frozenset().union(*(o.static for o in instantiated.operators)))
+    )
     said: list[float | tuple[int, ...]] = []
     heuristics = [HEURISTICS[name](successors) for name in ("ff", "hadd", "hmax", "lmcut")]
     state = successors.initial
@@ -46,7 +48,7 @@ def walk(grounded: Grounded, rng: Random) -> list[float | tuple[int, ...]]:
 
 @pytest.mark.parametrize("seed", range(40))
 def test_all_ways_say_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    grounded = instantiate(random_task(Random(seed)))
+    instantiated = instantiate(random_task(Random(seed)))
     stories: list[list[float | tuple[int, ...]]] = []
     for turns in ([tiers.PLAIN], [LOOPS], [tiers.PLAIN, LOOPS]):
         asked = [0]
@@ -56,7 +58,7 @@ def test_all_ways_say_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> No
             return turns[asked[0] // 3 % len(turns)]
 
         monkeypatch.setattr(relaxation, "choose", choose)
-        stories.append(walk(grounded, Random(seed)))
+        stories.append(walk(instantiated, Random(seed)))
     assert stories[0] == stories[1] == stories[2]
 
 

@@ -43,7 +43,7 @@ class Guess:
     level: int
 
     @property
-    def is_grounded(self) -> bool:
+    def has_real_inputs(self) -> bool:
         """Whether all inputs are real, so that what its function says of them is final."""
         return not any(name.startswith(MARK) for name in self.inputs)
 

@@ -18,7 +18,7 @@ class GoalPrice:
         self._goal = list(bits(s.goal))
         self._axioms: list[tuple[list[int], int, float]] = []
         if any(s.axiom_cost):
-            for axiom, cost in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+            for axiom, cost in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
                 price = 0.0 if axiom.negative else cost
                 self._axioms.append(([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price))
 

@@ -109,13 +109,13 @@ class Relaxation:
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
         self._of_operator: list[list[int]] = [[] for _ in s.operators]
-        derived = s.mask(axiom.head for axiom in s.grounded.axioms)
+        derived = s.mask(axiom.head for axiom in s.instantiated.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
             negated |= s.absent[i]
             for _, negative, _, _ in s.conditional[i]:
                 negated |= negative
-        for axiom in s.grounded.axioms:
+        for axiom in s.instantiated.axioms:
             negated |= s.mask(axiom.negative)
         self._negated = negated = negated & ~derived
         every = (1 << size) - 1
@@ -129,7 +129,7 @@ class Relaxation:
                 effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
                 if effects:
                     self._add(i, split(s.before[i] | positive), s.absent[i] | negative, s.cost[i] + step, effects)
-        for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+        for axiom, price in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
             self._add(-1, split(s.mask(axiom.positive)), s.mask(axiom.negative), cost, [s.number[axiom.head]])
         self.free = [i for i, facts in enumerate(self._before) if not facts]

@@ -36,7 +36,7 @@ def lifted_effects(action: Action, normalizer: Normalizer) -> tuple[LiftedEffect
     return tuple(effects)
 
 
-_Grounded = tuple[frozenset[Fact], frozenset[Fact], frozenset[Fact], Fact]
+_Instance = tuple[frozenset[Fact], frozenset[Fact], frozenset[Fact], Fact]
 """Positive and negative condition, static facts that it rests on, the fact added or deleted."""
 
 
@@ -63,8 +63,8 @@ class Effects:
         relations = vocabulary.relations
         self._adds: list[Callable[[Row], Fact]] = []
         self._deletes: list[tuple[str, Callable[[Row], Row], Callable[[Row], Fact]]] = []
-        self._expanded: list[tuple[bool, Callable[[Row], Row], dict[Row, list[_Grounded]]]] = []
-        self._shared: dict[int, dict[Row, tuple[Facts, list[_Grounded]]]] = {}
+        self._expanded: list[tuple[bool, Callable[[Row], Row], dict[Row, list[_Instance]]]] = []
+        self._shared: dict[int, dict[Row, tuple[Facts, list[_Instance]]]] = {}
         self._rows = relations.rows
         for effect in effects:
             atom = effect.atom
@@ -108,7 +108,7 @@ class Effects:
                 ("static", (*(a for a in kinds.static if not a.predicate.startswith("type ")), *unnamed)),
             )
         }
-        instances: dict[Row, list[_Grounded]] = {}
+        instances: dict[Row, list[_Instance]] = {}
         width = len(shared)
         for row in sorted(found):
             needs = Needs([fill(row) for fill in fills["positive"]])
@@ -168,7 +168,7 @@ class Effects:
             ),
         )
 
-    def _split(self, number: int, key: Row, instances: list[_Grounded]) -> tuple[Facts, list[_Grounded]]:
+    def _split(self, number: int, key: Row, instances: list[_Instance]) -> tuple[Facts, list[_Instance]]:
         """The facts changed in any case, one set for all operators with this key, and the conditional instances."""
         table = self._shared.setdefault(number, {})
         if key not in table:

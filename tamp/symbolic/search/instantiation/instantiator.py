@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from tamp.symbolic.pddl.structs import Fact, Task
 from tamp.symbolic.search.instantiation.normal_form import Types
 from tamp.symbolic.search.instantiation.task_instantiation import Instantiation
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 
 
 def instantiate(
@@ -17,7 +17,7 @@ def instantiate(
     *,
     assumed: frozenset[str] = frozenset(),
     refused: frozenset[Fact] = frozenset(),
-) -> Grounded:
+) -> InstantiatedTask:
     """Instantiate a task once; see `Instantiator`."""
     return Instantiator(task, assumed).instantiate(facts, objects or {}, refused)
 
@@ -43,7 +43,7 @@ class Instantiator:
         facts: Iterable[Fact] = (),
         objects: Mapping[str, Types] | None = None,
         refused: frozenset[Fact] = frozenset(),
-    ) -> Grounded:
+    ) -> InstantiatedTask:
         """The task over these facts. It begins anew where one of the last time is missing, or an absence has ended.
 
         Args:
@@ -63,4 +63,4 @@ class Instantiator:
             self._given = given
             self._run, new = Instantiation(self._task, self._assumed, given), known
         self._facts = known
-        return self._run.grounded(new, objects or {}, refused)
+        return self._run.instantiate(new, objects or {}, refused)

@@ -1,6 +1,6 @@
 """What must hold for a derived fact not to hold: clauses, worked out as literals, guards or choices.
 
-`not d(args)` says that the body of each ground rule of d(args) is broken: a clause. A clause of one literal is that
+`not d(args)` says that the body of each instantiated rule of d(args) is broken: a clause. A clause of one literal is that
 literal; one that says that some of several fluents must be absent is a guard; anything else becomes an auxiliary
 derived fact (a *choice*) with one axiom a literal.
 """
@@ -22,7 +22,7 @@ Literal = tuple[bool, Fact]
 
 @dataclass(slots=True)
 class Needs:
-    """A ground conjunction under construction."""
+    """A conjunction without variables under construction."""
 
     positive: list[Fact] = field(default_factory=list[Fact])
     negative: list[Fact] = field(default_factory=list[Fact])

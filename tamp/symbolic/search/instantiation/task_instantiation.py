@@ -20,7 +20,7 @@ from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types
 from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
-from tamp.symbolic.search.operators import Axiom, Goal, Grounded, Operator
+from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,9 @@ class Instantiation:
         self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
         self._joined = False
 
-    def grounded(self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]) -> Grounded:
+    def instantiate(
+        self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]
+    ) -> InstantiatedTask:
         """Run the fixpoint from what is new, and build everything from what it reached."""
         vocabulary = self._vocabulary
         vocabulary.refused = refused
@@ -101,7 +103,7 @@ class Instantiation:
         reachable = {(p, *row) for p in sorted(vocabulary.fluent) for row in vocabulary.relations.rows(p)} | heads
         initial = frozenset(f for f in self._task.initial if f[0] in vocabulary.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
-        return Grounded(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
+        return InstantiatedTask(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
 
     def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
         """The operators of all bindings; `made` keeps those that nothing which may come along can change."""
