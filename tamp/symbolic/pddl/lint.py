@@ -103,8 +103,8 @@ def _unachievable(
     for atom in _atoms(goal, positive_only=True):
         if atom.predicate in makers or (atom.predicate in domain.types and atom.predicate not in domain.predicates):
             continue
-        ground = not any(term.startswith("?") for term in atom.terms)
-        if (atom.predicate, *atom.terms) in initial if ground else atom.predicate in given:
+        without_variables = not any(term.startswith("?") for term in atom.terms)
+        if (atom.predicate, *atom.terms) in initial if without_variables else atom.predicate in given:
             continue
         if atom.place is not None:
             text = " ".join((atom.predicate, *atom.terms))

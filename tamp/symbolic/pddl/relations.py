@@ -51,7 +51,7 @@ class Relation:
         """The arguments whose poses it depends on."""
         return tuple(variable for variable in self.arguments if variable in self.poses.values())
 
-    def ground(self, names: Mapping[str, str], at: Mapping[str, str]) -> tuple[Fact, ...]:
+    def substitute(self, names: Mapping[str, str], at: Mapping[str, str]) -> tuple[Fact, ...]:
         """The facts of arguments, by their variables, whose bodies are at poses, by the bodies' names."""
         terms = {**names, **{pose: at[names[body]] for pose, body in self.poses.items()}}
         return tuple((atom.predicate, *(terms.get(term, term) for term in atom.terms)) for atom in self.facts)

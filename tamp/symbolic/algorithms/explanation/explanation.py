@@ -11,7 +11,7 @@ from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
 from tamp.symbolic.algorithms.experience.failure_counts import Tally, in_the_way
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
-from tamp.symbolic.algorithms.explanation.goal_conflicts import Ground, conflict
+from tamp.symbolic.algorithms.explanation.goal_conflicts import InstantiateGoal, conflict
 from tamp.symbolic.algorithms.explanation.kept import kept_from
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
@@ -52,7 +52,7 @@ def explain_infeasible(
     dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
     missing: Missing,
     deadline: Deadline,
-    ground: Ground,
+    instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
     """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
 
@@ -62,7 +62,7 @@ def explain_infeasible(
         dead: The calls that ended without a value.
         missing: Says what a fact lacks.
         deadline: When to look no further.
-        ground: Grounds the task with another goal.
+        instantiate: Instantiates the task with another goal.
     """
     lines: list[str] = []
     blamed: set[tuple[str, tuple[str, ...]]] = set()
@@ -82,7 +82,7 @@ def explain_infeasible(
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
     soon = Deadline(min(SOON, deadline.left()))
-    goals = conflict(instantiated, soon, problem.task.goal, ground)
+    goals = conflict(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
     what = goals[0] if goals else "the goal"

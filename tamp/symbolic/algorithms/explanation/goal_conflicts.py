@@ -21,11 +21,13 @@ LIMIT = 5000
 PAIRS = 200
 """Pairs of conjuncts looked at where the goal is one formula with variables."""
 
-Ground = Callable[[Formula], InstantiatedTask]
-"""Grounds the task with another goal."""
+InstantiateGoal = Callable[[Formula], InstantiatedTask]
+"""Instantiates the task with another goal."""
 
 
-def conflict(instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, ground: Ground) -> tuple[str, ...]:
+def conflict(
+    instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
+) -> tuple[str, ...]:
     """The goals of an unsolvable task without those that its being unsolvable does not depend on, as texts.
 
     Pairs of facts that exclude each other say it at once. Where they do not, one goal after the other is left out; it
@@ -35,11 +37,11 @@ def conflict(instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, 
         instantiated: The task.
         deadline: When to look no further.
         goal: The goal as it was written.
-        ground: Grounds the task with another goal.
+        instantiate: Instantiates the task with another goal.
     """
     found = excluded(instantiated, deadline)
     if found is not None and any(_is_odd(fact, instantiated) for fact, _ in found):
-        return _conjuncts(goal, ground, deadline) or _texts(instantiated, found)
+        return _conjuncts(goal, instantiate, deadline) or _texts(instantiated, found)
     return _texts(instantiated, found or _searched(instantiated, deadline))
 
 
@@ -48,7 +50,7 @@ def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
     return fact[0] in instantiated.meanings or any(word.startswith(MARK) for word in fact)
 
 
-def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, ...]:
+def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) -> tuple[str, ...]:
     """The fewest conjuncts of a goal with variables that pairs of facts show to be too many; none if they do not."""
     parts = goal.parts if isinstance(goal, And) else (goal,)
     denied = {part.body for part in parts if isinstance(part, Not)}
@@ -59,7 +61,7 @@ def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, 
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
-        if excluded(ground(And(some)), deadline) is not None:
+        if excluded(instantiate(And(some)), deadline) is not None:
             return tuple(show(part) for part in some)
     return tuple(show(part) for part in parts)
 
