@@ -24,7 +24,7 @@ from tamp.symbolic.algorithms.explanation.explanation import explain_attempts, e
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
 from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
-from tamp.symbolic.algorithms.result import GroundAction, Outcome, Progress, Result, StreamTask
+from tamp.symbolic.algorithms.result import Outcome, PlanAction, Progress, Result, StreamTask
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.symbolic.search.mutex import excluded
@@ -226,7 +226,7 @@ class Run(Imagination):
         """The bound plan."""
         lifted = {action.name: action for action in self.task.domain.actions}
         bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
-        actions = tuple(GroundAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
+        actions = tuple(PlanAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
         initial = self.problem.task.initial
         certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
         result = self.result(Outcome.SOLVED, ())
