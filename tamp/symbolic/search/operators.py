@@ -22,12 +22,12 @@ class Guard(NamedTuple):
 
     Attributes:
         facts: Fluent facts; the guard is *triggered* in the states that contain all of them.
-        lifted_by: The static fact, a test stream's result, whose truth makes the guard harmless; its price is paid
+        waived_by: The static fact, a test stream's result, whose truth makes the guard harmless; its price is paid
             when the guard is triggered. None: nothing lifts it, the operator is inapplicable while the facts hold.
     """
 
     facts: Facts
-    lifted_by: Fact | None
+    waived_by: Fact | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,9 +122,9 @@ def _applied(
     static = set(operator.static)
     guards = triggered(operator, state)
     for guard in guards:
-        if guard.lifted_by is None:
+        if guard.waived_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
-        static.add(guard.lifted_by)
+        static.add(guard.waived_by)
     added, deleted = operator.added, operator.deleted
     for effect in operator.conditional:
         if effect.positive <= holds and effect.negative.isdisjoint(holds):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row
-from tamp.symbolic.search.instantiation.lazy_guards import Blocking, LazyGuards
+from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards, LazyGuards
 from tamp.symbolic.search.operators import Facts, InstantiatedTask
 
 State = int
@@ -58,7 +58,7 @@ class Successors:
         self._prices: dict[Fact, float] = {}
         self.operators = instantiated.operators
         self._guarded: dict[Facts, list[tuple[int, Fact | None]]] = {}
-        self._blocked: dict[Blocking, dict[Row, list[int]]] = {}
+        self._blocked: dict[DerivedGuards, dict[Row, list[int]]] = {}
         self._collect_guards()
         self.facts = sorted(self._mentioned())
         self.number = {fact: i for i, fact in enumerate(self.facts)}
@@ -84,8 +84,8 @@ class Successors:
         self._watch_mask = sum(1 << i for i in self._watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}
         self._many = [facts for facts in self._guards_on if facts.bit_count() > 1]
-        blocking = {blocking.fluent for blocking in self._blocked}
-        self.guard_mask = mask(fact for fact in self.facts if fact[0] in blocking)
+        source = {source.fluent for source in self._blocked}
+        self.guard_mask = mask(fact for fact in self.facts if fact[0] in source)
         for facts in self._guards_on:
             self.guard_mask |= facts
         self._has_guards = [bool(o.guards) for o in self.operators]
@@ -157,8 +157,8 @@ class Successors:
         known = self._penalties.get(facts)
         if known is None:
             known = self._penalties[facts] = dict[int, float]()
-            for index, lifted_by in self._owners(facts):
-                price = math.inf if lifted_by is None else self.price(lifted_by)
+            for index, waived_by in self._owners(facts):
+                price = math.inf if waived_by is None else self.price(waived_by)
                 if price > 0.0:
                     known[index] = known.get(index, 0.0) + price
         return known
@@ -168,11 +168,11 @@ class Successors:
         yield from self._guards_on.get(facts, ())
         if self._blocked and facts.bit_count() == 1:
             fact = self.facts[facts.bit_length() - 1]
-            for blocking, owners in self._blocked.items():
-                if blocking.fluent == fact[0]:
-                    for row, guard in blocking.on(fact):
+            for source, owners in self._blocked.items():
+                if source.fluent == fact[0]:
+                    for row, guard in source.on(fact):
                         for index in owners.get(row, ()):
-                            yield index, guard.lifted_by
+                            yield index, guard.waived_by
 
     def triggered(self, state: State) -> Iterator[int]:
         """The guards' facts that a state contains."""
@@ -215,28 +215,28 @@ class Successors:
 
     def _collect_guards(self) -> None:
         """Sort the guards by their facts. Those not made yet are made where a listed price matters, or later."""
-        blocked: dict[Blocking, dict[Row, list[int]]] = {}
+        blocked: dict[DerivedGuards, dict[Row, list[int]]] = {}
         for index, operator in enumerate(self.operators):
             guards = operator.guards
             if isinstance(guards, LazyGuards):
-                for blocking, row in guards.blocked:
-                    blocked.setdefault(blocking, {}).setdefault(row, []).append(index)
+                for source, row in guards.blocked:
+                    blocked.setdefault(source, {}).setdefault(row, []).append(index)
                 guards = guards.made
             for guard in guards:
-                self._guarded.setdefault(guard.facts, []).append((index, guard.lifted_by))
+                self._guarded.setdefault(guard.facts, []).append((index, guard.waived_by))
         if self._listed is None:
             self._blocked = blocked
             return
         priced = sorted(fact for fact, price in self._listed.items() if price > 0.0)
-        for blocking, owners in blocked.items():
-            for row, guard in (*blocking.lifted_by(priced), *blocking.refused()):
+        for source, owners in blocked.items():
+            for row, guard in (*source.waived_by(priced), *source.refused()):
                 for index in owners.get(row, ()):
-                    self._guarded.setdefault(guard.facts, []).append((index, guard.lifted_by))
+                    self._guarded.setdefault(guard.facts, []).append((index, guard.waived_by))
 
     def _mentioned(self) -> set[Fact]:
         instantiated = self.instantiated
         mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(*self._guarded)
-        fluents = {blocking.fluent for blocking in self._blocked}
+        fluents = {source.fluent for source in self._blocked}
         mentioned |= {fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents}
         for operator in instantiated.operators:
             mentioned |= operator.positive

@@ -29,7 +29,7 @@ def step_cost(operator: Operator, state: Facts, prices: dict[Fact, float]) -> fl
     cost = operator.cost + sum(prices.get(fact, 0.0) for fact in operator.static)
     for guard in operator.guards:
         if guard.facts <= state:
-            cost += math.inf if guard.lifted_by is None else prices.get(guard.lifted_by, 0.0)
+            cost += math.inf if guard.waived_by is None else prices.get(guard.waived_by, 0.0)
     return cost
 
 

@@ -48,9 +48,9 @@ def to_steps(
     for step in traced.steps:
         operator = step.operator
         usages = [
-            Usage(guard.lifted_by, guard.facts)
+            Usage(guard.waived_by, guard.facts)
             for guard in step.guards
-            if guard.lifted_by is not None and guard.lifted_by[0] != NOGOOD
+            if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
         ]
         used = {usage.fact for usage in usages}
         steps.append(

@@ -16,7 +16,7 @@ from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
 from tamp.symbolic.search.operators import Facts, Guard
 
 
-class Blocking:
+class DerivedGuards:
     """The guards that `not d(...)` amounts to, by a rule of d with one fluent and one absent assumed atom in its body.
 
     For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2) is a guard of
@@ -86,13 +86,13 @@ class Blocking:
             found = self._on[fact] = list(self._match(self._fluent, [fact]))
         return found
 
-    def lifted_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards, with their rows, that one of the static facts lifts, or would lift were it not refused."""
+    def waived_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
+        """The guards, with their rows, that one of the static facts lifts, or would waiver were it not refused."""
         return self._match(self._absent, [fact for fact in facts if fact[0] == self._absent.predicate])
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
         """The guards that nothing lifts."""
-        return self.lifted_by(sorted(self._vocabulary.refused))
+        return self.waived_by(sorted(self._vocabulary.refused))
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
         """The guards of registered rows for which the atom is one of the facts."""
@@ -113,10 +113,10 @@ class Blocking:
         vocabulary = self._vocabulary
         body = Body((*self._body.positive, *more), (), self._body.equalities)
         for row in join(vocabulary.relations, body, variables, rows, self._names):
-            lift = self._fill_absent(row)
-            if lift not in vocabulary.certain:
-                lifted_by = lift if vocabulary.may_hold(lift) else None
-                yield self._fill_head(row), Guard(frozenset((self._fill_fluent(row),)), lifted_by)
+            waiver = self._fill_absent(row)
+            if waiver not in vocabulary.certain:
+                waived_by = waiver if vocabulary.may_hold(waiver) else None
+                yield self._fill_head(row), Guard(frozenset((self._fill_fluent(row),)), waived_by)
 
 
 class LazyGuards(Sequence[Guard]):
@@ -127,17 +127,17 @@ class LazyGuards(Sequence[Guard]):
         blocked: Where the others come from, and which they are.
     """
 
-    def __init__(self, made: tuple[Guard, ...], blocked: tuple[tuple[Blocking, Row], ...]) -> None:
+    def __init__(self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]) -> None:
         self.made = made
         self.blocked = blocked
 
     def triggered(self, state: Facts) -> tuple[Guard, ...]:
         """The guards whose facts a state contains; only these are made."""
         made = [guard for guard in self.made if guard.facts <= state]
-        return (*made, *(guard for blocking, row in self.blocked for guard in blocking.triggered(row, state)))
+        return (*made, *(guard for source, row in self.blocked for guard in source.triggered(row, state)))
 
     def _all(self) -> tuple[Guard, ...]:
-        return (*self.made, *(guard for blocking, row in self.blocked for guard in blocking.of(row)))
+        return (*self.made, *(guard for source, row in self.blocked for guard in source.of(row)))
 
     @overload
     def __getitem__(self, index: int) -> Guard: ...

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row, filler, join
-from tamp.symbolic.search.instantiation.lazy_guards import Blocking
+from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards
 from tamp.symbolic.search.instantiation.normal_form import Definition
 from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
 from tamp.symbolic.search.operators import Axiom, Guard
@@ -27,7 +27,7 @@ class Needs:
     positive: list[Fact] = field(default_factory=list[Fact])
     negative: list[Fact] = field(default_factory=list[Fact])
     guards: list[Guard] = field(default_factory=list[Guard])
-    blocked: list[tuple[Blocking, Row]] = field(default_factory=list[tuple[Blocking, Row]])
+    blocked: list[tuple[DerivedGuards, Row]] = field(default_factory=list[tuple[DerivedGuards, Row]])
     impossible: bool = False
 
     def add(self, other: Needs) -> None:
@@ -52,7 +52,7 @@ class Negation:
         self._recursive = recursive
         self._known: dict[Fact, Needs] = {}
         self._choices: dict[tuple[tuple[Literal, ...], tuple[Fact, ...]], Fact] = {}
-        self._blocking: dict[tuple[str, int], Blocking] = {}
+        self._derived_guards: dict[tuple[str, int], DerivedGuards] = {}
         self._singles: dict[Fact, frozenset[Fact]] = {}
         self.axioms: list[Axiom] = []
         self.meanings: dict[str, str] = {}
@@ -70,9 +70,9 @@ class Negation:
         if guards or not (needs.guards or needs.blocked):
             return needs
         plain = Needs(list(needs.positive), list(needs.negative), impossible=needs.impossible)
-        for guard in (*needs.guards, *(guard for blocking, row in needs.blocked for guard in blocking.of(row))):
-            lifts = () if guard.lifted_by is None else (guard.lifted_by,)
-            plain.positive.append(self._choice([(False, f) for f in sorted(guard.facts)], lifts))
+        for guard in (*needs.guards, *(guard for source, row in needs.blocked for guard in source.of(row))):
+            waivers = () if guard.waived_by is None else (guard.waived_by,)
+            plain.positive.append(self._choice([(False, f) for f in sorted(guard.facts)], waivers))
         return plain
 
     def prepare(self, predicate: str, rows: Iterable[Row]) -> None:
@@ -89,15 +89,15 @@ class Negation:
         for fact in sorted(self._vocabulary.given & {(predicate, *row) for row in new}):
             self._known[fact].impossible = True
         for number, definition in enumerate(self._vocabulary.definitions(predicate)):
-            if not Blocking.fits(self._vocabulary, definition):
+            if not DerivedGuards.fits(self._vocabulary, definition):
                 self._refute_rule(definition, new)
                 continue
-            blocking = self._blocking.get((predicate, number))
-            if blocking is None:
-                blocking = self._blocking[predicate, number] = Blocking(self._vocabulary, definition)
-            blocking.add(new)
+            source = self._derived_guards.get((predicate, number))
+            if source is None:
+                source = self._derived_guards[predicate, number] = DerivedGuards(self._vocabulary, definition)
+            source.add(new)
             for row in new:
-                self._known[predicate, *row].blocked.append((blocking, row))
+                self._known[predicate, *row].blocked.append((source, row))
 
     def _refute_rule(self, definition: Definition, rows: list[Row]) -> None:
         literals, head = definition.literals, definition.head
@@ -120,24 +120,24 @@ class Negation:
         ]
         may_hold, certain = self._vocabulary.may_hold, self._vocabulary.certain
         for row in bindings:
-            lifts: tuple[Fact, ...] = ()
+            waivers: tuple[Fact, ...] = ()
             if absent:
-                lifts = tuple(fact for fact in (fill(row) for fill in absent) if may_hold(fact))
-                if not certain.isdisjoint(lifts):
+                waivers = tuple(fact for fact in (fill(row) for fill in absent) if may_hold(fact))
+                if not certain.isdisjoint(waivers):
                     continue
             needs = self._known[fill_head(row)]
             facts = [fill(row) for fill in fills]
             if not others and facts:
-                if len(facts) > 1 or lifts:
-                    needs.guards.append(Guard(self._set(facts), lifts[0] if lifts else None))
+                if len(facts) > 1 or waivers:
+                    needs.guards.append(Guard(self._set(facts), waivers[0] if waivers else None))
                 else:
                     needs.negative.append(facts[0])
                 continue
             clause: list[Literal] = [(False, fact) for fact in facts]
             clause += [(sign, fill(row)) for sign, fill in others]
-            self._require(needs, clause, lifts)
+            self._require(needs, clause, waivers)
 
-    def _require(self, needs: Needs, clause: list[Literal], lifts: tuple[Fact, ...]) -> None:
+    def _require(self, needs: Needs, clause: list[Literal], waivers: tuple[Fact, ...]) -> None:
         relations = self._vocabulary.relations
         possible: list[Literal] = []
         for sign, fact in clause:
@@ -146,9 +146,9 @@ class Negation:
                 return  # the literal is always true
             if not sign or reached:
                 possible.append((sign, fact))
-        if not possible and not lifts:
+        if not possible and not waivers:
             needs.impossible = True
-        elif len(possible) == 1 and not lifts:
+        elif len(possible) == 1 and not waivers:
             sign, fact = possible[0]
             if sign:
                 needs.positive.append(fact)
@@ -157,17 +157,17 @@ class Negation:
             else:
                 needs.add(self.refute(fact, guards=True))
         else:
-            needs.positive.append(self._choice(possible, lifts))
+            needs.positive.append(self._choice(possible, waivers))
 
-    def _choice(self, literals: list[Literal], lifts: tuple[Fact, ...]) -> Fact:
+    def _choice(self, literals: list[Literal], waivers: tuple[Fact, ...]) -> Fact:
         """A fact that holds when one of the literals does, or one of the static facts."""
-        key = (tuple(sorted(set(literals))), lifts)
+        key = (tuple(sorted(set(literals))), waivers)
         if key in self._choices:
             return self._choices[key]
         name = f"choice {len(self._choices) + 1}"
         head = self._choices[key] = (name,)
         words = [("" if sign else "not ") + " ".join(fact) for sign, fact in key[0]]
-        self.meanings[name] = " or ".join([*words, *(" ".join(fact) for fact in lifts)])
+        self.meanings[name] = " or ".join([*words, *(" ".join(fact) for fact in waivers)])
         for sign, fact in key[0]:
             if sign:
                 self.axioms.append(Axiom(head, frozenset((fact,)), frozenset()))
@@ -177,8 +177,8 @@ class Negation:
                 needs = self.refute(fact, guards=False)
                 if not needs.impossible:
                     self.axioms.append(Axiom(head, frozenset(needs.positive), frozenset(needs.negative)))
-        for lift in lifts:  # last: what holds without a test needs none
-            self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((lift,))))
+        for waiver in waivers:  # last: what holds without a test needs none
+            self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((waiver,))))
         self._vocabulary.relations.add(name, [()])
         return head
 
