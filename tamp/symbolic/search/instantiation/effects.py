@@ -9,7 +9,7 @@ from tamp.symbolic.pddl.structs import Action, And, Atom, Fact
 from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, getter, join
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import NONE, ConditionalEffect, Facts
 
 
@@ -54,13 +54,13 @@ class Effects:
         effects: tuple[LiftedEffect, ...],
         variables: tuple[str, ...],
         rows: list[Row],
-        vocabulary: Vocabulary,
+        predicates: PredicateKinds,
         negation: Negation,
         need: Callable[[Fact], None],
     ) -> None:
-        self._vocabulary, self._negation, self._need = vocabulary, negation, need
+        self._predicates, self._negation, self._need = predicates, negation, need
         self._known = {name: i for i, name in enumerate(variables)}
-        relations = vocabulary.relations
+        relations = predicates.relations
         self._adds: list[Callable[[Row], Fact]] = []
         self._deletes: list[tuple[str, Callable[[Row], Row], Callable[[Row], Fact]]] = []
         self._expanded: list[tuple[bool, Callable[[Row], Row], dict[Row, list[_Instance]]]] = []
@@ -79,7 +79,7 @@ class Effects:
 
     def _expand(self, effect: LiftedEffect, condition: Literals, rows: list[Row]) -> None:
         """Find all instances of one effect, by the values of the action's variables that it mentions."""
-        body = self._vocabulary.body(condition)
+        body = self._predicates.body(condition)
         used = {term for atom in (effect.atom, *condition.positive, *condition.negative) for term in atom.terms}
         used |= {term for left, right, _ in condition.equalities for term in (left, right)}
         shared = tuple(name for name in self._known if name in used)
@@ -92,11 +92,11 @@ class Effects:
         start = list(dict.fromkeys(map(key, rows)))
         names = (*shared, *own)
         found = join(
-            self._vocabulary.relations, Body(tuple(atoms), body.negative, body.equalities), shared, start, names
+            self._predicates.relations, Body(tuple(atoms), body.negative, body.equalities), shared, start, names
         )
         known = {name: i for i, name in enumerate(names)}
-        kinds = self._vocabulary.sort(condition)
-        unnamed = [atom for atom in self._vocabulary.unnamed(condition) if atom.terms[0] in own]
+        kinds = self._predicates.classify(condition)
+        unnamed = [atom for atom in self._predicates.unnamed(condition) if atom.terms[0] in own]
         unnamed = [] if not effect.adds else unnamed
         fact = filler((effect.atom.predicate, *effect.atom.terms), known)
         fills = {
@@ -117,7 +117,7 @@ class Effects:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if needs.impossible:
                 continue
-            static = frozenset([fill(row) for fill in fills["static"]]) - self._vocabulary.certain
+            static = frozenset([fill(row) for fill in fills["static"]]) - self._predicates.certain
             changed = fact(row)
             for needed in (*needs.positive, *needs.negative):
                 self._need(needed)

@@ -12,7 +12,7 @@ from typing import overload
 from tamp.symbolic.pddl.structs import Atom, Fact
 from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, join
 from tamp.symbolic.search.instantiation.normal_form import Definition
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Facts, Guard
 
 
@@ -23,11 +23,11 @@ class DerivedGuards:
     `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
     """
 
-    def __init__(self, vocabulary: Vocabulary, definition: Definition) -> None:
-        self._vocabulary = vocabulary
+    def __init__(self, predicates: PredicateKinds, definition: Definition) -> None:
+        self._predicates = predicates
         self._head = definition.head
         self._names = definition.literals.names
-        kinds = vocabulary.sort(definition.literals)
+        kinds = predicates.classify(definition.literals)
         (self._fluent,) = kinds.positive
         (self._absent,) = kinds.absent
         known = {name: i for i, name in enumerate(self._names)}
@@ -35,19 +35,19 @@ class DerivedGuards:
         self._fill_fluent = filler((self._fluent.predicate, *self._fluent.terms), known)
         self._fill_absent = filler((self._absent.predicate, *self._absent.terms), known)
         self._rows = Atom(f"rows of {definition.head.predicate}", self._head.terms)
-        self._body = vocabulary.body(definition.literals, absent=False)
+        self._body = predicates.body(definition.literals, absent=False)
         self._made: dict[Row, tuple[Guard, ...]] = {}
         self._on: dict[Fact, list[tuple[Row, Guard]]] = {}
 
     @staticmethod
-    def fits(vocabulary: Vocabulary, definition: Definition) -> bool:
+    def fits(predicates: PredicateKinds, definition: Definition) -> bool:
         """Whether a rule has the form that this class is about."""
-        kinds = vocabulary.sort(definition.literals)
+        kinds = predicates.classify(definition.literals)
         terms = definition.head.terms
         return (
             len(kinds.positive) == 1
             and len(kinds.absent) == 1
-            and kinds.absent[0].predicate in vocabulary.assumed
+            and kinds.absent[0].predicate in predicates.assumed
             and not (kinds.negative or kinds.derived or kinds.refuted)
             and all(term.startswith("?") for term in terms)
             and len(set(terms)) == len(terms)
@@ -60,7 +60,7 @@ class DerivedGuards:
 
     def add(self, rows: Iterable[Row]) -> None:
         """Register arguments of the derived predicate whose guards will be asked for."""
-        self._vocabulary.relations.add(self._rows.predicate, rows)
+        self._predicates.relations.add(self._rows.predicate, rows)
         self._on.clear()
 
     def of(self, row: Row) -> tuple[Guard, ...]:
@@ -92,7 +92,7 @@ class DerivedGuards:
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
         """The guards that nothing lifts."""
-        return self.waived_by(sorted(self._vocabulary.refused))
+        return self.waived_by(sorted(self._predicates.refused))
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
         """The guards of registered rows for which the atom is one of the facts."""
@@ -110,12 +110,12 @@ class DerivedGuards:
         ]
 
     def _find(self, variables: tuple[str, ...], rows: list[Row], *more: Atom) -> Iterator[tuple[Row, Guard]]:
-        vocabulary = self._vocabulary
+        predicates = self._predicates
         body = Body((*self._body.positive, *more), (), self._body.equalities)
-        for row in join(vocabulary.relations, body, variables, rows, self._names):
+        for row in join(predicates.relations, body, variables, rows, self._names):
             waiver = self._fill_absent(row)
-            if waiver not in vocabulary.certain:
-                waived_by = waiver if vocabulary.may_hold(waiver) else None
+            if waiver not in predicates.certain:
+                waived_by = waiver if predicates.may_hold(waiver) else None
                 yield self._fill_head(row), Guard(frozenset((self._fill_fluent(row),)), waived_by)
 
 

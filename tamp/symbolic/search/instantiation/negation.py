@@ -14,7 +14,7 @@ from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row, filler, join
 from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards
 from tamp.symbolic.search.instantiation.normal_form import Definition
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Axiom, Guard
 
 Literal = tuple[bool, Fact]
@@ -47,8 +47,8 @@ class Negation:
         meanings: Choices by name, in words.
     """
 
-    def __init__(self, vocabulary: Vocabulary, recursive: frozenset[str]) -> None:
-        self._vocabulary = vocabulary
+    def __init__(self, predicates: PredicateKinds, recursive: frozenset[str]) -> None:
+        self._predicates = predicates
         self._recursive = recursive
         self._known: dict[Fact, Needs] = {}
         self._choices: dict[tuple[tuple[Literal, ...], tuple[Fact, ...]], Fact] = {}
@@ -81,35 +81,35 @@ class Negation:
         for row in new:
             self._known[predicate, *row] = Needs()
         if predicate in self._recursive and not predicate.startswith("forall "):
-            reached = self._vocabulary.relations.rows(predicate)
+            reached = self._predicates.relations.rows(predicate)
             for row in new:
                 if row in reached:
                     self._known[predicate, *row].negative.append((predicate, *row))
             return
-        for fact in sorted(self._vocabulary.given & {(predicate, *row) for row in new}):
+        for fact in sorted(self._predicates.given & {(predicate, *row) for row in new}):
             self._known[fact].impossible = True
-        for number, definition in enumerate(self._vocabulary.definitions(predicate)):
-            if not DerivedGuards.fits(self._vocabulary, definition):
+        for number, definition in enumerate(self._predicates.definitions(predicate)):
+            if not DerivedGuards.fits(self._predicates, definition):
                 self._refute_rule(definition, new)
                 continue
             source = self._derived_guards.get((predicate, number))
             if source is None:
-                source = self._derived_guards[predicate, number] = DerivedGuards(self._vocabulary, definition)
+                source = self._derived_guards[predicate, number] = DerivedGuards(self._predicates, definition)
             source.add(new)
             for row in new:
                 self._known[predicate, *row].blocked.append((source, row))
 
     def _refute_rule(self, definition: Definition, rows: list[Row]) -> None:
         literals, head = definition.literals, definition.head
-        kinds = self._vocabulary.sort(literals)
+        kinds = self._predicates.classify(literals)
         for i, term in enumerate(head.terms):  # constants and repeated variables in the head
             j = head.terms.index(term)
             rows = [row for row in rows if (row[i] == row[j] if term.startswith("?") else row[i] == term)]
         columns = tuple(dict.fromkeys(term for term in head.terms if term.startswith("?")))
         start = list(map(filler(columns, {term: i for i, term in reversed(list(enumerate(head.terms)))}), rows))
-        body = self._vocabulary.body(literals, absent=False)
+        body = self._predicates.body(literals, absent=False)
         known = {name: i for i, name in enumerate(literals.names)}
-        bindings = join(self._vocabulary.relations, body, columns, start, literals.names)
+        bindings = join(self._predicates.relations, body, columns, start, literals.names)
         fill_head = filler((head.predicate, *head.terms), known)
         fills = [filler((atom.predicate, *atom.terms), known) for atom in kinds.positive]
         absent = [filler((atom.predicate, *atom.terms), known) for atom in kinds.absent]
@@ -118,7 +118,7 @@ class Negation:
             for sign, atoms in ((False, kinds.derived), (True, (*kinds.negative, *kinds.refuted)))
             for atom in atoms
         ]
-        may_hold, certain = self._vocabulary.may_hold, self._vocabulary.certain
+        may_hold, certain = self._predicates.may_hold, self._predicates.certain
         for row in bindings:
             waivers: tuple[Fact, ...] = ()
             if absent:
@@ -138,7 +138,7 @@ class Negation:
             self._require(needs, clause, waivers)
 
     def _require(self, needs: Needs, clause: list[Literal], waivers: tuple[Fact, ...]) -> None:
-        relations = self._vocabulary.relations
+        relations = self._predicates.relations
         possible: list[Literal] = []
         for sign, fact in clause:
             reached = fact[1:] in relations.rows(fact[0])
@@ -152,7 +152,7 @@ class Negation:
             sign, fact = possible[0]
             if sign:
                 needs.positive.append(fact)
-            elif fact[0] in self._vocabulary.fluent:
+            elif fact[0] in self._predicates.fluent:
                 needs.negative.append(fact)
             else:
                 needs.add(self.refute(fact, guards=True))
@@ -171,7 +171,7 @@ class Negation:
         for sign, fact in key[0]:
             if sign:
                 self.axioms.append(Axiom(head, frozenset((fact,)), frozenset()))
-            elif fact[0] in self._vocabulary.fluent:
+            elif fact[0] in self._predicates.fluent:
                 self.axioms.append(Axiom(head, frozenset(), frozenset((fact,))))
             else:
                 needs = self.refute(fact, guards=False)
@@ -179,7 +179,7 @@ class Negation:
                     self.axioms.append(Axiom(head, frozenset(needs.positive), frozenset(needs.negative)))
         for waiver in waivers:  # last: what holds without a test needs none
             self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((waiver,))))
-        self._vocabulary.relations.add(name, [()])
+        self._predicates.relations.add(name, [()])
         return head
 
     def _set(self, facts: list[Fact]) -> frozenset[Fact]:

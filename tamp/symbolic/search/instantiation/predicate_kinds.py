@@ -12,7 +12,7 @@ from tamp.symbolic.search.operators import ANY
 
 
 @dataclass(frozen=True, slots=True)
-class Sorted:
+class ClassifiedAtoms:
     """The atoms of a conjunction by what becomes of them.
 
     `positive` and `negative` hold fluent atoms, `derived` and `refuted` atoms of derived and auxiliary predicates,
@@ -27,7 +27,7 @@ class Sorted:
     absent: tuple[Atom, ...]
 
 
-class Vocabulary:
+class PredicateKinds:
     """The predicates of a task by kind, and its relations.
 
     Attributes:
@@ -109,7 +109,7 @@ class Vocabulary:
                 found.add(name)
         return frozenset(found)
 
-    def sort(self, literals: Literals) -> Sorted:
+    def classify(self, literals: Literals) -> ClassifiedAtoms:
         """Split a conjunction by the kinds of its predicates."""
         definitions = self._normalizer.definitions
 
@@ -121,7 +121,7 @@ class Vocabulary:
             )
 
         positive, negative = literals.positive, literals.negative
-        return Sorted(
+        return ClassifiedAtoms(
             of(positive, 0), of(negative, 0), of(positive, 1), of(negative, 1), of(positive, 2), of(negative, 2)
         )  # fmt: skip
 
@@ -130,7 +130,7 @@ class Vocabulary:
 
         Variables of the root type that occur in an atom need no relation of their own.
         """
-        kinds = self.sort(literals)
+        kinds = self.classify(literals)
         atoms = (*kinds.positive, *(kinds.derived if derived else ()), *kinds.static)
         covered = {term for atom in atoms for term in atom.terms}
         types = tuple(

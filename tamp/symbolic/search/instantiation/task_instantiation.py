@@ -19,7 +19,7 @@ from tamp.symbolic.search.instantiation.effects import Effects, LiftedEffect, li
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Operator
 
 
@@ -57,20 +57,20 @@ class Instantiation:
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
         (self._goal_literals,) = goals
-        self._vocabulary = vocabulary = Vocabulary(task, normalizer, assumed)
-        self._recursive = vocabulary.recursive()
-        self._variants = [_Variant(*variant, _action_rule(vocabulary, *variant)) for variant in split]
+        self._predicates = predicates = PredicateKinds(task, normalizer, assumed)
+        self._recursive = predicates.recursive()
+        self._variants = [_Variant(*variant, _action_rule(predicates, *variant)) for variant in split]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
         self._definitions: dict[str, list[tuple[Definition, Rule]]] = {
             name: [
-                (d, Rule(d.literals.names, vocabulary.body(d.literals), (d.head,)))
+                (d, Rule(d.literals.names, predicates.body(d.literals), (d.head,)))
                 for d in normalizer.definitions[name]
             ]
             for name in normalizer.reached(roots, self._recursive)
         }
         self._rules = [variant.rule for variant in self._variants]
-        self._rules += [rule for variant in self._variants for rule in _effect_rules(vocabulary, variant)]
+        self._rules += [rule for variant in self._variants for rule in _effect_rules(predicates, variant)]
         self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
         self.absences = frozenset(atom.predicate for rule in self._rules for atom in rule.body.negative)
         self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
@@ -80,12 +80,12 @@ class Instantiation:
         self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]
     ) -> InstantiatedTask:
         """Run the fixpoint from what is new, and build everything from what it reached."""
-        vocabulary = self._vocabulary
-        vocabulary.refused = refused
-        delta = vocabulary.add(facts, objects)
-        fixpoint(vocabulary.relations, self._rules, delta if self._joined else None)
+        predicates = self._predicates
+        predicates.refused = refused
+        delta = predicates.add(facts, objects)
+        fixpoint(predicates.relations, self._rules, delta if self._joined else None)
         self._joined = True
-        self._negation = Negation(vocabulary, self._recursive)
+        self._negation = Negation(predicates, self._recursive)
         self._axioms: dict[Axiom, None] = {}
         self._needed: dict[Fact, None] = {}
         self._waiting: list[Fact] = []
@@ -100,8 +100,8 @@ class Instantiation:
         goal = self._goal()
         self._derive()
         heads = {axiom.head for axiom in self._axioms}
-        reachable = {(p, *row) for p in sorted(vocabulary.fluent) for row in vocabulary.relations.rows(p)} | heads
-        initial = frozenset(f for f in self._task.initial if f[0] in vocabulary.fluent)
+        reachable = {(p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)} | heads
+        initial = frozenset(f for f in self._task.initial if f[0] in predicates.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
         return InstantiatedTask(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
 
@@ -116,7 +116,7 @@ class Instantiation:
         def fills(atoms: Iterable[Atom]) -> list[Callable[[Row], Fact]]:
             return [filler((atom.predicate, *atom.terms), known) for atom in atoms]
 
-        kinds = self._vocabulary.sort(variant.literals)
+        kinds = self._predicates.classify(variant.literals)
         for atom in kinds.refuted:
             self._negation.prepare(atom.predicate, map(filler(atom.terms, known), rows))
         positive = fills((*kinds.positive, *kinds.derived))
@@ -124,11 +124,11 @@ class Instantiation:
         negative = [(atom.predicate, fill) for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)]
         refuted = fills(kinds.refuted)
         named = {parameter.name for parameter in action.parameters}
-        unnamed = [atom for atom in self._vocabulary.unnamed(variant.literals) if atom.terms[0] not in named]
+        unnamed = [atom for atom in self._predicates.unnamed(variant.literals) if atom.terms[0] not in named]
         static = fills([*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed])
         arguments = filler([parameter.name for parameter in action.parameters], known)
-        relations = self._vocabulary.relations
-        effects = Effects(variant.effects, rule.variables, rows, self._vocabulary, self._negation, self._need)
+        relations = self._predicates.relations
+        effects = Effects(variant.effects, rule.variables, rows, self._predicates, self._negation, self._need)
         cost = action.cost
         price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
         simple = not (kinds.negative or kinds.refuted) and all(effect.simple for effect in variant.effects)
@@ -191,8 +191,8 @@ class Instantiation:
 
     def _goal(self) -> Goal:
         literals = self._goal_literals
-        kinds = self._vocabulary.sort(literals)
-        relations = self._vocabulary.relations
+        kinds = self._predicates.classify(literals)
+        relations = self._predicates.relations
         needs = Needs()
         static: list[Fact] = []
         for atom in (*kinds.positive, *kinds.derived):
@@ -248,17 +248,17 @@ class Instantiation:
                 head = filler((predicate, *definition.head.terms), known)
                 for row in sorted(rule.rows):
                     heads.setdefault(head(row), []).append((i, row))
-                kinds = self._vocabulary.sort(definition.literals)
+                kinds = self._predicates.classify(definition.literals)
                 static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
-                static += self._vocabulary.unnamed(definition.literals)
+                static += self._predicates.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
                 bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
                 for atom in kinds.refuted:
                     self._negation.prepare(atom.predicate, map(filler(atom.terms, known), sorted(rule.rows)))
         axioms: list[Axiom] = []
-        if fact in self._vocabulary.given:
+        if fact in self._predicates.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
-        rows = self._vocabulary.relations.rows
+        rows = self._predicates.relations.rows
         for i, row in self._heads[predicate].get(fact, ()):
             positive, negative, refuted, static = self._bodies[predicate][i]
             needs = Needs([fill(row) for fill in positive])
@@ -271,7 +271,9 @@ class Instantiation:
         return axioms
 
 
-def _action_rule(vocabulary: Vocabulary, action: Action, literals: Literals, effects: tuple[LiftedEffect, ...]) -> Rule:
+def _action_rule(
+    predicates: PredicateKinds, action: Action, literals: Literals, effects: tuple[LiftedEffect, ...]
+) -> Rule:
     """A parameter that neither conditions nor effects nor the cost mention takes one value: others change nothing."""
     heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
     conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
@@ -280,17 +282,17 @@ def _action_rule(vocabulary: Vocabulary, action: Action, literals: Literals, eff
     mentioned |= {term for effect in effects for term in effect.atom.terms}
     mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
     free = {name: types for name, types in literals.variables if name not in mentioned}
-    body = vocabulary.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
-    any_ = tuple(vocabulary.any_atom(name, types) for name, types in free.items())
+    body = predicates.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
+    any_ = tuple(predicates.any_atom(name, types) for name, types in free.items())
     return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
 
 
-def _effect_rules(vocabulary: Vocabulary, variant: _Variant) -> list[Rule]:
+def _effect_rules(predicates: PredicateKinds, variant: _Variant) -> list[Rule]:
     """Rules for the conditional and universal effects that add something."""
     rules: list[Rule] = []
     for effect in variant.effects:
         for condition in effect.conditions if effect.adds and not effect.simple else ():
-            before, when = variant.rule.body, vocabulary.body(condition)
+            before, when = variant.rule.body, predicates.body(condition)
             body = Body(
                 tuple(dict.fromkeys((*before.positive, *when.positive))),
                 (*before.negative, *when.negative),
