@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from heapq import heappop, heappush
 
-from tamp.symbolic.search.expansion import Expansion, Plan
+from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.successors import State
 
 
-def astar(search: Expansion) -> Plan | None:
+def astar(search: SearchSpace) -> Plan | None:
     """A* with reopening; ties are broken for the lower estimate, then for the younger state.
 
     A state is evaluated when it is taken from the queue for the first time; until then its parent's estimate less the
@@ -59,7 +59,7 @@ def astar(search: Expansion) -> Plan | None:
     return None
 
 
-def best_first(search: Expansion) -> Plan | None:
+def best_first(search: SearchSpace) -> Plan | None:
     """Greedy best-first search: costs do not count, the state of the lowest estimate is next, then the younger one.
 
     States are evaluated as they are generated. Several heuristics count with their sum.

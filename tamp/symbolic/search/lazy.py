@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from heapq import heappop, heappush
 
-from tamp.symbolic.search.expansion import Expansion, Plan
+from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.heuristics.registry import Estimate
 from tamp.symbolic.search.successors import State, Successors
 
-BOOST = 1000
+PREFERRED_BOOST = 1000
 """How much longer preferred operators are preferred after progress (Richter and Helmert 2009)."""
 
 END = -2
@@ -20,7 +20,7 @@ _Entry = tuple[float, int, float, State, State | None, int]
 """Priority, number among equals, cost, state, the state before, the operator."""
 
 
-def lazy(search: Expansion, weight: float) -> Plan | None:
+def lazy(search: SearchSpace, weight: float) -> Plan | None:
     """Lazy search: a state is evaluated when it is expanded, until then its parent's estimate stands for it.
 
     Each heuristic has two queues, the second for successors by preferred operators; all take turns, after progress
@@ -86,7 +86,7 @@ def lazy(search: Expansion, weight: float) -> Plan | None:
             if value < lowest[kind]:
                 lowest[kind] = value
                 for other in kinds:
-                    turns_preferred[other] -= BOOST
+                    turns_preferred[other] -= PREFERRED_BOOST
         applicable = s.applicable(closed)
         helpful = _helpful(s, state, closed, applicable, found[state])
         for rank, operator in enumerate((*helpful, *applicable)):

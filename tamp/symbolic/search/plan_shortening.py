@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tamp.symbolic.search.successors import State, Successors
 
 
-def shorten(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
+def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
     """Drop operators as long as the rest is a plan that costs no more (action elimination, Nakhost and Mueller 2010).
 
     Each operator is dropped together with the later ones that no longer apply without it.

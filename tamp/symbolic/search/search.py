@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from tamp.errors import InputError
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.eager import astar, best_first
-from tamp.symbolic.search.expansion import Expansion, Stop
 from tamp.symbolic.search.expansion import Plan as Plan
 from tamp.symbolic.search.expansion import Reason as Reason
+from tamp.symbolic.search.expansion import SearchLimitReached, SearchSpace
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS
 from tamp.symbolic.search.lazy import lazy
 from tamp.symbolic.search.operators import InstantiatedTask
@@ -37,7 +37,7 @@ class Result:
     bound: float = 0.0
 
 
-SEARCHES: dict[str, Callable[[Expansion, float], Plan | None]] = {
+SEARCHES: dict[str, Callable[[SearchSpace, float], Plan | None]] = {
     "astar": lambda search, weight: astar(search),
     "wastar": lazy,
     "greedy": lambda search, weight: lazy(search, math.inf),
@@ -96,11 +96,11 @@ def search(
     if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(instantiated, price if price is not None else {})
-    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
+    run = SearchSpace(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
-    except Stop as stop:
+    except SearchLimitReached as stop:
         plan, reason = None, stop.reason
     return Result(plan, reason, run.expanded, run.evaluated, run.bound if ADMISSIBLE.issuperset(names) else 0.0)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import And, Atom, Derived, Domain, Exists, Formula, Not, Or, Parameter
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
 
-SPLITS = 12
+MAX_CONJUNCTIONS = 12
 """A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary predicates."""
 
 Types = tuple[str, ...]
@@ -142,7 +142,7 @@ class Normalizer:
             size *= len(part)
         product: list[_Part] = [((), ())]
         for part in parts:
-            if size > SPLITS and len(part) > 1:
+            if size > MAX_CONJUNCTIONS and len(part) > 1:
                 part = [((), ((True, self._name(None, part, scope, "or")),))]
             product = [((*p, *q), (*a, *b)) for p, a in product for q, b in part]
         return product
