@@ -28,11 +28,15 @@ class Landmarks:
         self._relaxation = relaxation = Relaxation(successors, steps=True)
         self._size = len(successors.facts)
         initial = successors.closure(successors.initial)
-        situation = relaxation.situation(initial)
-        before, effects, needed = situation.before.lists(), situation.effects.lists(), situation.needed.lists()
+        relaxed_state = relaxation.relaxed_state(initial)
+        before, effects, needed = (
+            relaxed_state.before.lists(),
+            relaxed_state.effects.lists(),
+            relaxed_state.needed.lists(),
+        )
         here = relaxation.holding(initial)
         sets: list[Mask] = [0] * len(needed)  # 0: not reached yet; every reached set contains the fact itself
-        for fact in (*here, *situation.paid):
+        for fact in (*here, *relaxed_state.paid):
             sets[fact] = 1 << fact
         start = set(here)
         waiting = dict.fromkeys(range(len(before)))
@@ -64,7 +68,7 @@ class Landmarks:
         self._goals = goals & useful
         self._reached: dict[State, Mask] = {}
         self._complements = self._all >> self._size
-        self._weights = self._weigh(effects, situation.costs)
+        self._weights = self._weigh(effects, relaxed_state.costs)
         self._needs = self._first_needs(sets, before, effects)
 
     def remaining(self, closed: State, parent: State | None) -> Mask:

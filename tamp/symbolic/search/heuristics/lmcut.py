@@ -7,10 +7,10 @@ operators: all of them get cheaper when one is in a cut, since one application m
 
 from __future__ import annotations
 
-from tamp.symbolic.search.heuristics.relaxation import KEPT, Relaxation, Situation
+from tamp.symbolic.search.heuristics.relaxation import MAX_RELAXED_STATES, Relaxation, RelaxedState
 from tamp.symbolic.search.successors import State
 
-CUTS = 10
+EXPECTED_CUTS = 10
 """So many cuts an estimate takes for granted, in telling what it will cost."""
 
 
@@ -21,12 +21,12 @@ class LandmarkCut:
 
     Args:
         relaxation: Whose operators they are.
-        situation: The relaxed task.
+        relaxed_state: The relaxed task.
     """
 
-    def __init__(self, relaxation: Relaxation, situation: Situation) -> None:
+    def __init__(self, relaxation: Relaxation, relaxed_state: RelaxedState) -> None:
         self._relaxation = relaxation
-        self.situation = it = situation
+        self.relaxed_state = it = relaxed_state
         self._true = true = it.facts
         self._goal = goal = true + 1
         loops, last, goals = it.loops, it.operators, relaxation.goals or [true]
@@ -39,8 +39,8 @@ class LandmarkCut:
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts; infinite in a dead end."""
-        loops = self.situation.loops
-        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
+        loops = self.relaxed_state.loops
+        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid))
         return loops.landmark_cut(
             *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
         )
@@ -55,10 +55,10 @@ class LandmarkCuts:
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts."""
-        situation, key = self._relaxation.situation(closed, CUTS), self._relaxation.key(closed)
+        relaxed_state, key = self._relaxation.relaxed_state(closed, EXPECTED_CUTS), self._relaxation.key(closed)
         known = self._known.get(key)
-        if known is None or known.situation.loops is not situation.loops:
-            if len(self._known) >= KEPT:
+        if known is None or known.relaxed_state.loops is not relaxed_state.loops:
+            if len(self._known) >= MAX_RELAXED_STATES:
                 self._known.clear()
-            known = self._known[key] = LandmarkCut(self._relaxation, situation)
+            known = self._known[key] = LandmarkCut(self._relaxation, relaxed_state)
         return known.value(closed)

@@ -17,12 +17,12 @@ from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows
 from tamp.symbolic.search.heuristics.loops.selection import Loops, choose
 from tamp.symbolic.search.successors import State, Successors, bits
 
-KEPT = 64
-"""So many situations are kept; one of a large task takes a megabyte, and making it again less time than exploring."""
+MAX_RELAXED_STATES = 64
+"""So many relaxed states are kept; one of a large task takes a megabyte, and making it again less time than exploring."""
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class RelaxedState:
     """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
 
     Attributes:
@@ -59,12 +59,12 @@ class Situation:
 
 
 @dataclass(frozen=True, slots=True)
-class Exploration:
+class RelaxedExploration:
     """The result: costs of facts, and for each the relaxed operator that reaches it best (-1: it holds, or is paid)."""
 
     costs: Reals
     supporters: Integers
-    situation: Situation
+    relaxed_state: RelaxedState
     goals: list[int]
 
     @property
@@ -74,7 +74,7 @@ class Exploration:
 
     def paid(self, operator: int) -> float:
         """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than removes their facts."""
-        it = self.situation
+        it = self.relaxed_state
         waited = it.guarded.get(operator, ())
         return it.raised.get(operator, 0.0) + sum(price for guard, price in waited if self.supporters[guard] < 0)
 
@@ -143,8 +143,8 @@ class Relaxation:
         """Make the lists that the loops take, of the states that trigger no guards and violate nothing."""
         before = loops.rows(self._before)
         effects, needed = loops.rows(self._effects), loops.transposed(before, 2 * self._size)
-        self._base = Situation(loops, before, loops.reals(self._costs), effects, needed)
-        self._situations: dict[int, Situation] = {}
+        self._base = RelaxedState(loops, before, loops.reals(self._costs), effects, needed)
+        self._relaxed_states: dict[int, RelaxedState] = {}
         self._ends = loops.integers(self.goals)
         self.owners, self.groups = loops.integers(self._owners), loops.rows(self._of_operator)
 
@@ -173,23 +173,23 @@ class Relaxation:
         return [*bits(closed), *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1)]
 
     def key(self, state: State) -> State:
-        """What states with the same situation have in common."""
+        """What states with the same relaxed_state have in common."""
         return state & self._negated
 
-    def situation(self, state: State, effort: int = 1) -> Situation:
+    def relaxed_state(self, state: State, effort: int = 1) -> RelaxedState:
         """The relaxed task as seen from a state, to be gone through about so many times."""
         loops = choose(effort * self._entries)
         if loops is not self._base.loops:
             self._prepare(loops)
         key = self.key(state)
-        known = self._situations.get(key)
+        known = self._relaxed_states.get(key)
         if known is None:
-            if len(self._situations) >= KEPT:
-                self._situations.clear()
-            known = self._situations[key] = self._situation(key)
+            if len(self._relaxed_states) >= MAX_RELAXED_STATES:
+                self._relaxed_states.clear()
+            known = self._relaxed_states[key] = self._relax(key)
         return known
 
-    def _situation(self, state: State) -> Situation:
+    def _relax(self, state: State) -> RelaxedState:
         s, size, base = self._successors, self._size, self._base
         dearer: list[int] = []
         by: list[float] = []
@@ -230,7 +230,7 @@ class Relaxation:
         added = loops.integers(range(operators, last))
         behind, sources = loops.integers([*waiters, *added]), loops.integers([*guards, *removers])
         paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
-        return Situation(
+        return RelaxedState(
             loops,
             before=loops.appended(base.before, behind, sources, last),
             costs=loops.raised(base.costs, loops.integers(dearer), loops.reals(by), len(removers)),
@@ -245,7 +245,7 @@ class Relaxation:
             },
         )
 
-    def explore(self, closed: State, *, additive: bool) -> Exploration:
+    def explore(self, closed: State, *, additive: bool) -> RelaxedExploration:
         """Costs of all facts from a state: sums of the preconditions' costs (hadd) or their maximum (hmax).
 
         Facts are taken in the order of their costs, until the goal is reached at the cost of all that is left.
@@ -254,22 +254,22 @@ class Relaxation:
             closed: The state with its derived facts.
             additive: Sum, or maximum.
         """
-        it = self.situation(closed)
+        it = self.relaxed_state(closed)
         holding, loops = self.holding(closed), it.loops
         here, prices = loops.integers((*it.paid, *holding)), loops.reals((*it.prices, *[0.0] * len(holding)))
         costs, supporters = loops.explore(
             it.before, it.effects, it.needed, it.costs, here, prices, self._ends, additive
         )
-        return Exploration(costs, supporters, it, self.goals)
+        return RelaxedExploration(costs, supporters, it, self.goals)
 
-    def plan(self, exploration: Exploration) -> tuple[float, list[int]]:
+    def plan(self, exploration: RelaxedExploration) -> tuple[float, list[int]]:
         """The cost of a relaxed plan made of best supporters, guards' prices included, and its operators.
 
         Facts are taken in the order of falling cost. One that an operator chosen already adds needs no supporter of
         its own, if that operator is cheaper than what the fact is needed for: the hand is free for the next body once
         this one is placed where it shall be, it need not be put back first.
         """
-        it = exploration.situation
+        it = exploration.relaxed_state
         cost, plan = it.loops.relaxed_plan(
             exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owners,
             len(self._of_operator), self._ends, 2 * self._size,
