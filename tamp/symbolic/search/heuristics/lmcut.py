@@ -29,19 +29,19 @@ class LandmarkCut:
         self.relaxed_state = it = relaxed_state
         self._true = true = it.facts
         self._goal = goal = true + 1
-        loops, last, goals = it.loops, it.operators, relaxation.goals or [true]
-        integers = loops.integers
+        kernels, last, goals = it.kernels, it.operators, relaxation.goals or [true]
+        integers = kernels.integers
         at, what = [*relaxation.free, *[last] * len(goals)], [*[true] * len(relaxation.free), *goals]
-        before = loops.appended(it.before, integers(at), integers(what), last + 1)
-        effects = loops.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
-        self._rows = before, effects, loops.transposed(before, goal + 1), loops.transposed(effects, goal + 1)
-        self._costs = loops.raised(it.costs, integers(()), loops.reals(()), 1)
+        before = kernels.appended(it.before, integers(at), integers(what), last + 1)
+        effects = kernels.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
+        self._rows = before, effects, kernels.transposed(before, goal + 1), kernels.transposed(effects, goal + 1)
+        self._costs = kernels.incremented(it.costs, integers(()), kernels.reals(()), 1)
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts; infinite in a dead end."""
-        loops = self.relaxed_state.loops
-        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid))
-        return loops.landmark_cut(
+        kernels = self.relaxed_state.kernels
+        here = kernels.integers((*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid))
+        return kernels.landmark_cut(
             *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
         )
 
@@ -57,7 +57,7 @@ class LandmarkCuts:
         """The estimate for a state with its derived facts."""
         relaxed_state, key = self._relaxation.relaxed_state(closed, EXPECTED_CUTS), self._relaxation.key(closed)
         known = self._known.get(key)
-        if known is None or known.relaxed_state.loops is not relaxed_state.loops:
+        if known is None or known.relaxed_state.kernels is not relaxed_state.kernels:
             if len(self._known) >= MAX_RELAXED_STATES:
                 self._known.clear()
             known = self._known[key] = LandmarkCut(self._relaxation, relaxed_state)

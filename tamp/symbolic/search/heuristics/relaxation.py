@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows
-from tamp.symbolic.search.heuristics.loops.selection import Loops, choose
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
+from tamp.symbolic.search.heuristics.loops.selection import Kernels, choose
 from tamp.symbolic.search.successors import State, Successors, bits
 
 MAX_RELAXED_STATES = 64
@@ -26,7 +26,7 @@ class RelaxedState:
     """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
 
     Attributes:
-        loops: Those that its lists are made for.
+        kernels: Those that its lists are made for.
         before: Preconditions of each relaxed operator.
         costs: Their costs.
         effects: Their effects: facts, complements of facts, paid guards.
@@ -37,11 +37,11 @@ class RelaxedState:
         guarded: For each operator the guards, with their prices, that it waits for.
     """
 
-    loops: Loops
-    before: Rows
+    kernels: Kernels
+    before: CsrRows
     costs: Reals
-    effects: Rows
-    needed: Rows
+    effects: CsrRows
+    needed: CsrRows
     paid: tuple[int, ...] = ()
     prices: tuple[float, ...] = ()
     raised: Mapping[int, float] = field(default_factory=dict[int, float])
@@ -139,14 +139,14 @@ class Relaxation:
         self._entries = sum(map(len, self._before)) + len(self._before) + size
         self._prepare(choose(0))
 
-    def _prepare(self, loops: Loops) -> None:
+    def _prepare(self, kernels: Kernels) -> None:
         """Make the lists that the loops take, of the states that trigger no guards and violate nothing."""
-        before = loops.rows(self._before)
-        effects, needed = loops.rows(self._effects), loops.transposed(before, 2 * self._size)
-        self._base = RelaxedState(loops, before, loops.reals(self._costs), effects, needed)
+        before = kernels.rows(self._before)
+        effects, needed = kernels.rows(self._effects), kernels.transposed(before, 2 * self._size)
+        self._base = RelaxedState(kernels, before, kernels.reals(self._costs), effects, needed)
         self._relaxed_states: dict[int, RelaxedState] = {}
-        self._ends = loops.integers(self.goals)
-        self.owners, self.groups = loops.integers(self._owners), loops.rows(self._of_operator)
+        self._ends = kernels.integers(self.goals)
+        self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
 
     def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
         number = len(self._owners)
@@ -178,9 +178,9 @@ class Relaxation:
 
     def relaxed_state(self, state: State, effort: int = 1) -> RelaxedState:
         """The relaxed task as seen from a state, to be gone through about so many times."""
-        loops = choose(effort * self._entries)
-        if loops is not self._base.loops:
-            self._prepare(loops)
+        kernels = choose(effort * self._entries)
+        if kernels is not self._base.kernels:
+            self._prepare(kernels)
         key = self.key(state)
         known = self._relaxed_states.get(key)
         if known is None:
@@ -226,16 +226,16 @@ class Relaxation:
             removers += complements
             removed += [guard] * len(complements)
         numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
-        loops, last = base.loops, operators + len(removers)
-        added = loops.integers(range(operators, last))
-        behind, sources = loops.integers([*waiters, *added]), loops.integers([*guards, *removers])
+        kernels, last = base.kernels, operators + len(removers)
+        added = kernels.integers(range(operators, last))
+        behind, sources = kernels.integers([*waiters, *added]), kernels.integers([*guards, *removers])
         paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
         return RelaxedState(
-            loops,
-            before=loops.appended(base.before, behind, sources, last),
-            costs=loops.raised(base.costs, loops.integers(dearer), loops.reals(by), len(removers)),
-            effects=loops.appended(base.effects, added, loops.integers(removed), last),
-            needed=loops.appended(base.needed, sources, behind, first + len(waiting)),
+            kernels,
+            before=kernels.appended(base.before, behind, sources, last),
+            costs=kernels.incremented(base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)),
+            effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
+            needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),
             prices=tuple(price for _, price in paid),
             raised=raised,
@@ -255,9 +255,9 @@ class Relaxation:
             additive: Sum, or maximum.
         """
         it = self.relaxed_state(closed)
-        holding, loops = self.holding(closed), it.loops
-        here, prices = loops.integers((*it.paid, *holding)), loops.reals((*it.prices, *[0.0] * len(holding)))
-        costs, supporters = loops.explore(
+        holding, kernels = self.holding(closed), it.kernels
+        here, prices = kernels.integers((*it.paid, *holding)), kernels.reals((*it.prices, *[0.0] * len(holding)))
+        costs, supporters = kernels.explore(
             it.before, it.effects, it.needed, it.costs, here, prices, self._ends, additive
         )
         return RelaxedExploration(costs, supporters, it, self.goals)
@@ -270,7 +270,7 @@ class Relaxation:
         this one is placed where it shall be, it need not be put back first.
         """
         it = exploration.relaxed_state
-        cost, plan = it.loops.relaxed_plan(
+        cost, plan = it.kernels.relaxed_plan(
             exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owners,
             len(self._of_operator), self._ends, 2 * self._size,
         )  # fmt: skip

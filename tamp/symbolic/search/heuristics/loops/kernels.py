@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows, count_up, full
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, count_up, full
 
 ZERO = 1e-9
 """Costs below are nothing: what rounding leaves of a cost that cuts have used up."""
@@ -58,7 +58,7 @@ def _pop(heap: list[int], places: list[int], size: int, keys: Reals, ranks: Inte
 
 
 def explore(
-    before: Rows, effects: Rows, needs: Rows, costs: Reals, here: Integers, prices: Reals, goals: Integers,
+    before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers, prices: Reals, goals: Integers,
     additive: bool,
 ) -> tuple[list[float], list[int]]:  # fmt: skip
     """What `Relaxation.explore` promises: the facts' costs and supporters. Among equals the first found goes first.
@@ -114,7 +114,7 @@ def explore(
 
 
 def relaxed_plan(
-    reached: Reals, supporters: Integers, before: Rows, effects: Rows, costs: Reals, owners: Integers, operators: int,
+    reached: Reals, supporters: Integers, before: CsrRows, effects: CsrRows, costs: Reals, owners: Integers, operators: int,
     goals: Integers, guards: int,
 ) -> tuple[float, list[int]]:  # fmt: skip
     """What `Relaxation.plan` promises: the cost and the operators, ascending. Facts from `guards` on are guards."""
@@ -162,7 +162,7 @@ def relaxed_plan(
 
 
 def _levels(
-    before: Rows, effects: Rows, needs: Rows, costs: Reals, here: Integers, heap: list[int], places: list[int],
+    before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers, heap: list[int], places: list[int],
     ranks: Integers,
 ) -> tuple[list[float], list[int], list[float]]:  # fmt: skip
     """The cost of all facts by hmax, and for each operator its dearest precondition and what that costs."""
@@ -192,7 +192,7 @@ def _levels(
 
 
 def _find_cut(
-    effects: Rows, needs: Rows, adders: Rows, costs: Reals, here: Integers, dearest: Integers, goal: int,
+    effects: CsrRows, needs: CsrRows, adders: CsrRows, costs: Reals, here: Integers, dearest: Integers, goal: int,
     stack: list[int], cut: list[int],
 ) -> int:  # fmt: skip
     """Fill `cut` with the operators that lead into the facts from which the goal costs nothing more; how many."""
@@ -237,8 +237,8 @@ def _find_cut(
 
 
 def landmark_cut(
-    before: Rows, effects: Rows, needs: Rows, adders: Rows, prices: Reals, here: Integers, owners: Integers,
-    groups: Rows, goal: int,
+    before: CsrRows, effects: CsrRows, needs: CsrRows, adders: CsrRows, prices: Reals, here: Integers, owners: Integers,
+    groups: CsrRows, goal: int,
 ) -> float:  # fmt: skip
     """What `LandmarkCut.value` promises. The row of an owner in `groups`: its operators, which get cheaper together."""
     facts, operators = len(needs.starts) - 1, len(prices)

@@ -14,7 +14,7 @@ Reals = Sequence[float]
 T = TypeVar("T")
 
 
-class Rows(NamedTuple):
+class CsrRows(NamedTuple):
     """Row i is values[starts[i] : starts[i + 1]]."""
 
     starts: Integers
@@ -26,9 +26,9 @@ class Rows(NamedTuple):
         return [values[starts[i] : starts[i + 1]] for i in range(len(starts) - 1)]
 
 
-def rows_of(lists: Sequence[Sequence[int]]) -> Rows:
+def csr_rows(lists: Sequence[Sequence[int]]) -> CsrRows:
     """From lists."""
-    return Rows(list(accumulate(map(len, lists), initial=0)), list(chain.from_iterable(lists)))
+    return CsrRows(list(accumulate(map(len, lists), initial=0)), list(chain.from_iterable(lists)))
 
 
 def full(size: int, value: T) -> list[T]:
@@ -41,7 +41,7 @@ def count_up(size: int) -> list[int]:
     return list(range(size))
 
 
-def transposed(rows: Rows, size: int) -> Rows:
+def transposed(rows: CsrRows, size: int) -> CsrRows:
     """Row j of the result, of so many, lists the rows that contain j, in ascending order."""
     ends = full(size + 1, 0)
     for j in rows.values:
@@ -54,10 +54,10 @@ def transposed(rows: Rows, size: int) -> Rows:
             j = rows.values[k]
             listed[places[j]] = i
             places[j] += 1
-    return Rows(ends, listed)
+    return CsrRows(ends, listed)
 
 
-def appended(rows: Rows, at: Integers, what: Integers, size: int) -> Rows:
+def appended(rows: CsrRows, at: Integers, what: Integers, size: int) -> CsrRows:
     """what[k] appended to row at[k], in this order, in so many rows; those beyond the given ones start empty."""
     ends = full(size + 1, 0)
     known = len(rows.starts) - 1
@@ -75,10 +75,10 @@ def appended(rows: Rows, at: Integers, what: Integers, size: int) -> Rows:
     for k in range(len(at)):
         joined[places[at[k]]] = what[k]
         places[at[k]] += 1
-    return Rows(ends, joined)
+    return CsrRows(ends, joined)
 
 
-def raised(values: Reals, at: Integers, by: Reals, more: int) -> list[float]:
+def incremented(values: Reals, at: Integers, by: Reals, more: int) -> list[float]:
     """The values with by[k] added at at[k], and so many zeros behind them."""
     result = full(len(values) + more, 0.0)
     for i in range(len(values)):

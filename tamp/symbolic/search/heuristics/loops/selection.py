@@ -12,47 +12,49 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.symbolic.search.heuristics.loops import kernels, rows
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
 
-ENOUGH = 2_000_000
+LOAD_THRESHOLD = 2_000_000
 """Entries that plain Python goes through before the compiled loops are loaded: about as long as loading takes."""
 
-MANY = 10_000_000
+COMPILE_THRESHOLD = 10_000_000
 """Entries before they are compiled, where that has not been done yet: as long as compiling takes."""
 
 CACHED = (
     (kernels, ("explore", "relaxed_plan", "landmark_cut")),
-    (rows, ("transposed", "appended", "raised")),
+    (rows, ("transposed", "appended", "incremented")),
 )
 """The functions that numba keeps on disk, by module."""
 
 
 @dataclass(frozen=True, slots=True)
-class Loops:
+class Kernels:
     """The loops, and what makes the lists that they take."""
 
-    explore: Callable[[Rows, Rows, Rows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]]
-    relaxed_plan: Callable[[Reals, Integers, Rows, Rows, Reals, Integers, int, Integers, int], tuple[float, Integers]]
-    landmark_cut: Callable[[Rows, Rows, Rows, Rows, Reals, Integers, Integers, Rows, int], float]
-    transposed: Callable[[Rows, int], Rows]
-    appended: Callable[[Rows, Integers, Integers, int], Rows]
-    raised: Callable[[Reals, Integers, Reals, int], Reals]
+    explore: Callable[[CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]]
+    relaxed_plan: Callable[
+        [Reals, Integers, CsrRows, CsrRows, Reals, Integers, int, Integers, int], tuple[float, Integers]
+    ]
+    landmark_cut: Callable[[CsrRows, CsrRows, CsrRows, CsrRows, Reals, Integers, Integers, CsrRows, int], float]
+    transposed: Callable[[CsrRows, int], CsrRows]
+    appended: Callable[[CsrRows, Integers, Integers, int], CsrRows]
+    incremented: Callable[[Reals, Integers, Reals, int], Reals]
     integers: Callable[[Sequence[int]], Integers]
     reals: Callable[[Sequence[float]], Reals]
 
-    def rows(self, lists: Sequence[Sequence[int]]) -> Rows:
-        """Rows from lists."""
-        made = rows.rows_of(lists)
-        return Rows(self.integers(made.starts), self.integers(made.values))
+    def rows(self, lists: Sequence[Sequence[int]]) -> CsrRows:
+        """CsrRows from lists."""
+        made = rows.csr_rows(lists)
+        return CsrRows(self.integers(made.starts), self.integers(made.values))
 
 
-PLAIN = Loops(
+PLAIN = Kernels(
     explore=kernels.explore,
     relaxed_plan=kernels.relaxed_plan,
     landmark_cut=kernels.landmark_cut,
     transposed=rows.transposed,
     appended=rows.appended,
-    raised=rows.raised,
+    incremented=rows.incremented,
     integers=list,
     reals=list,
 )
@@ -69,11 +71,11 @@ class _Meter:
 _METER = _Meter()
 
 
-def load() -> Loops:
+def load() -> Kernels:
     """The compiled loops, loaded now, and compiled where that has not been done."""
-    from tamp.symbolic.search.heuristics.loops.compiled import LOOPS
+    from tamp.symbolic.search.heuristics.loops.compiled import COMPILED
 
-    return LOOPS
+    return COMPILED
 
 
 def load_kept() -> None:
@@ -101,13 +103,13 @@ def compiled_before() -> bool:
     return True
 
 
-def choose(entries: int) -> Loops:
+def choose(entries: int) -> Kernels:
     """The loops for a piece of work that goes through so many entries."""
     _METER.entries += entries
     if "tamp.symbolic.search.heuristics.loops.compiled" in sys.modules:
         return load()
-    if _METER.entries <= ENOUGH:
+    if _METER.entries <= LOAD_THRESHOLD:
         return PLAIN
     if _METER.enough is None:
-        _METER.enough = ENOUGH if compiled_before() else MANY
+        _METER.enough = LOAD_THRESHOLD if compiled_before() else COMPILE_THRESHOLD
     return load() if _METER.entries > _METER.enough else PLAIN
