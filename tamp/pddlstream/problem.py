@@ -17,7 +17,7 @@ from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.complement import complement_name, negated_tests, with_complements
-from tamp.symbolic.pddl.exogenous import without_waiting
+from tamp.symbolic.pddl.exogenous import compile_away
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.formulas import RESERVED
 from tamp.symbolic.pddl.lint import lint
@@ -92,7 +92,7 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
     warnings += [*unused, *spare, *_check_map(functions, [one for group in used.values() for one in group])]
     started = without_started(domain, streams, goal)
-    waiting = without_waiting(started.domain, started.streams, started.goal, facts)
+    waiting = compile_away(started.domain, started.streams, started.goal, facts)
     domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]

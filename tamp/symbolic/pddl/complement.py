@@ -56,7 +56,7 @@ def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> d
     }
 
 
-class _Twins(NamedTuple):
+class Complements(NamedTuple):
     """What is written instead where a predicate has to be false.
 
     Attributes:
@@ -80,30 +80,30 @@ def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) ->
         return domain, goal
     signs = _signs(domain, goal)
     both = [predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2]
-    twins = _Twins(names, {predicate: complement_name(predicate, domain) for predicate in both})
+    instead = Complements(names, {predicate: complement_name(predicate, domain) for predicate in both})
     predicates = dict(domain.predicates)
-    for predicate, name in {**twins.complements, **twins.copies}.items():
+    for predicate, name in {**instead.complements, **instead.copies}.items():
         predicates[name] = Predicate(name, domain.predicates[predicate].parameters)
     rules: list[Derived] = []
     for rule in domain.derived:
         predicate = rule.head.predicate
         needed = signs.get(predicate, {True})
-        rules.append(replace(rule, body=_rewrite(rule.body, True, twins, True in needed)))
-        if predicate in twins.copies:
-            head = replace(rule.head, predicate=twins.copies[predicate])
-            rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, twins, False)))
-    actions = tuple(_rewritten(action, twins) for action in domain.actions)
+        rules.append(replace(rule, body=_rewrite(rule.body, True, instead, True in needed)))
+        if predicate in instead.copies:
+            head = replace(rule.head, predicate=instead.copies[predicate])
+            rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, instead, False)))
+    actions = tuple(_rewritten(action, instead) for action in domain.actions)
     changed = replace(domain, predicates=predicates, actions=actions, derived=tuple(rules))
-    return changed, _rewrite(goal, True, twins, True)
+    return changed, _rewrite(goal, True, instead, True)
 
 
-def _rewritten(action: Action, twins: _Twins) -> Action:
+def _rewritten(action: Action, instead: Complements) -> Action:
     """The action over complements; whether an effect happens must be known where a decided predicate says so."""
-    known = [_rewrite(action.precondition, True, twins, True)]
+    known = [_rewrite(action.precondition, True, instead, True)]
     effects: list[Effect] = []
     for effect in action.effects:
-        happens = _rewrite(effect.condition, True, twins, True)
-        does_not = _rewrite(Not(effect.condition), True, twins, True)
+        happens = _rewrite(effect.condition, True, instead, True)
+        does_not = _rewrite(Not(effect.condition), True, instead, True)
         if happens != effect.condition or does_not != Not(effect.condition):
             decided = Or((happens, does_not))
             known.append(Forall(effect.parameters, decided) if effect.parameters else decided)
@@ -159,26 +159,26 @@ def signed_atoms(formula: Formula, sign: bool = True) -> Iterator[tuple[Atom, bo
     return _atoms(formula, sign)
 
 
-def _rewrite(formula: Formula, sign: bool, twins: _Twins, helps: bool) -> Formula:
+def _rewrite(formula: Formula, sign: bool, instead: Complements, helps: bool) -> Formula:
     """`helps`: whether the formula as a whole is needed to hold; `sign`: whether we are under no negation in it."""
     match formula:
         case Atom(predicate, terms, place):
             if sign is helps:
                 return formula
-            if predicate in twins.complements:
-                return Not(Atom(twins.complements[predicate], terms, place))
-            return Atom(twins.copies.get(predicate, predicate), terms, place)
+            if predicate in instead.complements:
+                return Not(Atom(instead.complements[predicate], terms, place))
+            return Atom(instead.copies.get(predicate, predicate), terms, place)
         case Not(body):
-            inner = _rewrite(body, not sign, twins, helps)
+            inner = _rewrite(body, not sign, instead, helps)
             return inner.body if isinstance(inner, Not) and inner != body else Not(inner)
         case And(parts):
-            return And(tuple(_rewrite(part, sign, twins, helps) for part in parts))
+            return And(tuple(_rewrite(part, sign, instead, helps) for part in parts))
         case Or(parts):
-            return Or(tuple(_rewrite(part, sign, twins, helps) for part in parts))
+            return Or(tuple(_rewrite(part, sign, instead, helps) for part in parts))
         case Exists(parameters, body):
-            return Exists(parameters, _rewrite(body, sign, twins, helps))
+            return Exists(parameters, _rewrite(body, sign, instead, helps))
         case Forall(parameters, body):
-            return Forall(parameters, _rewrite(body, sign, twins, helps))
+            return Forall(parameters, _rewrite(body, sign, instead, helps))
 
 
 def _atoms(formula: Formula, sign: bool) -> Iterator[tuple[Atom, bool]]:

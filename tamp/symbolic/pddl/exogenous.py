@@ -34,7 +34,7 @@ from tamp.symbolic.pddl.structs import (
 
 
 @dataclass(frozen=True)
-class Waiting:
+class CompiledTask:
     """A task whose streams speak of what never changes.
 
     Attributes:
@@ -50,7 +50,7 @@ class Waiting:
     facts: frozenset[Fact]
 
 
-def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]) -> Waiting:
+def compile_away(domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]) -> CompiledTask:
     """Move what changes from the streams' domains into rules; nothing is changed where there is none.
 
     Raises:
@@ -60,7 +60,7 @@ def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: f
     changing = domain.fluent_predicates | domain.derived_predicates
     resting = _resting(made, changing)
     if not resting:
-        return Waiting(domain, streams, goal, facts)
+        return CompiledTask(domain, streams, goal, facts)
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in resting:
             what = f"'{atom.predicate}' has to be false here, and its stream waits for what actions change"
@@ -72,7 +72,7 @@ def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: f
     actions = tuple(rewriting.action(action) for action in domain.actions)
     derived = tuple(rewriting.rules)
     predicates = {**domain.predicates, **rewriting.predicates}
-    return Waiting(
+    return CompiledTask(
         replace(domain, predicates=predicates, actions=actions, derived=derived),
         replace(
             streams,

@@ -12,7 +12,7 @@ KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 """Sections with a name and `:keyword value` pairs."""
 
 
-def may_hold(head: str, groups: int, item: str, item_head: str, previous: str) -> bool:
+def may_contain(head: str, groups: int, item: str, item_head: str, previous: str) -> bool:
     """Whether an item may stand inside a group.
 
     Args:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tamp.symbolic.pddl.grammar import may_hold
+from tamp.symbolic.pddl.grammar import may_contain
 from tamp.symbolic.pddl.structs import Place
 
 MAX_TRIES = 50
@@ -36,9 +36,9 @@ def left_open(tokens: Sequence[Token]) -> Token:
     suspect: Token | None = None
     tries = 0
     for index in range(len(tokens)):
-        if open_ and _betrays(tokens, index, open_):
+        if open_ and _suggests_missing(tokens, index, open_):
             culprit = tokens[open_[-1].index]
-            if _mends(tokens, index, len(open_) - 1):
+            if _repairs(tokens, index, len(open_) - 1):
                 return culprit
             suspect = suspect or culprit
             tries += 1
@@ -60,7 +60,7 @@ def surplus(tokens: Sequence[Token]) -> Token:
             # What follows does not belong where it stands: the ')' before it closed one group too many.
             if not open_ and not _starts_define(tokens, index):
                 return before
-            if open_ and not _belongs(tokens, index, open_[-1]):
+            if open_ and not _fits_inside(tokens, index, open_[-1]):
                 return before
         _step(tokens, index, open_)
     return tokens[-1]
@@ -83,7 +83,7 @@ def _step(tokens: Sequence[Token], index: int, open_: list[_Open]) -> None:
         open_.pop()
 
 
-def _betrays(tokens: Sequence[Token], index: int, open_: Sequence[_Open]) -> bool:
+def _suggests_missing(tokens: Sequence[Token], index: int, open_: Sequence[_Open]) -> bool:
     """Whether the token could not stand where it does, had the innermost '(' been closed as it should."""
     token, inner = tokens[index], tokens[open_[-1].index]
     if token.text == ")":
@@ -94,10 +94,10 @@ def _betrays(tokens: Sequence[Token], index: int, open_: Sequence[_Open]) -> boo
         outer = (tokens[group.index] for group in open_[:-1])
         return any(column in (group.place.column, group.indent) for group in outer)
     if token.text == "(":
-        return not _belongs(tokens, index, open_[-1]) or _aligned(token, tokens, open_)
+        return not _fits_inside(tokens, index, open_[-1]) or _aligned(token, tokens, open_)
     # Of other words only those after `(increase (total-cost` are sure to be misplaced.
     sure = token.text.startswith(":") or _word(tokens, open_[-1].index + 1) == "total-cost"
-    return sure and not _belongs(tokens, index, open_[-1])
+    return sure and not _fits_inside(tokens, index, open_[-1])
 
 
 def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> bool:
@@ -108,7 +108,7 @@ def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> b
     return any(place.column == token.place.column and place.line < token.place.line for place in places)
 
 
-def _mends(tokens: Sequence[Token], start: int, depth: int) -> bool:
+def _repairs(tokens: Sequence[Token], start: int, depth: int) -> bool:
     """Whether a ')' before token `start` makes all well up to the next section, or the end of the text."""
     if len(tokens) - start > MAX_LOOK:
         tokens = tokens[: start + MAX_LOOK]
@@ -128,12 +128,12 @@ def _mends(tokens: Sequence[Token], start: int, depth: int) -> bool:
     return depth == 0
 
 
-def _belongs(tokens: Sequence[Token], index: int, parent: _Open) -> bool:
+def _fits_inside(tokens: Sequence[Token], index: int, parent: _Open) -> bool:
     """Whether the item that begins at `index` may stand directly inside the group."""
     if index == parent.index + 1:
         return True  # its head
     head, previous = _word(tokens, parent.index + 1), _word(tokens, index - 1)
-    return may_hold(head, parent.groups, _word(tokens, index), _word(tokens, index + 1), previous)
+    return may_contain(head, parent.groups, _word(tokens, index), _word(tokens, index + 1), previous)
 
 
 def _starts_define(tokens: Sequence[Token], index: int) -> bool:
