@@ -8,7 +8,16 @@ from dataclasses import dataclass, replace
 from tamp.errors import closest
 from tamp.symbolic.pddl.features import lacking
 from tamp.symbolic.pddl.formulas import RESERVED
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, warning
+from tamp.symbolic.pddl.nodes import (
+    Group,
+    Node,
+    Symbol,
+    as_group,
+    as_name,
+    as_symbol,
+    error,
+    warning,
+)
 from tamp.symbolic.pddl.structs import Parameter, Predicate
 from tamp.symbolic.pddl.typed import known_types, placeholders, typed_list
 
@@ -54,21 +63,34 @@ def parse_types(nodes: Sequence[Node]) -> Types:
         above = tuple(symbol.text for symbol in entry.types)
         parents[name] = tuple(dict.fromkeys((*parents.get(name, ()), *above)))
         if name == "object" and parents[name] not in ((), ("object",)):
-            raise error(entry.name, "'object' is the root of all types, it cannot stand below another one")
+            raise error(
+                entry.name, "'object' is the root of all types, it cannot stand below another one"
+            )
         if name != "object":
-            parents[name] = tuple(parent for parent in parents[name] if parent != name)  # - itself: says nothing
+            parents[name] = tuple(
+                parent for parent in parents[name] if parent != name
+            )  # - itself: says nothing
     parents.setdefault("object", ())
     notes: list[str] = []
     for symbol in (symbol for entry in entries for symbol in entry.types):
         if symbol.text not in parents:
             near = closest(symbol.text, sorted(parents.keys() - {"object"}))
             meant = f". Did you mean '{near}'?" if near else ""
-            notes.append(warning(symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"))
+            notes.append(
+                warning(
+                    symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"
+                )
+            )
             parents[as_name(symbol, "a type").text] = ()
     _check_depth({entry.name.text: entry.name for entry in entries}, parents)
-    full = {name: tuple(t for t in above if t != "object") or ("object",) for name, above in parents.items()}
+    full = {
+        name: tuple(t for t in above if t != "object") or ("object",)
+        for name, above in parents.items()
+    }
     first = {"object": "object", **{name: above[0] for name, above in full.items()}}
-    return Types(first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes))
+    return Types(
+        first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes)
+    )
 
 
 def parse_objects(
@@ -104,7 +126,9 @@ def parse_objects(
         if name.text in lines:
             message = f"{kind} '{name.written}' stands twice; first in line {lines[name.text]}"
         if set(own) != set(before):
-            raise error(name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}")
+            raise error(
+                name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}"
+            )
         notes.append(warning(name, message))
     return found
 
@@ -135,16 +159,25 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
             continue
         result = nodes[position] if position < len(nodes) else None
         if node.text != "-" or result is None:
-            raise error(node, f"expected a function such as (distance ?a ?b), found '{node.written}'")
+            raise error(
+                node, f"expected a function such as (distance ?a ?b), found '{node.written}'"
+            )
         symbol = as_symbol(result, "the type 'number'")
         if typed == len(groups):  # an empty list before a type
             position += 1
             continue
         typed = len(groups)
         if symbol.text in types:
-            raise error(symbol, lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"))
+            raise error(
+                symbol,
+                lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"),
+            )
         if symbol.text != "number":
-            raise error(symbol, f"functions have numbers as values, found '{symbol.written}'", choices=("number",))
+            raise error(
+                symbol,
+                f"functions have numbers as values, found '{symbol.written}'",
+                choices=("number",),
+            )
         position += 1
     return _signatures(groups, types, "function")
 
@@ -169,7 +202,9 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
             sizes = f"{len(before.parameters)} and {len(declared.parameters)}"
             raise error(name, f"{first}, with other arguments ({sizes})")
         notes.append(warning(name, first))
-        found[name.text] = replace(before, parameters=tuple(map(_either, before.parameters, declared.parameters)))
+        found[name.text] = replace(
+            before, parameters=tuple(map(_either, before.parameters, declared.parameters))
+        )
     return Signatures(found, tuple(notes))
 
 
@@ -192,7 +227,10 @@ def _check_depth(names: Mapping[str, Symbol], parents: Mapping[str, tuple[str, .
             if waiting is None:
                 heights[name] = 1 + max((heights[parent] for parent in above), default=0)
                 if heights[name] > MAX_TYPE_DEPTH:
-                    raise error(names[start], f"type '{names[start].written}' stands below {MAX_TYPE_DEPTH} others")
+                    raise error(
+                        names[start],
+                        f"type '{names[start].written}' stands below {MAX_TYPE_DEPTH} others",
+                    )
                 on_way.discard(way.pop())
             elif waiting in on_way:
                 cycle = way[way.index(waiting) :]

@@ -8,7 +8,18 @@ from math import isfinite
 
 from tamp.symbolic.pddl.features import FEATURES, lacking, unsupported
 from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_symbol, error, show, warning
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Forall, Formula, Not, Or, Parameter, Predicate
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+    Predicate,
+)
 from tamp.symbolic.pddl.typed import distinct, parameters
 
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
@@ -50,7 +61,9 @@ class Scope:
 
 
 def scope_of(
-    domain: Domain, objects: Mapping[str, tuple[str, ...]] | None = None, notes: list[str] | None = None
+    domain: Domain,
+    objects: Mapping[str, tuple[str, ...]] | None = None,
+    notes: list[str] | None = None,
 ) -> Scope:
     """The scope outside of all quantifiers: the domain's constants and the given objects; `notes` as in `Scope`."""
     return Scope(domain, {**domain.constants, **(objects or {})}, {}, notes)
@@ -88,7 +101,10 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
             return Or((Not(parse_formula(rest[0], scope)), parse_formula(rest[1], scope)))
         case "exists" | "forall":
             _count(group, head, 2, "a list of variables and a condition")
-            listed = parameters(as_group(rest[0], "a list of variables such as (?x - body)").items, scope.domain.types)
+            listed = parameters(
+                as_group(rest[0], "a list of variables such as (?x - body)").items,
+                scope.domain.types,
+            )
             inner, bound = scope.with_variables(listed)
             body, same = parse_formula(rest[1], inner), repeated(listed, bound)
             if head.text == "exists":
@@ -110,7 +126,10 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
     if name == "=":
         for item in group.items[1:]:
             if isinstance(item, Group) or _is_number(item):
-                raise error(item, lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"))
+                raise error(
+                    item,
+                    lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"),
+                )
         return _applied(group, Predicate("=", (Parameter("?a"), Parameter("?b"))), scope)
     if name in domain.predicates:
         return _applied(group, domain.predicates[name], scope)
@@ -122,7 +141,9 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
         raise error(head, f"unknown connective '{head.written}'", found=name, choices=CONNECTIVES)
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
-    words = dict.fromkeys((*domain.predicates, *(type_ for type_ in domain.types if type_ != "object")))
+    words = dict.fromkeys(
+        (*domain.predicates, *(type_ for type_ in domain.types if type_ != "object"))
+    )
     raise error(head, f"unknown predicate '{head.written}'", found=name, choices=words)
 
 
@@ -158,7 +179,8 @@ def _applied(group: Group, predicate: Predicate, scope: Scope) -> Atom:
         raise error(group, message, remedy=f"Its form is ({predicate.name}{names})")
     terms = zip(group.items[1:], predicate.parameters, strict=True)
     checked = tuple(
-        _term(as_symbol(node, "a variable or an object"), parameter.types, scope) for node, parameter in terms
+        _term(as_symbol(node, "a variable or an object"), parameter.types, scope)
+        for node, parameter in terms
     )
     return Atom(predicate.name, checked, group.place)
 
@@ -167,7 +189,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     if symbol.text.startswith("?"):
         if symbol.text not in scope.variables:
             choices = scope.variables
-            raise error(symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices)
+            raise error(
+                symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices
+            )
         return scope.variables[symbol.text].name
     name = _object(symbol, scope)
     if name is not None and scope.domain.fits(scope.objects[name], types):
@@ -175,7 +199,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     fitting = [other for other, own in scope.objects.items() if scope.domain.fits(own, types)]
     if name is None:
         choices = (*scope.variables, *(fitting or scope.objects))
-        message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
+        message = f"unknown object '{symbol.written}'" + (
+            "" if choices else "; there are no objects"
+        )
         raise error(symbol, message, found=symbol.written, choices=choices)
     own = " and ".join(scope.objects[name])
     general = _more_general(scope.objects[name], types, scope.domain)
@@ -221,7 +247,10 @@ def _head(group: Group, what: str) -> Symbol:
 def _count(group: Group, head: Symbol, wanted: int, what: str) -> None:
     if len(group.items) - 1 != wanted:
         found = len(group.items) - 1
-        raise error(group, f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}")
+        raise error(
+            group,
+            f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}",
+        )
 
 
 def _article(noun: str) -> str:

@@ -2,12 +2,35 @@
 
 from __future__ import annotations
 
-MOST_GROUPS = {"not": 1, "exists": 2, "forall": 2, "when": 2, "imply": 2, "increase": 2, "=": 2, ":derived": 2}
+MOST_GROUPS = {
+    "not": 1,
+    "exists": 2,
+    "forall": 2,
+    "when": 2,
+    "imply": 2,
+    "increase": 2,
+    "=": 2,
+    ":derived": 2,
+}
 """How many parenthesised parts these take."""
 ONLY_GROUPS = frozenset(
-    ("and", "or", "not", "exists", "forall", "when", "imply", ":derived", ":predicates", ":init", ":goal")
+    (
+        "and",
+        "or",
+        "not",
+        "exists",
+        "forall",
+        "when",
+        "imply",
+        ":derived",
+        ":predicates",
+        ":init",
+        ":goal",
+    )
 )
-MANY_GROUPS = frozenset(("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric"))
+MANY_GROUPS = frozenset(
+    ("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric")
+)
 KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 """Sections with a name and `:keyword value` pairs."""
 

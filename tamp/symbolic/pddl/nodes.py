@@ -36,12 +36,23 @@ Node = Symbol | Group
 
 
 def error(
-    where: Node | Place, message: str, *, found: str | None = None, choices: Iterable[str] = (), remedy: str = ""
+    where: Node | Place,
+    message: str,
+    *,
+    found: str | None = None,
+    choices: Iterable[str] = (),
+    remedy: str = "",
 ) -> InputError:
     """An InputError at a node's place."""
     place = where if isinstance(where, Place) else where.place
     return InputError(
-        message, file=place.file, line=place.line, column=place.column, found=found, choices=choices, remedy=remedy
+        message,
+        file=place.file,
+        line=place.line,
+        column=place.column,
+        found=found,
+        choices=choices,
+        remedy=remedy,
     )
 
 

@@ -20,7 +20,9 @@ class Section:
     group: Group
 
 
-def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path | None) -> tuple[Symbol, list[Section]]:
+def read_sections(
+    text: str, kind: str, known: Sequence[str], file: str | Path | None
+) -> tuple[Symbol, list[Section]]:
     """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords checked."""
     frame = f"(define ({kind} NAME) ...)"
     form = as_group(read_one(text, frame, file), frame)
@@ -32,8 +34,12 @@ def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path |
     if title.head != kind:
         raise error(title, f"expected ({kind} NAME), found {show(title)}")
     if len(title.items) != 2:
-        raise error(title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names")
-    return as_name(title.items[1], "a name"), [_section(item, kind, known) for item in form.items[2:]]
+        raise error(
+            title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names"
+        )
+    return as_name(title.items[1], "a name"), [
+        _section(item, kind, known) for item in form.items[2:]
+    ]
 
 
 def single(sections: Sequence[Section], keyword: str) -> Section | None:
@@ -60,7 +66,12 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
         if keyword.text not in known and keyword.text in FEATURES:
             raise error(keyword, unsupported(keyword.text, keyword.written))
         if keyword.text not in known:
-            raise error(keyword, f"unknown keyword '{keyword.written}' of {owner}", found=keyword.text, choices=known)
+            raise error(
+                keyword,
+                f"unknown keyword '{keyword.written}' of {owner}",
+                found=keyword.text,
+                choices=known,
+            )
         if keyword.text in values:
             raise error(keyword, f"keyword '{keyword.text}' of {owner} stands twice")
         value = nodes[position + 1] if position + 1 < len(nodes) else None

@@ -9,8 +9,24 @@ from pathlib import Path
 from tamp.symbolic.pddl.declarations import check_requirements, parse_objects
 from tamp.symbolic.pddl.effects import TOTAL_COST, parse_number
 from tamp.symbolic.pddl.features import FEATURES, lacking, unsupported
-from tamp.symbolic.pddl.formulas import Scope, parse_atom, parse_formula, parse_function_term, scope_of
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, show, warning
+from tamp.symbolic.pddl.formulas import (
+    Scope,
+    parse_atom,
+    parse_formula,
+    parse_function_term,
+    scope_of,
+)
+from tamp.symbolic.pddl.nodes import (
+    Group,
+    Node,
+    Symbol,
+    as_group,
+    as_name,
+    as_symbol,
+    error,
+    show,
+    warning,
+)
 from tamp.symbolic.pddl.sections import Section, items_of, read_sections, single
 from tamp.symbolic.pddl.sexpr import read, read_one
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, Task
@@ -40,7 +56,11 @@ def parse_goal(
         InputError: With file, line and column of what is wrong.
     """
     node = read_one(
-        text, "one condition, (and ...) for several", file, line_offset=line_offset, column_offset=column_offset
+        text,
+        "one condition, (and ...) for several",
+        file,
+        line_offset=line_offset,
+        column_offset=column_offset,
     )
     return parse_formula(node, scope_of(domain, objects))
 
@@ -56,7 +76,11 @@ def parse_facts(
     """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of `parse_goal`."""
     scope = scope_of(domain, objects)
     texts = (text,) if isinstance(text, str) else text
-    nodes = [n for t in texts for n in read(t, file, line_offset=line_offset, column_offset=column_offset)]
+    nodes = [
+        n
+        for t in texts
+        for n in read(t, file, line_offset=line_offset, column_offset=column_offset)
+    ]
     return frozenset(_fact(node, scope) for node in nodes)
 
 
@@ -71,7 +95,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     name, sections = read_sections(text, "problem", SECTIONS, file)
     notes = [*check_requirements(items_of(sections, ":requirements"))]
     notes += _check_domain(single(sections, ":domain"), domain)
-    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants)
+    objects = parse_objects(
+        items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants
+    )
     scope = replace(scope_of(domain, objects, notes), any_type=True)
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
@@ -81,7 +107,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
             term, value = _cost(node, scope)
             if costs.setdefault(term, value) != value:
                 shown = " ".join(term)
-                raise error(node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}")
+                raise error(
+                    node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}"
+                )
         elif isinstance(node, Group) and node.head == "not":
             denied[_negative(node, scope)] = node
         else:
@@ -95,7 +123,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     metric = single(sections, ":metric")
     _check_metric(metric)
     if metric is None and any(action.cost != 1.0 for action in domain.actions):
-        domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
+        domain = replace(
+            domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions)
+        )
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
         notes.append(warning(name, what))
     formula = parse_formula(goal.items[0], scope)
@@ -110,9 +140,15 @@ def _fact(node: Node, scope: Scope) -> Fact:
         raise error(group, lacking("(at TIME FACT)", "timed initial literals"))
     atom = parse_atom(group, scope)
     if atom.predicate not in scope.domain.predicates:
-        raise error(group, f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact")
+        raise error(
+            group,
+            f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact",
+        )
     if atom.predicate in scope.domain.derived_predicates:
-        raise error(group, f"'{atom.predicate}' is derived: its rules say where it holds, it cannot be a fact")
+        raise error(
+            group,
+            f"'{atom.predicate}' is derived: its rules say where it holds, it cannot be a fact",
+        )
     return (atom.predicate, *atom.terms)
 
 
@@ -145,7 +181,11 @@ def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
         raise error(section.group, "a problem has one (:domain NAME)")
     name = as_name(section.items[0], "the domain's name")
     if name.text != domain.name:
-        return (warning(name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"),)
+        return (
+            warning(
+                name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"
+            ),
+        )
     return ()
 
 
@@ -169,4 +209,8 @@ def _check_metric(section: Section | None) -> None:
 
 
 def _words(node: Node) -> set[str]:
-    return {node.text} if isinstance(node, Symbol) else {word for item in node.items for word in _words(item)}
+    return (
+        {node.text}
+        if isinstance(node, Symbol)
+        else {word for item in node.items for word in _words(item)}
+    )

@@ -120,6 +120,6 @@ def test_only_what_numba_has_all_of_and_newer_than_its_source_counts_as_compiled
 def test_what_was_compiled_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside the sources, where numba puts it unless a variable or a read-only folder has it put it elsewhere."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    code = "from tamp.symbolic.search.heuristics.loops import tiers; tiers.load(); print(tiers.compiled_before())"
+    code = "from tamp.symbolic.search.heuristics.loops import selection; selection.load(); print(selection.compiled_before())"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "True"
