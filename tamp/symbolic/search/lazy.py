@@ -69,7 +69,9 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
             price = goal_price(state)
             if price == 0.0:
                 return search.plan(state)
-            if cost + price < least:  # what the goal rests on here has a price: there may be a cheaper end
+            if (
+                cost + price < least
+            ):  # what the goal rests on here has a price: there may be a cheaper end
                 least, end = cost + price, state
                 number += 1
                 for some in (usual[0], preferred[0]) if preferred[0] else (usual[0],):
@@ -119,11 +121,17 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
 
 def _paid(estimate: Estimate, operator: int) -> float:
     """The prices of the operator's guards that the parent's estimate contains: they shall not count twice."""
-    return estimate.paid(operator) if estimate.paid is not None and operator in estimate.plan else 0.0
+    return (
+        estimate.paid(operator) if estimate.paid is not None and operator in estimate.plan else 0.0
+    )
 
 
 def _helpful(
-    s: Successors, state: State, closed: State, applicable: list[int], estimates: tuple[Estimate, ...]
+    s: Successors,
+    state: State,
+    closed: State,
+    applicable: list[int],
+    estimates: tuple[Estimate, ...],
 ) -> dict[int, None]:
     """The applicable operators that the heuristics prefer, the best first."""
     helpful: dict[int, None] = {}

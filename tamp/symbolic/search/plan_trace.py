@@ -60,7 +60,9 @@ class Trace:
 
 
 def trace(
-    instantiated: InstantiatedTask, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None
+    instantiated: InstantiatedTask,
+    operators: Iterable[Operator],
+    price: Mapping[Fact, float] | None = None,
 ) -> Trace:
     """Replay a plan's operators from the initial state.
 
@@ -90,7 +92,9 @@ def trace(
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
-def replayed(instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
+def replayed(
+    instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]
+) -> bool:
     """Whether actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
     for operator in instantiated.operators:
@@ -111,7 +115,10 @@ def replayed(instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[
 
 
 def _applied(
-    instantiated: InstantiatedTask, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
+    instantiated: InstantiatedTask,
+    operator: Operator,
+    state: Facts,
+    price: Mapping[Fact, float] | None = None,
 ) -> tuple[Step, Facts]:
     """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
     why = derive(instantiated.axioms, state, price)
@@ -135,7 +142,9 @@ def _applied(
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
     after = (state - deleted) | added
     gone = state - after
-    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
+    return Step(
+        operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
+    ), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:

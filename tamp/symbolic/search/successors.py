@@ -32,7 +32,9 @@ def bits(mask: int) -> Iterator[int]:
 class _Stratum:
     """The axioms of one stratum, each under the lowest bit of its body."""
 
-    watched: dict[int, list[tuple[int, int, int]]] = field(default_factory=dict[int, list[tuple[int, int, int]]])
+    watched: dict[int, list[tuple[int, int, int]]] = field(
+        default_factory=dict[int, list[tuple[int, int, int]]]
+    )
     free: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
     mask: int = 0
     recursive: bool = False
@@ -54,7 +56,9 @@ class Successors:
     def __init__(self, instantiated: InstantiatedTask, price: Price) -> None:
         self.instantiated = instantiated
         self._listed: Mapping[Fact, float] | None = None if callable(price) else price
-        self._ask: Callable[[Fact], float] = price if callable(price) else lambda fact: price.get(fact, 0.0)
+        self._ask: Callable[[Fact], float] = (
+            price if callable(price) else lambda fact: price.get(fact, 0.0)
+        )
         self._prices: dict[Fact, float] = {}
         self.operators = instantiated.operators
         self._guarded: dict[Facts, list[tuple[int, Fact | None]]] = {}
@@ -71,7 +75,10 @@ class Successors:
         self.added = [mask(o.added) for o in self.operators]
         self.kept = [~mask(o.deleted) for o in self.operators]
         self.conditional = [
-            tuple((mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted)) for c in o.conditional)
+            tuple(
+                (mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted))
+                for c in o.conditional
+            )
             for o in self.operators
         ]
         self.initial = mask(instantiated.initial)
@@ -84,8 +91,8 @@ class Successors:
         self._watch_mask = sum(1 << i for i in self._watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}
         self._many = [facts for facts in self._guards_on if facts.bit_count() > 1]
-        source = {source.fluent for source in self._blocked}
-        self.guard_mask = mask(fact for fact in self.facts if fact[0] in source)
+        fluents = {source.fluent for source in self._blocked}
+        self.guard_mask = mask(fact for fact in self.facts if fact[0] in fluents)
         for facts in self._guards_on:
             self.guard_mask |= facts
         self._has_guards = [bool(o.guards) for o in self.operators]
@@ -199,7 +206,11 @@ class Successors:
 
     def step_cost(self, index: int, state: State) -> float:
         """The operator's cost in the state, with the prices of its triggered guards; infinite where it is forbidden."""
-        return self.cost[index] + self.extras(state).get(index, 0.0) if self._has_guards[index] else self.cost[index]
+        return (
+            self.cost[index] + self.extras(state).get(index, 0.0)
+            if self._has_guards[index]
+            else self.cost[index]
+        )
 
     def apply(self, index: int, state: State, closed: State) -> State:
         """The state after the operator (adding wins over deleting)."""
@@ -235,9 +246,13 @@ class Successors:
 
     def _mentioned(self) -> set[Fact]:
         instantiated = self.instantiated
-        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(*self._guarded)
+        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(
+            *self._guarded
+        )
         fluents = {source.fluent for source in self._blocked}
-        mentioned |= {fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents}
+        mentioned |= {
+            fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents
+        }
         for operator in instantiated.operators:
             mentioned |= operator.positive
             mentioned |= operator.negative

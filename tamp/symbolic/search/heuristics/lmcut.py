@@ -31,18 +31,33 @@ class LandmarkCut:
         self._goal = goal = true + 1
         kernels, last, goals = it.kernels, it.operators, relaxation.goals or [true]
         integers = kernels.integers
-        at, what = [*relaxation.free, *[last] * len(goals)], [*[true] * len(relaxation.free), *goals]
+        at, what = (
+            [*relaxation.free, *[last] * len(goals)],
+            [*[true] * len(relaxation.free), *goals],
+        )
         before = kernels.appended(it.before, integers(at), integers(what), last + 1)
         effects = kernels.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
-        self._rows = before, effects, kernels.transposed(before, goal + 1), kernels.transposed(effects, goal + 1)
+        self._rows = (
+            before,
+            effects,
+            kernels.transposed(before, goal + 1),
+            kernels.transposed(effects, goal + 1),
+        )
         self._costs = kernels.incremented(it.costs, integers(()), kernels.reals(()), 1)
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts; infinite in a dead end."""
         kernels = self.relaxed_state.kernels
-        here = kernels.integers((*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid))
+        here = kernels.integers(
+            (*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid)
+        )
         return kernels.landmark_cut(
-            *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
+            *self._rows,
+            self._costs,
+            here,
+            self._relaxation.owners,
+            self._relaxation.groups,
+            self._goal,
         )
 
 
@@ -55,7 +70,10 @@ class LandmarkCuts:
 
     def value(self, closed: State) -> float:
         """The estimate for a state with its derived facts."""
-        relaxed_state, key = self._relaxation.relaxed_state(closed, EXPECTED_CUTS), self._relaxation.key(closed)
+        relaxed_state, key = (
+            self._relaxation.relaxed_state(closed, EXPECTED_CUTS),
+            self._relaxation.key(closed),
+        )
         known = self._known.get(key)
         if known is None or known.relaxed_state.kernels is not relaxed_state.kernels:
             if len(self._known) >= MAX_RELAXED_STATES:

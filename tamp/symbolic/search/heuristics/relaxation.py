@@ -45,7 +45,9 @@ class RelaxedState:
     paid: tuple[int, ...] = ()
     prices: tuple[float, ...] = ()
     raised: Mapping[int, float] = field(default_factory=dict[int, float])
-    guarded: Mapping[int, list[tuple[int, float]]] = field(default_factory=dict[int, list[tuple[int, float]]])
+    guarded: Mapping[int, list[tuple[int, float]]] = field(
+        default_factory=dict[int, list[tuple[int, float]]]
+    )
 
     @property
     def operators(self) -> int:
@@ -76,7 +78,9 @@ class RelaxedExploration:
         """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than removes their facts."""
         it = self.relaxed_state
         waited = it.guarded.get(operator, ())
-        return it.raised.get(operator, 0.0) + sum(price for guard, price in waited if self.supporters[guard] < 0)
+        return it.raised.get(operator, 0.0) + sum(
+            price for guard, price in waited if self.supporters[guard] < 0
+        )
 
     @property
     def dead(self) -> bool:
@@ -126,12 +130,27 @@ class Relaxation:
             if effects or not s.conditional[i]:
                 self._add(i, split(s.before[i]), s.absent[i], s.cost[i] + step, effects)
             for positive, negative, added, removed in s.conditional[i]:
-                effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
+                effects = [
+                    *bits(added),
+                    *(size + b for b in bits(removed & ~added & ~s.added[i] & negated)),
+                ]
                 if effects:
-                    self._add(i, split(s.before[i] | positive), s.absent[i] | negative, s.cost[i] + step, effects)
+                    self._add(
+                        i,
+                        split(s.before[i] | positive),
+                        s.absent[i] | negative,
+                        s.cost[i] + step,
+                        effects,
+                    )
         for axiom, price in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
-            self._add(-1, split(s.mask(axiom.positive)), s.mask(axiom.negative), cost, [s.number[axiom.head]])
+            self._add(
+                -1,
+                split(s.mask(axiom.positive)),
+                s.mask(axiom.negative),
+                cost,
+                [s.number[axiom.head]],
+            )
         self.free = [i for i, facts in enumerate(self._before) if not facts]
         self._removal = self._removal_costs()
         self._negative_goals = list(bits(s.goal_absent & ~derived))
@@ -148,7 +167,9 @@ class Relaxation:
         self._ends = kernels.integers(self.goals)
         self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
 
-    def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
+    def _add(
+        self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]
+    ) -> None:
         number = len(self._owners)
         self._owners.append(owner)
         self._before.append(before)
@@ -170,7 +191,10 @@ class Relaxation:
 
     def holding(self, closed: State) -> list[int]:
         """The relaxed facts that hold in a state with its derived facts: facts, and complements that the goal names."""
-        return [*bits(closed), *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1)]
+        return [
+            *bits(closed),
+            *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1),
+        ]
 
     def key(self, state: State) -> State:
         """What states with the same relaxed_state have in common."""
@@ -228,12 +252,21 @@ class Relaxation:
         numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
         kernels, last = base.kernels, operators + len(removers)
         added = kernels.integers(range(operators, last))
-        behind, sources = kernels.integers([*waiters, *added]), kernels.integers([*guards, *removers])
-        paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
+        behind, sources = (
+            kernels.integers([*waiters, *added]),
+            kernels.integers([*guards, *removers]),
+        )
+        paid = [
+            (guard, price)
+            for guard, (_, price) in enumerate(waiting, start=first)
+            if price < math.inf
+        ]
         return RelaxedState(
             kernels,
             before=kernels.appended(base.before, behind, sources, last),
-            costs=kernels.incremented(base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)),
+            costs=kernels.incremented(
+                base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)
+            ),
             effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
             needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),
@@ -256,7 +289,10 @@ class Relaxation:
         """
         it = self.relaxed_state(closed)
         holding, kernels = self.holding(closed), it.kernels
-        here, prices = kernels.integers((*it.paid, *holding)), kernels.reals((*it.prices, *[0.0] * len(holding)))
+        here, prices = (
+            kernels.integers((*it.paid, *holding)),
+            kernels.reals((*it.prices, *[0.0] * len(holding))),
+        )
         costs, supporters = kernels.explore(
             it.before, it.effects, it.needed, it.costs, here, prices, self._ends, additive
         )

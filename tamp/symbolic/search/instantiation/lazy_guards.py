@@ -67,7 +67,9 @@ class DerivedGuards:
         """All guards of one negated fact."""
         made = self._made.get(row)
         if made is None:
-            made = self._made[row] = tuple(guard for _, guard in self._find(self._head.terms, [row]))
+            made = self._made[row] = tuple(
+                guard for _, guard in self._find(self._head.terms, [row])
+            )
         return made
 
     def triggered(self, row: Row, state: Facts) -> list[Guard]:
@@ -87,11 +89,13 @@ class DerivedGuards:
         return found
 
     def waived_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards, with their rows, that one of the static facts lifts, or would waiver were it not refused."""
-        return self._match(self._absent, [fact for fact in facts if fact[0] == self._absent.predicate])
+        """The guards, with their rows, that one of the static facts waives, or would waive were it not refused."""
+        return self._match(
+            self._absent, [fact for fact in facts if fact[0] == self._absent.predicate]
+        )
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
-        """The guards that nothing lifts."""
+        """The guards that nothing waives."""
         return self.waived_by(sorted(self._predicates.refused))
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
@@ -106,10 +110,15 @@ class DerivedGuards:
         return [
             tuple(fact[first[name]] for name in names)
             for fact in facts
-            if all(f == (fact[first[t]] if t.startswith("?") else t) for f, t in zip(fact[1:], atom.terms, strict=True))
+            if all(
+                f == (fact[first[t]] if t.startswith("?") else t)
+                for f, t in zip(fact[1:], atom.terms, strict=True)
+            )
         ]
 
-    def _find(self, variables: tuple[str, ...], rows: list[Row], *more: Atom) -> Iterator[tuple[Row, Guard]]:
+    def _find(
+        self, variables: tuple[str, ...], rows: list[Row], *more: Atom
+    ) -> Iterator[tuple[Row, Guard]]:
         predicates = self._predicates
         body = Body((*self._body.positive, *more), (), self._body.equalities)
         for row in join(predicates.relations, body, variables, rows, self._names):
@@ -127,14 +136,19 @@ class LazyGuards(Sequence[Guard]):
         blocked: Where the others come from, and which they are.
     """
 
-    def __init__(self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]) -> None:
+    def __init__(
+        self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]
+    ) -> None:
         self.made = made
         self.blocked = blocked
 
     def triggered(self, state: Facts) -> tuple[Guard, ...]:
         """The guards whose facts a state contains; only these are made."""
         made = [guard for guard in self.made if guard.facts <= state]
-        return (*made, *(guard for source, row in self.blocked for guard in source.triggered(row, state)))
+        return (
+            *made,
+            *(guard for source, row in self.blocked for guard in source.triggered(row, state)),
+        )
 
     def _all(self) -> tuple[Guard, ...]:
         return (*self.made, *(guard for source, row in self.blocked for guard in source.of(row)))

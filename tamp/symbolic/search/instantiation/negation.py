@@ -27,7 +27,9 @@ class Needs:
     positive: list[Fact] = field(default_factory=list[Fact])
     negative: list[Fact] = field(default_factory=list[Fact])
     guards: list[Guard] = field(default_factory=list[Guard])
-    blocked: list[tuple[DerivedGuards, Row]] = field(default_factory=list[tuple[DerivedGuards, Row]])
+    blocked: list[tuple[DerivedGuards, Row]] = field(
+        default_factory=list[tuple[DerivedGuards, Row]]
+    )
     impossible: bool = False
 
     def add(self, other: Needs) -> None:
@@ -70,7 +72,10 @@ class Negation:
         if guards or not (needs.guards or needs.blocked):
             return needs
         plain = Needs(list(needs.positive), list(needs.negative), impossible=needs.impossible)
-        for guard in (*needs.guards, *(guard for source, row in needs.blocked for guard in source.of(row))):
+        for guard in (
+            *needs.guards,
+            *(guard for source, row in needs.blocked for guard in source.of(row)),
+        ):
             waivers = () if guard.waived_by is None else (guard.waived_by,)
             plain.positive.append(self._choice([(False, f) for f in sorted(guard.facts)], waivers))
         return plain
@@ -94,7 +99,9 @@ class Negation:
                 continue
             source = self._derived_guards.get((predicate, number))
             if source is None:
-                source = self._derived_guards[predicate, number] = DerivedGuards(self._predicates, definition)
+                source = self._derived_guards[predicate, number] = DerivedGuards(
+                    self._predicates, definition
+                )
             source.add(new)
             for row in new:
                 self._known[predicate, *row].blocked.append((source, row))
@@ -104,9 +111,18 @@ class Negation:
         kinds = self._predicates.classify(literals)
         for i, term in enumerate(head.terms):  # constants and repeated variables in the head
             j = head.terms.index(term)
-            rows = [row for row in rows if (row[i] == row[j] if term.startswith("?") else row[i] == term)]
+            rows = [
+                row
+                for row in rows
+                if (row[i] == row[j] if term.startswith("?") else row[i] == term)
+            ]
         columns = tuple(dict.fromkeys(term for term in head.terms if term.startswith("?")))
-        start = list(map(filler(columns, {term: i for i, term in reversed(list(enumerate(head.terms)))}), rows))
+        start = list(
+            map(
+                filler(columns, {term: i for i, term in reversed(list(enumerate(head.terms)))}),
+                rows,
+            )
+        )
         body = self._predicates.body(literals, absent=False)
         known = {name: i for i, name in enumerate(literals.names)}
         bindings = join(self._predicates.relations, body, columns, start, literals.names)
@@ -176,7 +192,9 @@ class Negation:
             else:
                 needs = self.refute(fact, guards=False)
                 if not needs.impossible:
-                    self.axioms.append(Axiom(head, frozenset(needs.positive), frozenset(needs.negative)))
+                    self.axioms.append(
+                        Axiom(head, frozenset(needs.positive), frozenset(needs.negative))
+                    )
         for waiver in waivers:  # last: what holds without a test needs none
             self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((waiver,))))
         self._predicates.relations.add(name, [()])

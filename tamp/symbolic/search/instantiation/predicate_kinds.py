@@ -7,7 +7,13 @@ from dataclasses import dataclass
 
 from tamp.symbolic.pddl.structs import Atom, Fact, Task
 from tamp.symbolic.search.instantiation.datalog import Body, Relations, Row
-from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types, type_relation
+from tamp.symbolic.search.instantiation.normal_form import (
+    Definition,
+    Literals,
+    Normalizer,
+    Types,
+    type_relation,
+)
 from tamp.symbolic.search.operators import ANY
 
 
@@ -40,12 +46,16 @@ class PredicateKinds:
         given: Facts of derived predicates that were given nevertheless.
     """
 
-    def __init__(self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer
         self.assumed = assumed
         self.refused: frozenset[Fact] = frozenset()
-        self.fluent = frozenset(effect.atom.predicate for action in task.domain.actions for effect in action.effects)
+        self.fluent = frozenset(
+            effect.atom.predicate for action in task.domain.actions for effect in action.effects
+        )
         self.relations = Relations()
         self.certain = task.initial
         self.given: set[Fact] = set()
@@ -117,7 +127,8 @@ class PredicateKinds:
             return tuple(
                 a
                 for a in atoms
-                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2) == kind
+                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2)
+                == kind
             )
 
         positive, negative = literals.positive, literals.negative

@@ -45,21 +45,28 @@ class Instantiation:
         absences: The static predicates that some condition wants not to hold.
     """
 
-    def __init__(self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
         for action in task.domain.actions:
             effects = lifted_effects(action, normalizer)
             scope = {parameter.name: parameter.types for parameter in action.parameters}
-            split += [(action, literals, effects) for literals in normalizer.split(action.precondition, scope)]
+            split += [
+                (action, literals, effects)
+                for literals in normalizer.split(action.precondition, scope)
+            ]
         goals = normalizer.split(task.goal, {})
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
         (self._goal_literals,) = goals
         self._predicates = predicates = PredicateKinds(task, normalizer, assumed)
         self._recursive = predicates.recursive()
-        self._variants = [_Variant(*variant, _action_rule(predicates, *variant)) for variant in split]
+        self._variants = [
+            _Variant(*variant, _action_rule(predicates, *variant)) for variant in split
+        ]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
         self._definitions: dict[str, list[tuple[Definition, Rule]]] = {
@@ -70,9 +77,13 @@ class Instantiation:
             for name in normalizer.reached(roots, self._recursive)
         }
         self._rules = [variant.rule for variant in self._variants]
-        self._rules += [rule for variant in self._variants for rule in _effect_rules(predicates, variant)]
+        self._rules += [
+            rule for variant in self._variants for rule in _effect_rules(predicates, variant)
+        ]
         self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
-        self.absences = frozenset(atom.predicate for rule in self._rules for atom in rule.body.negative)
+        self.absences = frozenset(
+            atom.predicate for rule in self._rules for atom in rule.body.negative
+        )
         self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
         self._joined = False
 
@@ -100,10 +111,14 @@ class Instantiation:
         goal = self._goal()
         self._derive()
         heads = {axiom.head for axiom in self._axioms}
-        reachable = {(p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)} | heads
+        reachable = {
+            (p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)
+        } | heads
         initial = frozenset(f for f in self._task.initial if f[0] in predicates.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
-        return InstantiatedTask(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
+        return InstantiatedTask(
+            initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings
+        )
 
     def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
         """The operators of all bindings; `made` keeps those that nothing which may come along can change."""
@@ -121,17 +136,30 @@ class Instantiation:
             self._negation.prepare(atom.predicate, map(filler(atom.terms, known), rows))
         positive = fills((*kinds.positive, *kinds.derived))
         derived = fills(kinds.derived)
-        negative = [(atom.predicate, fill) for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)]
+        negative = [
+            (atom.predicate, fill)
+            for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)
+        ]
         refuted = fills(kinds.refuted)
         named = {parameter.name for parameter in action.parameters}
-        unnamed = [atom for atom in self._predicates.unnamed(variant.literals) if atom.terms[0] not in named]
-        static = fills([*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed])
+        unnamed = [
+            atom
+            for atom in self._predicates.unnamed(variant.literals)
+            if atom.terms[0] not in named
+        ]
+        static = fills(
+            [*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed]
+        )
         arguments = filler([parameter.name for parameter in action.parameters], known)
         relations = self._predicates.relations
-        effects = Effects(variant.effects, rule.variables, rows, self._predicates, self._negation, self._need)
+        effects = Effects(
+            variant.effects, rule.variables, rows, self._predicates, self._negation, self._need
+        )
         cost = action.cost
         price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
-        simple = not (kinds.negative or kinds.refuted) and all(effect.simple for effect in variant.effects)
+        simple = not (kinds.negative or kinds.refuted) and all(
+            effect.simple for effect in variant.effects
+        )
         deletes = sum(not effect.adds for effect in variant.effects)
         operators: list[Operator] = []
         for row in rows:
@@ -170,9 +198,15 @@ class Instantiation:
                     after,
                     added,
                     deleted,
-                    self._cost(price(row)) if price else float(cost) if isinstance(cost, int | float) else 0.0,
+                    self._cost(price(row))
+                    if price
+                    else float(cost)
+                    if isinstance(cost, int | float)
+                    else 0.0,
                     frozenset([fill(row) for fill in static]),
-                    LazyGuards(tuple(needs.guards), tuple(needs.blocked)) if needs.blocked else tuple(needs.guards),
+                    LazyGuards(tuple(needs.guards), tuple(needs.blocked))
+                    if needs.blocked
+                    else tuple(needs.guards),
                     conditional,
                 )
             )
@@ -199,7 +233,9 @@ class Instantiation:
             needs.positive.append((atom.predicate, *atom.terms))
         for atom in kinds.static:
             fact = (atom.predicate, *atom.terms)
-            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(fact)
+            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(
+                fact
+            )
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
                 needs.negative.append((atom.predicate, *atom.terms))
@@ -220,7 +256,9 @@ class Instantiation:
 
     def _need(self, fact: Fact) -> None:
         """Ask for the axioms of a derived fact (others are ignored)."""
-        if (fact[0] in self._definitions or fact[0].startswith("choice ")) and fact not in self._needed:
+        if (
+            fact[0] in self._definitions or fact[0].startswith("choice ")
+        ) and fact not in self._needed:
             self._needed[fact] = None
             self._waiting.append(fact)
 
@@ -233,7 +271,9 @@ class Instantiation:
             for axiom in self._negation.axioms[used:]:
                 choices.setdefault(axiom.head, []).append(axiom)
             used = len(self._negation.axioms)
-            for axiom in choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact):
+            for axiom in (
+                choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact)
+            ):
                 self._axioms.setdefault(axiom)
                 for other in sorted(axiom.positive | axiom.negative):
                     self._need(other)
@@ -252,9 +292,13 @@ class Instantiation:
                 static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
                 static += self._predicates.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
-                bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
+                bodies.append(
+                    [[filler((a.predicate, *a.terms), known) for a in part] for part in parts]
+                )
                 for atom in kinds.refuted:
-                    self._negation.prepare(atom.predicate, map(filler(atom.terms, known), sorted(rule.rows)))
+                    self._negation.prepare(
+                        atom.predicate, map(filler(atom.terms, known), sorted(rule.rows))
+                    )
         axioms: list[Axiom] = []
         if fact in self._predicates.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
@@ -267,22 +311,33 @@ class Instantiation:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if not needs.impossible:
                 given = frozenset([fill(row) for fill in static])
-                axioms.append(Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given))
+                axioms.append(
+                    Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given)
+                )
         return axioms
 
 
 def _action_rule(
-    predicates: PredicateKinds, action: Action, literals: Literals, effects: tuple[LiftedEffect, ...]
+    predicates: PredicateKinds,
+    action: Action,
+    literals: Literals,
+    effects: tuple[LiftedEffect, ...],
 ) -> Rule:
     """A parameter that neither conditions nor effects nor the cost mention takes one value: others change nothing."""
     heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
     conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
-    mentioned = {term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms}
-    mentioned |= {term for one in conditions for left, right, _ in one.equalities for term in (left, right)}
+    mentioned = {
+        term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms
+    }
+    mentioned |= {
+        term for one in conditions for left, right, _ in one.equalities for term in (left, right)
+    }
     mentioned |= {term for effect in effects for term in effect.atom.terms}
     mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
     free = {name: types for name, types in literals.variables if name not in mentioned}
-    body = predicates.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
+    body = predicates.body(
+        replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free))
+    )
     any_ = tuple(predicates.any_atom(name, types) for name, types in free.items())
     return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
 
@@ -298,5 +353,11 @@ def _effect_rules(predicates: PredicateKinds, variant: _Variant) -> list[Rule]:
                 (*before.negative, *when.negative),
                 (*before.equalities, *when.equalities),
             )
-            rules.append(Rule(tuple(dict.fromkeys((*variant.literals.names, *condition.names))), body, (effect.atom,)))
+            rules.append(
+                Rule(
+                    tuple(dict.fromkeys((*variant.literals.names, *condition.names))),
+                    body,
+                    (effect.atom,),
+                )
+            )
     return rules
