@@ -32,7 +32,12 @@ def portfolio(search: str | None, heuristic: str | None, jobs: int) -> list[tupl
 
 
 def solve_symbolic_parallel(
-    problem: SymbolicProblem, *, jobs: int, search: str | None, heuristic: str | None, max_time: float
+    problem: SymbolicProblem,
+    *,
+    jobs: int,
+    search: str | None,
+    heuristic: str | None,
+    max_time: float,
 ) -> SymbolicSolution:
     """Plan by several searches; the first plan, or proof that there is none, counts.
 
@@ -54,9 +59,15 @@ def solve_symbolic_parallel(
 
     def member(search: str, heuristic: str) -> Callable[[Tell], dict[str, Any]]:
         def run(tell: Tell) -> dict[str, Any]:
-            solution = solve_symbolic(problem, search=search, heuristic=heuristic, max_time=deadline.left())
+            solution = solve_symbolic(
+                problem, search=search, heuristic=heuristic, max_time=deadline.left()
+            )
             solution = replace(solution, plan=tuple(map(_bare, solution.plan)))
-            return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+            return {
+                part.name: getattr(solution, part.name)
+                for part in fields(solution)
+                if part.name != "problem"
+            }
 
         return run
 

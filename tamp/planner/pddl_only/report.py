@@ -22,7 +22,9 @@ def headline(problem: SymbolicProblem) -> str:
     task = problem.task
     goals = len(task.goal.parts) if isinstance(task.goal, And) else 1
     objects = _count(len(task.objects), "object")
-    return f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    return (
+        f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    )
 
 
 def summary(solution: SymbolicSolution) -> str:
@@ -90,7 +92,10 @@ def plan_text(solution: SymbolicSolution) -> str:
         "version": 1,
         "inputs": {"problem": _file(problem.problem), "domain": _file(problem.domain)},
         "options": {"search": solution.search, "heuristic": solution.heuristic},
-        "versions": {"tamp": importlib.metadata.version("tamp"), "python": platform.python_version()},
+        "versions": {
+            "tamp": importlib.metadata.version("tamp"),
+            "python": platform.python_version(),
+        },
         **_plan(solution),
     }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
@@ -113,7 +118,9 @@ def write_symbolic_plan(solution: SymbolicSolution, path: Path) -> Path:
 
 
 def _plan(solution: SymbolicSolution) -> dict[str, Any]:
-    actions = [{"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan]
+    actions = [
+        {"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan
+    ]
     return {"actions": actions, "cost": solution.cost, "optimal": solution.optimal}
 
 
