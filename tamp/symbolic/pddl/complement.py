@@ -1,9 +1,10 @@
-"""Predicates that Python decides, in conditions that need them to be false.
+"""Complements of predicates that Python decides, for conditions that need them to be false.
 
-A `:predicate` of a streams file is true where its function says so, and what a test stream certifies is true where the
-test passes. Streams can only promise that something holds; so where a condition is helped by the predicate being false,
-it is rewritten over a complement, `not-P`, that a stream of its own promises. Where an effect has it in its condition,
-the action is given the precondition that one of the two is known.
+A `:predicate` of a streams file is true where its function says so, and what a test stream
+certifies is true where the test passes. Streams can only promise that something holds; so where a
+condition is helped by the predicate being false, it is rewritten over a complement, `not-P`, that a
+stream of its own promises. Where an effect has it in its condition, the action is given the
+precondition that one of the two is known.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from tamp.symbolic.pddl.structs import (
 
 
 def complement_name(predicate: str, domain: Domain) -> str:
-    """The name of a predicate's complement."""
+    """Name a predicate's complement."""
     name = f"not-{predicate}"
     while name in domain.predicates:
         name += "~"
@@ -38,7 +39,9 @@ def complement_name(predicate: str, domain: Domain) -> str:
 
 
 def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> dict[str, Stream]:
-    """The test streams that a condition asks to fail, by the predicate that each certifies alone."""
+    """Return the test streams that a condition asks to fail, by the predicate that each
+    certifies alone.
+    """
     asked = {atom.predicate for atom, sign in atoms_of_conditions(domain, goal) if not sign}
     makers: dict[str, list[Stream]] = {}
     for stream in streams:
@@ -61,8 +64,8 @@ class Complements(NamedTuple):
 
     Attributes:
         complements: Of decided predicates: what holds when the predicate does not.
-        copies: Of derived predicates needed both ways that rest on decided ones: what holds unless the complements
-            say that it does not.
+        copies: Of derived predicates needed both ways that rest on decided ones: what holds unless
+            the complements say that it does not.
     """
 
     complements: dict[str, str]
@@ -72,10 +75,12 @@ class Complements(NamedTuple):
 def with_complements(
     domain: Domain, goal: Formula, decided: Collection[str]
 ) -> tuple[Domain, Formula]:
-    """Rewrite actions, rules and goal so that the decided predicates and their complements occur positively only.
+    """Rewrite actions, rules and goal so that the decided predicates and their complements occur
+    positively only.
 
-    In a rule, what helps depends on how the rule is used: `(blocked ?t)`, of which actions need the negation, is helped
-    by what makes it true being false. A derived predicate that is needed both ways gets a copy for the negations.
+    In a rule, what helps depends on how the rule is used: `(blocked ?t)`, of which actions need the
+    negation, is helped by what makes it true being false. A derived predicate that is needed both
+    ways gets a copy for the negations.
     """
     names = {
         predicate: complement_name(predicate, domain)
@@ -108,7 +113,9 @@ def with_complements(
 
 
 def _rewritten(action: Action, instead: Complements) -> Action:
-    """The action over complements; whether an effect happens must be known where a decided predicate says so."""
+    """Rewrite the action over complements; whether an effect happens must be known where a
+    decided predicate says so.
+    """
     known = [_rewrite(action.precondition, True, instead, True)]
     effects: list[Effect] = []
     for effect in action.effects:
@@ -124,7 +131,7 @@ def _rewritten(action: Action, instead: Complements) -> Action:
 
 
 def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
-    """The derived predicates that rest on decided ones, in any number of steps."""
+    """Return the derived predicates that rest on decided ones, in any number of steps."""
     found: dict[str, None] = {}
     more = True
     while more:
@@ -140,7 +147,7 @@ def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
 
 
 def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
-    """For each derived predicate, whether it is needed to hold, not to hold, or both."""
+    """Tell for each derived predicate whether it is needed to hold, not to hold, or both."""
     derived = domain.derived_predicates
     signs: dict[str, set[bool]] = {}
     for atom, sign in atoms_of_conditions(domain, goal):
@@ -150,7 +157,9 @@ def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
 
 
 def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of all conditions, and of rules as they are used, each with whether it helps by holding."""
+    """Generate the atoms of all conditions, and of rules as they are used, each with whether it
+    helps by holding.
+    """
     derived = domain.derived_predicates
     seen: set[tuple[str, bool]] = set()
     stack = [*_atoms(goal, True)]
@@ -173,12 +182,16 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
 
 
 def signed_atoms(formula: Formula, sign: bool = True) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of a formula that is needed to hold, or not to, each with whether it helps by holding."""
+    """Generate the atoms of a formula that is needed to hold, or not to, each with whether it
+    helps by holding.
+    """
     return _atoms(formula, sign)
 
 
 def _rewrite(formula: Formula, sign: bool, instead: Complements, helps: bool) -> Formula:
-    """`helps`: whether the formula as a whole is needed to hold; `sign`: whether we are under no negation in it."""
+    """Rewrite a formula. `helps`: whether the whole is needed to hold; `sign`: whether we are
+    under no negation in it.
+    """
     match formula:
         case Atom(predicate, terms, place):
             if sign is helps:

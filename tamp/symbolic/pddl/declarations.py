@@ -23,18 +23,23 @@ from tamp.symbolic.pddl.typed import known_types, placeholders, typed_list
 
 REQUIREMENTS = (
     ":strips", ":typing", ":negative-preconditions", ":disjunctive-preconditions", ":equality",
-    ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions", ":conditional-effects",
-    ":fluents", ":numeric-fluents", ":object-fluents", ":adl", ":durative-actions", ":duration-inequalities",
-    ":continuous-effects", ":derived-predicates", ":domain-axioms", ":timed-initial-literals", ":preferences",
-    ":constraints", ":action-costs", ":goal-utilities",
+    ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
+    ":conditional-effects", ":fluents", ":numeric-fluents", ":object-fluents", ":adl",
+    ":durative-actions", ":duration-inequalities", ":continuous-effects", ":derived-predicates",
+    ":domain-axioms", ":timed-initial-literals", ":preferences", ":constraints",
+    ":action-costs", ":goal-utilities",
 )  # fmt: skip
 
 MAX_TYPE_DEPTH = 200
-"""Types above a type; an object is an instance of all of them, so a chain of thousands takes gigabytes."""
+"""Types above a type; an object is an instance of all of them, so a chain of thousands takes
+gigabytes.
+"""
 
 
 def check_requirements(nodes: Sequence[Node]) -> tuple[str, ...]:
-    """Warn of words that are no requirement of any PDDL. What is used is checked where it is used."""
+    """Warn of words that are no requirement of any PDDL. What is used is checked where it is
+    used.
+    """
     notes: list[str] = []
     for node in nodes:
         symbol = as_symbol(node, "a requirement such as :typing")
@@ -47,7 +52,9 @@ def check_requirements(nodes: Sequence[Node]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Types:
-    """The declared types: each one's parent, its further parents, and oddities that are no errors."""
+    """The declared types: each one's parent, its further parents, and oddities that are no
+    errors.
+    """
 
     parents: dict[str, str]
     more_parents: dict[str, tuple[str, ...]]
@@ -55,7 +62,9 @@ class Types:
 
 
 def parse_types(nodes: Sequence[Node]) -> Types:
-    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in competitions."""
+    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in
+    competitions.
+    """
     entries = typed_list(nodes, "a type")
     parents: dict[str, tuple[str, ...]] = {}
     for entry in entries:
@@ -100,7 +109,8 @@ def parse_objects(
     notes: list[str],
     constants: Mapping[str, tuple[str, ...]] | None = None,
 ) -> dict[str, tuple[str, ...]]:
-    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of them.
+    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of
+    them.
 
     Args:
         nodes: The typed list.
@@ -197,7 +207,8 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
         before = found.setdefault(name.text, declared)
         if before is declared:
             continue
-        first = f"{what} '{name.written}' stands twice; first in line {before.place.line if before.place else 0}"
+        line = before.place.line if before.place else 0
+        first = f"{what} '{name.written}' stands twice; first in line {line}"
         if len(before.parameters) != len(declared.parameters):
             sizes = f"{len(before.parameters)} and {len(declared.parameters)}"
             raise error(name, f"{first}, with other arguments ({sizes})")
@@ -209,7 +220,7 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
 
 
 def _either(first: Parameter, second: Parameter) -> Parameter:
-    """A parameter that takes what either of two declarations says."""
+    """Join two declarations of a parameter: it takes what either of them says."""
     return replace(first, types=tuple(dict.fromkeys((*first.types, *second.types))))
 
 

@@ -23,7 +23,8 @@ from tamp.symbolic.pddl.structs import Action, And, Domain, Predicate
 from tamp.symbolic.pddl.typed import parameters
 
 SECTIONS = (
-    ":requirements", ":types", ":constants", ":predicates", ":functions", ":action", ":derived", ":axiom",
+    ":requirements", ":types", ":constants", ":predicates", ":functions",
+    ":action", ":derived", ":axiom",
 )  # fmt: skip
 ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
@@ -48,12 +49,14 @@ def parse_domain(
 ) -> Domain:
     """Read a PDDL domain.
 
-    Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
+    Types, constants, predicates and functions are known everywhere, in whatever order the sections
+    stand.
 
     Args:
         text: The domain.
         file: For messages: where the text comes from.
-        undeclared: What else may be used. When it is given, a derived predicate has as many arguments as its rules say.
+        undeclared: What else may be used. When it is given, a derived predicate has as many
+            arguments as its rules say.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -79,7 +82,8 @@ def parse_domain(
         for name, computed in undeclared.computed.items():
             declared_as = functions.get(name)
             if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
-                sizes = f"{len(declared_as.parameters)} arguments, computed of {len(computed.parameters)}"
+                declares, computes = len(declared_as.parameters), len(computed.parameters)
+                sizes = f"{declares} arguments, computed of {computes}"
                 notes.append(
                     warning(
                         declared_as.place or title.place,
@@ -123,7 +127,8 @@ def parse_domain(
 
 
 def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]:
-    """The actions under names of their own: the same one written twice is one, another one of its name is renamed.
+    """Give the actions names of their own: the same one written twice is one, another one of its
+    name is renamed.
 
     Fast Downward keeps both under one name; a plan would not say which of them is meant.
     """
@@ -164,7 +169,8 @@ def _action(
     same = repeated(written, bound)
     precondition = And((precondition, *same)) if same else precondition
     effects = parse_effects(values[":effect"], scope, derived) if ":effect" in values else Effects()
-    # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every action counts one.
+    # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every
+    # action counts one.
     cost = effects.cost if effects.cost is not None else (0.0 if counts_costs else 1.0)
     return Action(name.text, bound, precondition, tuple(effects.simple), cost, section.group.place)
 

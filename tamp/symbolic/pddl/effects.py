@@ -25,7 +25,9 @@ TOTAL_COST = "total-cost"
 
 @dataclass
 class Effects:
-    """What an action does: the simple effects, and its increases of the total cost, None when it has none."""
+    """What an action does: the simple effects, and its increases of the total cost, None when it
+    has none.
+    """
 
     simple: list[Effect] = field(default_factory=list[Effect])
     cost: float | Atom | None = None
@@ -107,7 +109,7 @@ def _collect(
 
 
 def _changed(node: Node, scope: Scope, derived: Set[str]) -> Atom:
-    """The atom that a simple effect adds or deletes."""
+    """Parse the atom that a simple effect adds or deletes."""
     group = as_group(node, "a fact such as (on ?a ?b)")
     if group.head in (*CONNECTIVES, *EFFECT_WORDS, "="):
         remedy = "What happens only sometimes is written (when CONDITION EFFECT)"

@@ -1,9 +1,10 @@
-"""Streams that wait for actions: a `:domain` that names what actions change, or what rules derive.
+"""Exogenous streams, those that wait for actions: a `:domain` that names what actions change, or
+what rules derive.
 
-Such a stream may be called once its domain has come true; what it certifies then holds. So the planner asks it for
-values as if that were so, and conditions read each fact that rests on it through a rule: the stream gave it, and all
-of its domain that actions change was true at some time (of what rules derive: is true now). PDDLStream calls such
-streams exogenous.
+Such a stream may be called once its domain has come true; what it certifies then holds. So the
+planner asks it for values as if that were so, and conditions read each fact that rests on it
+through a rule: the stream gave it, and all of its domain that actions change was true at some time
+(of what rules derive: is true now). PDDLStream calls such streams exogenous.
 """
 
 from __future__ import annotations
@@ -53,7 +54,8 @@ class CompiledTask:
 def compile_away(
     domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]
 ) -> CompiledTask:
-    """Move what changes from the streams' domains into rules; nothing is changed where there is none.
+    """Move what changes from the streams' domains into rules; nothing is changed where there is
+    none.
 
     Raises:
         InputError: What rests on a waiting stream has to be false somewhere.
@@ -65,7 +67,10 @@ def compile_away(
         return CompiledTask(domain, streams, goal, facts)
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in resting:
-            what = f"'{atom.predicate}' has to be false here, and its stream waits for what actions change"
+            what = (
+                f"'{atom.predicate}' has to be false here, "
+                "and its stream waits for what actions change"
+            )
             remedy = (
                 "Put what it waits for in the action's precondition instead of the stream's :domain"
             )
@@ -130,7 +135,7 @@ class _Rewriting:
                 )
 
     def stream(self, stream: Stream) -> Stream:
-        """One that does not wait, and rules for what it certifies."""
+        """Rewrite a stream into one that does not wait, and add the rules for what it certifies."""
         certified = [atom for atom in stream.certified if atom.predicate in self.now]
         if not certified:
             return stream
@@ -148,7 +153,7 @@ class _Rewriting:
         return replace(stream, domain=static, certified=(*stream.certified, result))
 
     def action(self, action: Action) -> Action:
-        """The action over the rules; what it makes true is noted as having been true."""
+        """Rewrite the action over the rules; what it makes true is noted as having been true."""
         effects = [
             replace(effect, condition=renamed(effect.condition, self.now))
             for effect in action.effects
@@ -163,7 +168,9 @@ class _Rewriting:
         )
 
     def _awaited(self, atom: Atom) -> Atom | None:
-        """What a rule asks in the place of a stream's domain; nothing of what never changes."""
+        """Return what a rule asks in the place of a stream's domain; nothing of what never
+        changes.
+        """
         name = self.was.get(atom.predicate) or self.now.get(atom.predicate)
         if name is not None:
             return replace(atom, predicate=name)
@@ -180,7 +187,7 @@ class _Rewriting:
 
 
 def _resting(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
-    """What streams certify whose domain changes, or rests on such a stream."""
+    """Return what streams certify whose domain changes, or rests on such a stream."""
     found: dict[str, None] = {}
     before = -1
     while len(found) > before:
@@ -192,7 +199,9 @@ def _resting(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
 
 
 def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived:
-    """The head holds when there are such variables; it may have constants, and a variable twice."""
+    """Build a rule whose head holds when there are such variables; it may have constants, and a
+    variable twice.
+    """
     fresh = tuple(f"?x{i}" for i in range(len(head.terms)))
     plain = len(set(head.terms)) == len(head.terms) and set(head.terms) <= set(variables)
     terms = head.terms if plain else fresh
@@ -207,7 +216,7 @@ def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived
 
 
 def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
-    """The formula with some of its predicates under other names."""
+    """Rename some of a formula's predicates."""
     match formula:
         case Atom(predicate):
             return replace(formula, predicate=names.get(predicate, predicate))

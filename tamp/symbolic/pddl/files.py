@@ -15,13 +15,15 @@ _MARKS = {codecs.BOM_UTF16_LE: "UTF-16", codecs.BOM_UTF16_BE: "UTF-16"}
 
 
 def read_pddl(path: Path) -> str:
-    """Read the text of a PDDL or streams file: UTF-8, or any encoding that keeps ASCII where only comments differ.
+    """Read the text of a PDDL or streams file: UTF-8, or any encoding that keeps ASCII where only
+    comments differ.
 
-    Bytes that are not UTF-8 become U+FFFD inside of comments, so that lines and columns stay what they are.
+    Bytes that are not UTF-8 become U+FFFD inside of comments, so that lines and columns stay what
+    they are.
 
     Raises:
-        InputError: There is no such file, it is a folder, device or pipe, cannot be read, is far too large, or is
-            not UTF-8 outside of a comment; then with the line.
+        InputError: There is no such file, it is a folder, device or pipe, cannot be read, is far
+            too large, or is not UTF-8 outside of a comment; then with the line.
     """
     return decoded(read_bytes(path, MAX_BYTES, kind="PDDL file"), path)
 

@@ -25,7 +25,9 @@ from tamp.symbolic.pddl.typed import distinct, parameters
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
 UNSUPPORTED = ("<", ">", "<=", ">=", "preference")
 COMPOUND = frozenset(word for word in FEATURES if not word.startswith(":"))
-"""Words of features that are not supported, unless a predicate has the name: `(at truck depot)` is a fact."""
+"""Words of features that are not supported, unless a predicate has the name: `(at truck depot)` is
+a fact.
+"""
 EFFECT_WORDS = ("when", "increase", "decrease", "assign", "scale-up", "scale-down")
 RESERVED = frozenset((*CONNECTIVES, *EFFECT_WORDS, "=", "either", "define", *UNSUPPORTED))
 """Words that cannot name a predicate."""
@@ -38,12 +40,12 @@ class Scope:
     Attributes:
         domain: Types, predicates and functions.
         objects: Objects (and constants) with their types; an object has all of them.
-        variables: What each written variable stands for; one that hides an outer one is renamed, so that in a parsed
-            formula no name is bound twice.
-        notes: Collects oddities that are no errors, such as an object of a more general type than is declared, which
-            Fast Downward reads; None where that is an error.
-        any_type: Whether such an object may be of any type, as in Fast Downward: what a predicate declares is no more
-            than a comment to it.
+        variables: What each written variable stands for; one that hides an outer one is renamed, so
+            that in a parsed formula no name is bound twice.
+        notes: Collects oddities that are no errors, such as an object of a more general type than
+            is declared, which Fast Downward reads; None where that is an error.
+        any_type: Whether such an object may be of any type, as in Fast Downward: what a predicate
+            declares is no more than a comment to it.
     """
 
     domain: Domain
@@ -53,7 +55,9 @@ class Scope:
     any_type: bool = False
 
     def with_variables(self, more: Iterable[Parameter]) -> tuple[Scope, tuple[Parameter, ...]]:
-        """The scope inside a quantifier, and the quantifier's parameters under their final names."""
+        """Return the scope inside a quantifier, and the quantifier's parameters under their
+        final names.
+        """
         listed = tuple(more)
         renamed = distinct(listed, {parameter.name for parameter in self.variables.values()})
         inside = {old.name: new for old, new in zip(listed, renamed, strict=True)}
@@ -65,12 +69,14 @@ def scope_of(
     objects: Mapping[str, tuple[str, ...]] | None = None,
     notes: list[str] | None = None,
 ) -> Scope:
-    """The scope outside of all quantifiers: the domain's constants and the given objects; `notes` as in `Scope`."""
+    """Return the scope outside of all quantifiers: the domain's constants and the given objects;
+    `notes` as in `Scope`.
+    """
     return Scope(domain, {**domain.constants, **(objects or {})}, {}, notes)
 
 
 def repeated(listed: Sequence[Parameter], bound: Sequence[Parameter]) -> tuple[Atom, ...]:
-    """What says that a variable written twice in one list is one: (= ?x ?x~2).
+    """State that a variable written twice in one list is one: (= ?x ?x~2).
 
     Args:
         listed: The variables as they were written.
@@ -119,7 +125,9 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
 
 
 def parse_atom(node: Node, scope: Scope) -> Atom:
-    """Read `(predicate term ...)`; a type is also a predicate of one argument, and `=` one of two."""
+    """Read `(predicate term ...)`; a type is also a predicate of one argument, and `=` one of
+    two.
+    """
     group = as_group(node, "a fact such as (on ?a ?b)")
     head = _head(group, "a predicate")
     name, domain = head.text, scope.domain
@@ -215,7 +223,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
 
 
 def _more_general(own: Iterable[str], wanted: Iterable[str], domain: Domain) -> bool:
-    """Whether an object of these types may be one of the wanted ones that are below them."""
+    """Check that an object of these types may be one of the wanted ones that are below them."""
     return any(domain.is_a(want, one) for want in wanted for one in own)
 
 
@@ -227,7 +235,9 @@ def _is_number(node: Node) -> bool:
 
 
 def _object(symbol: Symbol, scope: Scope) -> str | None:
-    """The object's name as its owner writes it: a scene's names may have capitals, which PDDL ignores."""
+    """Return the object's name as its owner writes it: a scene's names may have capitals, which
+    PDDL ignores.
+    """
     if symbol.written in scope.objects:
         return symbol.written
     if symbol.text in scope.objects:
@@ -249,7 +259,8 @@ def _count(group: Group, head: Symbol, wanted: int, what: str) -> None:
         found = len(group.items) - 1
         raise error(
             group,
-            f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}",
+            f"'{head.text}' takes {what}, "
+            f"found {found} part{'' if found == 1 else 's'}: {show(group)}",
         )
 
 

@@ -1,4 +1,6 @@
-"""What may stand directly inside what in PDDL, as far as parentheses can be judged by it."""
+"""The grammar of PDDL's groups: the items that each may contain, as far as parentheses can be
+judged by it.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,7 @@ KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 
 
 def may_contain(head: str, groups: int, item: str, item_head: str, previous: str) -> bool:
-    """Whether an item may stand inside a group.
+    """Check that an item may stand inside a group.
 
     Args:
         head: The group's first word; "(" when it begins with a group.
@@ -65,5 +67,6 @@ def may_contain(head: str, groups: int, item: str, item_head: str, previous: str
         return groups < MOST_GROUPS[head]
     if head in KEYWORDED:
         return previous.startswith(":") and previous != head
-    # The rest are facts, lists of variables and lists of names: they hold words, and types such as (either a b).
+    # The rest are facts, lists of variables and lists of names: they hold words, and types such as
+    # (either a b).
     return head in MANY_GROUPS or item_head == "either"

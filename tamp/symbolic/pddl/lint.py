@@ -1,4 +1,4 @@
-"""What is no error in a domain, its streams and a goal, but probably not what was meant."""
+"""Lint of a domain, its streams and a goal: what is no error, but probably not what was meant."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def lint(
     goal: Formula | None = None,
     initial: Collection[Fact] = (),
 ) -> tuple[str, ...]:
-    """Warnings, each with file, line and column, in the order of their places after the parser's own.
+    """Collect warnings, each with file, line and column, in the order of their places after the
+    parser's own.
 
     Args:
         domain: Parsed.
@@ -55,7 +56,9 @@ def lint(
 def _unused_predicates(
     domain: Domain, streams: StreamFile | None, asked: Collection[str]
 ) -> Iterator[tuple[Place, str]]:
-    """Predicates that stand nowhere but in their declaration, or that are made true and never asked for."""
+    """Find predicates that stand nowhere but in their declaration, or that are made true and
+    never asked for.
+    """
     made = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     made |= domain.derived_predicates
     shown: set[str] = set()
@@ -75,7 +78,7 @@ def _unused_predicates(
 def _unused_streams(
     domain: Domain, streams: StreamFile, asked: Collection[str], whole: bool
 ) -> Iterator[tuple[Place, str]]:
-    """Streams of whose facts no action, rule, goal or used stream asks for one."""
+    """Find streams of whose facts no action, rule, goal or used stream asks for one."""
     needed = set(asked)
     if not whole:  # a goal may ask for any static predicate
         return
@@ -98,7 +101,7 @@ def _unused_streams(
 
 
 def _unused_functions(domain: Domain, streams: StreamFile) -> Iterator[tuple[Place, str]]:
-    """Functions that no action's cost names."""
+    """Find functions that no action's cost names."""
     used = {action.cost.predicate for action in domain.actions if isinstance(action.cost, Atom)}
     for function in streams.functions:
         if function.name not in used and function.place is not None:
@@ -110,14 +113,16 @@ def _uncertified(streams: StreamFile) -> Iterator[tuple[Place, str]]:
         certified = {term for atom in stream.certified for term in atom.terms}
         for output in stream.outputs:
             if output not in certified and stream.place is not None:
-                what = f"output {output} of stream '{stream.name}' is never certified: no action can use it"
-                yield stream.place, what
+                what = f"output {output} of stream '{stream.name}' is never certified"
+                yield stream.place, f"{what}: no action can use it"
 
 
 def _unachievable(
     domain: Domain, streams: StreamFile | None, goal: Formula, initial: Collection[Fact]
 ) -> Iterator[tuple[Place, str]]:
-    """Goal atoms of predicates that nothing makes true, and that do not hold at the start either."""
+    """Find goal atoms of predicates that nothing makes true, and that do not hold at the start
+    either.
+    """
     makers = {
         effect.atom.predicate
         for action in domain.actions

@@ -1,4 +1,6 @@
-"""PDDLStream's `:optimizer`: read and left aside; where ordinary streams do not give the same, that is said."""
+"""PDDLStream's `:optimizer`: read and left aside; where ordinary streams do not give the same, that
+is said.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ from tamp.symbolic.pddl.structs import Domain, Parameter, Stream
 
 PARTS = (":variables", ":constraint", ":objective")
 REMEDY = (
-    "tamp draws values stream by stream: write each (:variables ...) as a :stream, :graph as :certified, "
+    "tamp draws values stream by stream: write each (:variables ...) as a :stream, "
+    ":graph as :certified, "
     "and each (:constraint ...) as a test stream"
 )
 KEYWORDS = (":inputs", ":domain", ":graph", ":necessary", ":fluents")
@@ -54,7 +57,8 @@ def check_optimizer(
             )
         for predicate, where in _promised(group, keyword.text, domain):
             if predicate not in certified:
-                what = f"optimizer '{name.text}' is not called, and no stream certifies ({predicate} ...)"
+                missing = f"no stream certifies ({predicate} ...)"
+                what = f"optimizer '{name.text}' is not called, and {missing}"
                 alone.setdefault(predicate, warning(where, f"{what}. {REMEDY}"))
     if alone:
         return [*alone.values()], [*alone.values()]
@@ -67,7 +71,7 @@ def check_optimizer(
 
 
 def _promised(group: Group, keyword: str, domain: Domain) -> list[tuple[str, Group]]:
-    """The predicates that a part of an optimizer makes true, each with its place."""
+    """Return the predicates that a part of an optimizer makes true, each with its place."""
     if keyword == ":objective":
         return []
     if len(group.items) < 2:

@@ -1,8 +1,8 @@
-"""Which parenthesis is wrong in a text whose parentheses do not match.
+"""The search for the wrong parenthesis in a text whose parentheses do not match.
 
-Counting alone only finds that something is wrong at the end of the file, since every ')' closes the innermost '('. What
-betrays the culprit comes earlier: a section such as `(:action` inside another one, a keyword inside a condition, an
-indentation that returns to that of something still open.
+Counting alone only finds that something is wrong at the end of the file, since every ')' closes the
+innermost '('. What betrays the culprit comes earlier: a section such as `(:action` inside another
+one, a keyword inside a condition, an indentation that returns to that of something still open.
 """
 
 from __future__ import annotations
@@ -14,15 +14,20 @@ from tamp.symbolic.pddl.grammar import may_contain
 from tamp.symbolic.pddl.structs import Place
 
 MAX_TRIES = 50
-"""Suspects that are examined before the first of them is named; bounds the time on long broken files."""
+"""Suspects that are examined before the first of them is named; bounds the time on long broken
+files.
+"""
 
 MAX_LOOK = 20_000
-"""Tokens that are looked at to see whether a ')' would mend it; a section of a sane file has fewer."""
+"""Tokens that are looked at to see whether a ')' would mend it; a section of a sane file has fewer.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A parenthesis or a word; `indent` is the column of its line's first token, and `first` says if it is that one."""
+    """A parenthesis or a word; `indent` is the column of its line's first token, and `first` says
+    if it is that one.
+    """
 
     text: str
     place: Place
@@ -31,7 +36,7 @@ class Token:
 
 
 def left_open(tokens: Sequence[Token]) -> Token:
-    """The '(' that was most probably left open, in a text in which at least one was."""
+    """Find the '(' that was most probably left open, in a text in which at least one was."""
     open_: list[_Open] = []
     suspect: Token | None = None
     tries = 0
@@ -49,7 +54,7 @@ def left_open(tokens: Sequence[Token]) -> Token:
 
 
 def surplus(tokens: Sequence[Token]) -> Token:
-    """The ')' that was most probably one too many, in a text in which one closes nothing."""
+    """Find the ')' that was most probably one too many, in a text in which one closes nothing."""
     open_: list[_Open] = []
     for index, token in enumerate(tokens):
         before = tokens[index - 1]
@@ -57,7 +62,8 @@ def surplus(tokens: Sequence[Token]) -> Token:
             if not open_:
                 return token
         elif index > 0 and before.text == ")":
-            # What follows does not belong where it stands: the ')' before it closed one group too many.
+            # What follows does not belong where it stands: the ')' before it closed one group too
+            # many.
             if not open_ and not _starts_define(tokens, index):
                 return before
             if open_ and not _fits_inside(tokens, index, open_[-1]):
@@ -84,10 +90,13 @@ def _step(tokens: Sequence[Token], index: int, open_: list[_Open]) -> None:
 
 
 def _suggests_missing(tokens: Sequence[Token], index: int, open_: Sequence[_Open]) -> bool:
-    """Whether the token could not stand where it does, had the innermost '(' been closed as it should."""
+    """Check that the token could not stand where it does, had the innermost '(' been closed as
+    it should.
+    """
     token, inner = tokens[index], tokens[open_[-1].index]
     if token.text == ")":
-        # A ')' that begins a line stands below the '(' that it closes, or below the beginning of that one's line.
+        # A ')' that begins a line stands below the '(' that it closes, or below the beginning of
+        # that one's line.
         column = token.place.column
         if not token.first or column in (inner.place.column, inner.indent):
             return False
@@ -101,7 +110,9 @@ def _suggests_missing(tokens: Sequence[Token], index: int, open_: Sequence[_Open
 
 
 def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> bool:
-    """Whether the token begins a line at the column of a '(' still open: then it is its sibling, not its child."""
+    """Check that the token begins a line at the column of a '(' still open: then it is its
+    sibling, not its child.
+    """
     if not token.first or token.place.column == 1:  # a file without indentation says nothing by it
         return False
     places = (tokens[group.index].place for group in open_[1:])
@@ -111,7 +122,9 @@ def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> b
 
 
 def _repairs(tokens: Sequence[Token], start: int, depth: int) -> bool:
-    """Whether a ')' before token `start` makes all well up to the next section, or the end of the text."""
+    """Check that a ')' before token `start` makes all well up to the next section, or the end of
+    the text.
+    """
     if len(tokens) - start > MAX_LOOK:
         tokens = tokens[: start + MAX_LOOK]
     for index in range(start, len(tokens)):
@@ -131,7 +144,7 @@ def _repairs(tokens: Sequence[Token], start: int, depth: int) -> bool:
 
 
 def _fits_inside(tokens: Sequence[Token], index: int, parent: _Open) -> bool:
-    """Whether the item that begins at `index` may stand directly inside the group."""
+    """Check that the item that begins at `index` may stand directly inside the group."""
     if index == parent.index + 1:
         return True  # its head
     head, previous = _word(tokens, parent.index + 1), _word(tokens, index - 1)

@@ -15,7 +15,7 @@ AXIOM_KEYWORDS = (":parameters", ":context", ":implies")
 
 
 def rule_head(section: Section, names: Domain) -> str:
-    """The name of the predicate that a rule defines, checked to be declared."""
+    """Return the name of the predicate that a rule defines, checked to be declared."""
     head, _ = _parts(section)
     symbol = as_symbol(head.items[0], "a predicate") if head.items else None
     if symbol is None:
@@ -31,14 +31,17 @@ def rule_head(section: Section, names: Domain) -> str:
 def redefinition(
     section: Section, predicates: Mapping[str, Predicate]
 ) -> Iterator[tuple[str, tuple[Predicate, str]]]:
-    """The predicate as a rule's head has it, with a warning, where it is declared with another number of arguments."""
+    """Return the predicate as a rule's head has it, with a warning, where it is declared with
+    another number of arguments.
+    """
     head, _ = _parts(section)
     listed = [entry.name.text for entry in typed_list(head.items[1:], "a variable")]
     declared = predicates.get(head.head or "")
     if declared is not None and len(declared.parameters) != len(listed):
         note = warning(
             head,
-            f"'{declared.name}' is declared with {len(declared.parameters)}, defined with {len(listed)}",
+            f"'{declared.name}' is declared with {len(declared.parameters)}, "
+            f"defined with {len(listed)}",
         )
         yield (
             declared.name,
@@ -47,13 +50,16 @@ def redefinition(
 
 
 def parse_rule(section: Section, names: Domain, notes: list[str] | None = None) -> Derived:
-    """Read one rule. A variable without a type in the head has the type that the predicate declares for it."""
+    """Read one rule. A variable without a type in the head has the type that the predicate declares
+    for it.
+    """
     head, body = _parts(section)
     predicate = names.predicates[rule_head(section, names)]
     listed = parameters(head.items[1:], names.types)
     if len(listed) != len(predicate.parameters):
         wanted = len(predicate.parameters)
-        message = f"'{predicate.name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {len(listed)}"
+        plural = "" if wanted == 1 else "s"
+        message = f"'{predicate.name}' takes {wanted} argument{plural}, found {len(listed)}"
         form = " ".join((predicate.name, *(parameter.name for parameter in predicate.parameters)))
         raise error(head, message, remedy=f"Its form is ({form})")
     outer = _axiom_types(section, names)
@@ -71,7 +77,7 @@ def parse_rule(section: Section, names: Domain, notes: list[str] | None = None) 
 
 
 def _parts(section: Section) -> tuple[Group, Node]:
-    """The head and the body of a rule in any of its spellings."""
+    """Return the head and the body of a rule in any of its spellings."""
     keyword = section.keyword.text
     if keyword == ":axiom" and section.items and not isinstance(section.items[0], Group):
         values = keyword_values(section.items, "the axiom", AXIOM_KEYWORDS)
@@ -83,7 +89,8 @@ def _parts(section: Section) -> tuple[Group, Node]:
         found = len(section.items)
         raise error(
             section.group,
-            f"'{keyword}' takes a fact and a condition, found {found} part{'' if found == 1 else 's'}",
+            f"'{keyword}' takes a fact and a condition, "
+            f"found {found} part{'' if found == 1 else 's'}",
         )
     head = as_group(section.items[0], "a fact such as (on ?a ?b)")
     if head.head in ("and", "or", "not", "forall", "exists", "imply"):
@@ -92,7 +99,7 @@ def _parts(section: Section) -> tuple[Group, Node]:
 
 
 def _axiom_types(section: Section, names: Domain) -> dict[str, tuple[str, ...]]:
-    """Types of the variables in an axiom's own `:parameters`."""
+    """Read the types of the variables in an axiom's own `:parameters`."""
     if section.keyword.text != ":axiom" or not section.items or isinstance(section.items[0], Group):
         return {}
     values = keyword_values(section.items, "the axiom", AXIOM_KEYWORDS)

@@ -1,4 +1,6 @@
-"""The frame of every PDDL file: `(define (domain NAME) (:section ...) ...)`, and `:keyword value` pairs inside."""
+"""The frame of every PDDL file: `(define (domain NAME) (:section ...) ...)`, and `:keyword value`
+pairs inside.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ class Section:
 def read_sections(
     text: str, kind: str, known: Sequence[str], file: str | Path | None
 ) -> tuple[Symbol, list[Section]]:
-    """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords checked."""
+    """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords
+    checked.
+    """
     frame = f"(define ({kind} NAME) ...)"
     form = as_group(read_one(text, frame, file), frame)
     if form.head != "define":
@@ -43,7 +47,7 @@ def read_sections(
 
 
 def single(sections: Sequence[Section], keyword: str) -> Section | None:
-    """The only section of that keyword, or None."""
+    """Return the only section of that keyword, or None."""
     found = [section for section in sections if section.keyword.text == keyword]
     if len(found) > 1:
         first = found[0].keyword.place.line
@@ -52,7 +56,7 @@ def single(sections: Sequence[Section], keyword: str) -> Section | None:
 
 
 def items_of(sections: Sequence[Section], keyword: str) -> tuple[Node, ...]:
-    """What stands in the only section of that keyword; nothing without one."""
+    """Return what stands in the only section of that keyword; nothing without one."""
     section = single(sections, keyword)
     return section.items if section else ()
 

@@ -1,7 +1,9 @@
-"""Streams that certify what actions change: what they find is so at the start, and until an action ends it.
+"""Streams that certify what actions change: what they find holds at the start, and until an action
+ends it.
 
-PDDLStream puts such facts into the initial state. Here the stream certifies `P-start`, which never changes, and a
-condition reads `P-now`: an action made it true, or a stream found it and no action has ended it since (`P-gone`).
+PDDLStream puts such facts into the initial state. Here the stream certifies `P-start`, which never
+changes, and a condition reads `P-now`: an action made it true, or a stream found it and no action
+has ended it since (`P-gone`).
 """
 
 from __future__ import annotations
@@ -45,11 +47,12 @@ class Started:
 
 
 def without_started(domain: Domain, streams: StreamFile, goal: Formula) -> Started:
-    """Move what streams certify and actions change into rules; nothing is changed where there is none.
+    """Move what streams certify and actions change into rules; nothing is changed where there is
+    none.
 
     Raises:
-        InputError: It has to be false somewhere though a test decides it, another stream waits for it while actions
-            make it true as well, or a stream is shown it through :fluents.
+        InputError: It has to be false somewhere though a test decides it, another stream waits for
+            it while actions make it true as well, or a stream is shown it through :fluents.
     """
     made = [*streams.streams, *streams.rules]
     changing = domain.fluent_predicates
@@ -102,19 +105,24 @@ def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequenc
     for stream in made:
         for atom in stream.domain:
             if atom.predicate in found and atom.predicate in added:
-                what = f"stream '{stream.name}' waits for '{atom.predicate}', which another stream certifies"
+                waits = f"stream '{stream.name}' waits for '{atom.predicate}'"
+                what = f"{waits}, which another stream certifies"
                 remedy = "What actions make true and a stream waits for cannot be certified as well"
                 raise error(atom.place or stream.place or nowhere, what, remedy=remedy)
         for name in stream.fluents:
             if name in found:
-                what = f"stream '{stream.name}' is shown '{name}' through :fluents, which another stream certifies"
+                shown = f"stream '{stream.name}' is shown '{name}' through :fluents"
+                what = f"{shown}, which another stream certifies"
                 raise error(
                     stream.place or nowhere, what, remedy="Give what is certified another name"
                 )
     tested = {a.predicate for s in made for a in s.certified if not set(a.terms) & set(s.outputs)}
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in found and atom.predicate in tested:
-            what = f"'{atom.predicate}' has to be false here, and a test that may still pass makes it true at the start"
+            what = (
+                f"'{atom.predicate}' has to be false here, "
+                "and a test that may still pass makes it true at the start"
+            )
             raise error(
                 atom.place or nowhere,
                 what,
@@ -123,7 +131,9 @@ def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequenc
 
 
 def _action(action: Action, gone: Mapping[str, str], now: Mapping[str, str]) -> Action:
-    """The action over the rules; what it makes false is noted as gone, what it makes true as not gone."""
+    """Rewrite the action over the rules; what it makes false is noted as gone, what it makes
+    true as not gone.
+    """
     effects = [
         replace(effect, condition=renamed(effect.condition, now)) for effect in action.effects
     ]

@@ -40,8 +40,8 @@ def parse_streams(
         text: The streams file's.
         domain: Whose predicates they speak of.
         file: Where the text is from, for errors.
-        waiting: Whether what actions change may stand in a stream's :domain, see `exogenous`, and in its
-            :certified, see `started`.
+        waiting: Whether what actions change may stand in a stream's :domain, see `exogenous`, and
+            in its :certified, see `started`.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -86,10 +86,11 @@ def parse_streams(
 
 
 def output_types(stream: Stream, domain: Domain) -> dict[str, tuple[str, ...]]:
-    """The types of a stream's outputs: those that the predicates it certifies declare, the most special ones.
+    """Return the types of a stream's outputs: those that the predicates it certifies declare, the
+    most special ones.
 
-    An output that several predicates declare differently has all of those types; one of which nothing is known is an
-    ("object",).
+    An output that several predicates declare differently has all of those types; one of which
+    nothing is known is an ("object",).
     """
     result: dict[str, tuple[str, ...]] = {}
     for output in stream.outputs:
@@ -140,7 +141,9 @@ def _stream(section: Section, domain: Domain, waiting: bool) -> Stream:
 
 
 def _rule(number: int, section: Section, domain: Domain, waiting: bool) -> Stream:
-    """`(:rule :inputs (?a) :domain (f ?a) :certified (g ?a))`: what holds whenever the domain does."""
+    """Parse `(:rule :inputs (?a) :domain (f ?a) :certified (g ?a))`: what holds whenever the
+    domain does.
+    """
     owner = f"rule {number}"
     values = keyword_values(section.items, owner, (":inputs", ":domain", ":certified"))
     inputs = _variables(values.get(":inputs"), ":inputs")
@@ -159,7 +162,7 @@ def _rule(number: int, section: Section, domain: Domain, waiting: bool) -> Strea
 
 
 def _check_static(predicate: Function, domain: Domain) -> None:
-    """A predicate that Python decides never changes."""
+    """Check that a predicate that Python decides never changes."""
     for names, what in (
         (domain.fluent_predicates, "changed by actions"),
         (domain.derived_predicates, "derived"),
@@ -171,7 +174,8 @@ def _check_static(predicate: Function, domain: Domain) -> None:
 
 
 def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], Atom]) -> Function:
-    """`(:function (f ?a ?b) CONDITION)` as in PDDLStream, or with the keywords :inputs and :domain.
+    """Parse `(:function (f ?a ?b) CONDITION)` as in PDDLStream, or with the keywords :inputs and
+    :domain.
 
     A `:predicate` looks the same; `parse` reads the head.
     """
@@ -212,7 +216,8 @@ def _atoms(
     *,
     derived: bool = True,
 ) -> tuple[Atom, ...]:
-    """The facts of a conjunction, none of which an action may change: streams speak of what holds for ever.
+    """Parse the facts of a conjunction, none of which an action may change: streams speak of what
+    holds for ever.
 
     With `may_change` an action may, and with `derived` too, a rule may make them.
     """

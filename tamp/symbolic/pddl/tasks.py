@@ -73,7 +73,9 @@ def parse_facts(
     line_offset: int = 0,
     column_offset: int = 0,
 ) -> frozenset[Fact]:
-    """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of `parse_goal`."""
+    """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of
+    `parse_goal`.
+    """
     scope = scope_of(domain, objects)
     texts = (text,) if isinstance(text, str) else text
     nodes = [
@@ -87,7 +89,8 @@ def parse_facts(
 def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Task:
     """Read a plain PDDL problem file.
 
-    Costs count where it has a `:metric`; without one every action counts one, whatever the domain says.
+    Costs count where it has a `:metric`; without one every action counts one, whatever the domain
+    says.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -142,7 +145,8 @@ def _fact(node: Node, scope: Scope) -> Fact:
     if atom.predicate not in scope.domain.predicates:
         raise error(
             group,
-            f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact",
+            f"'{atom.predicate}' is a type; "
+            "it is given where the object is declared, not as a fact",
         )
     if atom.predicate in scope.domain.derived_predicates:
         raise error(
@@ -153,7 +157,7 @@ def _fact(node: Node, scope: Scope) -> Fact:
 
 
 def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
-    """`(= (distance a b) 3)`."""
+    """Parse `(= (distance a b) 3)`."""
     if len(node.items) != 3:
         raise error(node, "expected (= (FUNCTION object ...) NUMBER)")
     term = parse_function_term(node.items[1], scope)
@@ -167,14 +171,16 @@ def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
 
 
 def _negative(node: Group, scope: Scope) -> Fact:
-    """`(not FACT)` in :init says what is so anyhow: the fact."""
+    """Parse `(not FACT)` in :init, which says what is so anyhow: the fact."""
     if len(node.items) != 2:
         raise error(node, "'not' takes one fact")
     return _fact(node.items[1], scope)
 
 
 def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
-    """A note when the problem names another domain: collections of problems do, where a domain has variants."""
+    """Note when the problem names another domain: collections of problems do, where a domain has
+    variants.
+    """
     if section is None:
         return ()
     if len(section.items) != 1:
@@ -190,7 +196,9 @@ def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
 
 
 def _check_metric(section: Section | None) -> None:
-    """Only `(:metric minimize (total-cost))` is known, with total-cost also without parentheses."""
+    """Check the metric: only `(:metric minimize (total-cost))` is known, with total-cost also
+    without parentheses.
+    """
     if section is None:
         return
     direction, *rest = section.items or (section.group,)
