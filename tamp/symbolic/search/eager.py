@@ -10,10 +10,11 @@ from tamp.symbolic.search.successors import State
 
 
 def astar(search: SearchSpace) -> Plan | None:
-    """A* with reopening; ties are broken for the lower estimate, then for the younger state.
+    """Run A* with reopening; break ties for the lower estimate, then for the younger state.
 
-    A state is evaluated when it is taken from the queue for the first time; until then its parent's estimate less the
-    operator's cost stands for it, which is as admissible. Several heuristics count with their maximum.
+    A state is evaluated when it is taken from the queue for the first time; until then its parent's
+    estimate less the operator's cost stands for it, which is as admissible. Several heuristics
+    count with their maximum.
     """
     s = search.successors
     estimates: dict[State, float] = {}
@@ -62,7 +63,8 @@ def astar(search: SearchSpace) -> Plan | None:
 
 
 def best_first(search: SearchSpace) -> Plan | None:
-    """Greedy best-first search: costs do not count, the state of the lowest estimate is next, then the younger one.
+    """Run greedy best-first search: costs do not count, the state of the lowest estimate is next,
+    then the younger one.
 
     States are evaluated as they are generated. Several heuristics count with their sum.
     """

@@ -1,4 +1,4 @@
-"""What all searches share: the cheapest known way to each state, counts and limits."""
+"""The search space: the cheapest known way to each state, counts of expansions, limits."""
 
 from __future__ import annotations
 
@@ -23,12 +23,16 @@ class Reason(Enum):
 
 
 AUDIT_AFTER_STATES = 500
-"""States after which a search asks whether pairs of facts prove that there is no plan: most plans are found before."""
+"""States after which a search asks whether pairs of facts prove that there is no plan: most plans
+are found before.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Operators that lead from the initial state to the goal, and what they cost with all prices."""
+    """Operators that lead from the initial state to the goal, and what they cost with all
+    prices.
+    """
 
     operators: tuple[Operator, ...]
     cost: float
@@ -42,7 +46,7 @@ class SearchLimitReached(Exception):
 
 
 class SearchSpace:
-    """A search under way.
+    """A search under way: its closed states with their parents, its counts and its limits.
 
     Attributes:
         best: The cost of the cheapest known way to each state.
@@ -82,12 +86,16 @@ class SearchSpace:
             raise SearchLimitReached(Reason.UNSOLVABLE)
 
     def estimate(self, closed: State, parent: State | None) -> tuple[Estimate, ...]:
-        """What the heuristics say of a state, `parent` being the state before it, both with derived facts."""
+        """Evaluate a state by all heuristics; `parent` is the state before it, both with derived
+        facts.
+        """
         self.evaluated += 1
         return tuple(heuristic(closed, parent) for heuristic in self.heuristics)
 
     def plan(self, state: State) -> Plan:
-        """The plan to a state along the parents, without what it does not need."""
+        """Extract the plan to a state along the parents, then eliminate the actions that it does
+        not need.
+        """
         numbers: list[int] = []
         while state in self.parents:
             state, operator = self.parents[state]

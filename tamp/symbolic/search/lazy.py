@@ -21,11 +21,13 @@ _Entry = tuple[float, int, float, State, State | None, int]
 
 
 def lazy(search: SearchSpace, weight: float) -> Plan | None:
-    """Lazy search: a state is evaluated when it is expanded, until then its parent's estimate stands for it.
+    """Lazy search: a state is evaluated when it is expanded, until then its parent's estimate
+    stands for it.
 
-    Each heuristic has two queues, the second for successors by preferred operators; all take turns, after progress
-    those of the preferred get more. `weight` infinite is greedy search: costs do not count. A goal state whose goal
-    rests on priced facts waits until nothing that is cheaper than it is left in a queue.
+    Each heuristic has two queues, the second for successors by preferred operators; all take turns,
+    after progress those of the preferred get more. `weight` infinite is greedy search: costs do not
+    count. A goal state whose goal rests on priced facts waits until nothing that is cheaper than it
+    is left in a queue.
     """
     s = search.successors
     greedy = weight == math.inf
@@ -104,7 +106,8 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
             if reached == math.inf or (known is not None and reached >= known):
                 continue
             number += 1
-            # Among equals: greedy search goes on from the state just expanded, weighted A* takes the older.
+            # Among equals: greedy search goes on from the state just expanded, weighted A* takes
+            # the older.
             order = number if not greedy else rank - search.expanded * len(s.operators)
             step = s.cost[operator]
             dearer = reached - cost - step
@@ -113,14 +116,17 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
                 key = h + extra if greedy else cost + step + extra + weight * h
                 heappush(usual[kind], (key, order, reached, after, state, operator))
                 if rank < len(helpful) and extra <= step:
-                    # Rank decides among preferred siblings, not cost. One that guards make dear waits elsewhere.
+                    # Rank decides among preferred siblings, not cost. One that guards make dear
+                    # waits elsewhere.
                     key = h if greedy else cost + weight * h
                     heappush(preferred[kind], (key, order, reached, after, state, operator))
     return None
 
 
 def _paid(estimate: Estimate, operator: int) -> float:
-    """The prices of the operator's guards that the parent's estimate contains: they shall not count twice."""
+    """The prices of the operator's guards that the parent's estimate contains: they shall not count
+    twice.
+    """
     return (
         estimate.paid(operator) if estimate.paid is not None and operator in estimate.plan else 0.0
     )
@@ -146,8 +152,9 @@ def _preferred(
 ) -> dict[int, None]:
     """The applicable operators of a relaxed plan, those first that go well with the others.
 
-    Best are those after which the fewest of the plan's operators are no longer applicable, then those after which the
-    most become applicable. Without this, a search would drive from body to body while all orders look equally good.
+    Best are those after which the fewest of the plan's operators are no longer applicable, then
+    those after which the most become applicable. Without this, a search would drive from body to
+    body while all orders look equally good.
     """
     now = set(applicable)
     before, absent = s.before, s.absent

@@ -1,4 +1,6 @@
-"""A plan step by step, with every static fact that it rests on: what the streams must really certify."""
+"""A plan step by step, with every static fact that it rests on: what the streams must really
+certify.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +21,12 @@ class Step:
     Attributes:
         operator: What is applied.
         state: The fluent facts before it.
-        static: What it rests on there: its static preconditions, the facts that lift its triggered guards, the static
-            facts in the derivations of its derived preconditions and of the conditional effects that take place.
+        static: What it rests on there: its static preconditions, the facts that lift its triggered
+            guards, the static facts in the derivations of its derived preconditions and of the
+            conditional effects that take place.
         derived: Those of the static facts that derivations rest on.
-        read: The fluent facts that its preconditions, the effects that take place, and the derivations rest on.
+        read: The fluent facts that its preconditions, the effects that take place, and the
+            derivations rest on.
         heads: The derived facts behind all that.
         added: What it makes true there.
         deleted: What of the state it makes false.
@@ -42,7 +46,9 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """The state in the end, and what the goal rests on there: static facts, those of them in derivations, fluents."""
+    """The state in the end, and what the goal rests on there: static facts, those of them in
+    derivations, fluents.
+    """
 
     state: Facts
     static: Facts
@@ -52,7 +58,9 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """All steps and the end; whether something that they rest on could be derived in another way as well."""
+    """All steps and the end; whether something that they rest on could be derived in another way as
+    well.
+    """
 
     steps: tuple[Step, ...]
     end: End
@@ -95,7 +103,7 @@ def trace(
 def replayed(
     instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]
 ) -> bool:
-    """Whether actions, by name and arguments, lead from the initial state to the goal."""
+    """Check that actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
     for operator in instantiated.operators:
         operators.setdefault((operator.name, operator.arguments), []).append(operator)
@@ -120,7 +128,9 @@ def _applied(
     state: Facts,
     price: Mapping[Fact, float] | None = None,
 ) -> tuple[Step, Facts]:
-    """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
+    """Apply the operator in a state; return its step and the state after it. ValueError where it
+    is not applicable.
+    """
     why = derive(instantiated.axioms, state, price)
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
@@ -148,7 +158,7 @@ def _applied(
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:
-    """The operator's guards whose facts the state contains."""
+    """Return the operator's guards whose facts the state contains."""
     if isinstance(operator.guards, LazyGuards):
         return operator.guards.triggered(state)
     return tuple(guard for guard in operator.guards if guard.facts <= state)

@@ -1,4 +1,4 @@
-"""Which derived predicates rest on themselves."""
+"""Recursive derived predicates: those that rest on themselves."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formu
 
 
 def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozenset[str]], set[str]]:
-    """For each derived predicate those that rest on it and it on them, and itself; and which rest on themselves."""
+    """Return for each derived predicate those that rest on it and it on them, and itself; and
+    which rest on themselves.
+    """
     below = {
         name: {p for rule in those for p in _used(rule.body) if p in rules}
         for name, those in rules.items()

@@ -27,7 +27,8 @@ class Result:
         plan: None when there is none, then `reason` says why.
         expanded: States whose successors were generated.
         evaluated: States that the heuristics were asked about.
-        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0 after other searches.
+        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0
+            after other searches.
     """
 
     plan: Plan | None
@@ -46,7 +47,7 @@ SEARCHES: dict[str, Callable[[SearchSpace, float], Plan | None]] = {
 
 
 def split_heuristics(heuristic: str) -> tuple[str, ...]:
-    """The names in "ff+landmarks".
+    """Split the names in "ff+landmarks".
 
     Raises:
         InputError: A name of none.
@@ -74,19 +75,21 @@ def search(
 
     Args:
         instantiated: The task.
-        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax", "blind") is optimal;
-            "wastar" and "greedy" are lazy and use preferred operators, "eager" is plain greedy best-first search.
-        heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues to each, "astar"
-            takes the maximum, "eager" the sum.
+        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax",
+            "blind") is optimal; "wastar" and "greedy" are lazy and use preferred operators, "eager"
+            is plain greedy best-first search.
+        heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues
+            to each, "astar" takes the maximum, "eager" the sum.
         weight: Of the estimate in "wastar".
-        price: What the use of a static fact costs (by an operator resting on it, to lift a guard, and in the lazy
-            searches where the goal is derived from it); may be infinite.
-            A mapping of those that cost something is faster than a function. Nothing by default.
+        price: What the use of a static fact costs (by an operator resting on it, to lift a guard,
+            and in the lazy searches where the goal is derived from it); may be infinite. A mapping
+            of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
         deadline: When to give up. It never changes the plan that is found, only whether one is.
-        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
-            greedy searches, which keep to the first way to each state.
-        audit: Asked once, when the search turns out not to be a short one: whether it is proven that there is no plan.
+        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with
+            prices. Not for the greedy searches, which keep to the first way to each state.
+        audit: Asked once, when the search turns out not to be a short one: whether it is proven
+            that there is no plan.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
@@ -114,10 +117,10 @@ def search(
 
 
 def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:
-    """The goal facts that hold in no state of the delete relaxation, sorted.
+    """Return the goal facts that hold in no state of the delete relaxation, sorted.
 
-    A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that stand for a
-    subformula are explained in `instantiated.meanings`.
+    A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that
+    stand for a subformula are explained in `instantiated.meanings`.
     """
     goal = instantiated.goal
     never = sorted(goal.positive - instantiated.reachable - instantiated.initial)

@@ -1,7 +1,8 @@
-"""The task over integers: which operators are applicable in a state, what they cost there, what comes after.
+"""The successor generator, the task over integers: applicable operators of a state, their costs,
+what comes after.
 
-Facts are numbered once; a state is an `int` whose set bits are the facts that hold. benchmarks/search.py measures it
-against frozenset[int] for 100 to 2,000 facts.
+Facts are numbered once; a state is an `int` whose set bits are the facts that hold.
+benchmarks/search.py measures it against frozenset[int] for 100 to 2,000 facts.
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ from tamp.symbolic.search.operators import Facts, InstantiatedTask
 
 State = int
 Price = Callable[[Fact], float] | Mapping[Fact, float]
-"""What static facts cost; a mapping gives those that cost something, and is faster where guards are many."""
+"""What static facts cost; a mapping gives those that cost something, and is faster where guards are
+many.
+"""
 
 
 def bits(mask: int) -> Iterator[int]:
-    """The numbers of the bits that are set, lowest first."""
+    """Generate the numbers of the bits that are set, lowest first."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
@@ -43,7 +46,8 @@ class _Stratum:
 class Successors:
     """An instantiated task with numbered facts and priced operators.
 
-    Facts that no condition mentions are left out of the states, operators whose price is infinite are never applied.
+    Facts that no condition mentions are left out of the states, operators whose price is infinite
+    are never applied.
 
     Attributes:
         facts: By number, sorted.
@@ -100,14 +104,14 @@ class Successors:
         self._extras: dict[State, dict[int, float]] = {}
 
     def price(self, fact: Fact) -> float:
-        """The price of a static fact, asked for once."""
+        """Return the price of a static fact, asked for once."""
         known = self._prices.get(fact)
         if known is None:
             known = self._prices[fact] = self._ask(fact)
         return known
 
     def mask(self, facts: Iterable[Fact]) -> State:
-        """The bits of those facts that some condition mentions."""
+        """Return the bits of those facts that some condition mentions."""
         if isinstance(facts, frozenset):
             known = self._masks.get(facts)
             if known is not None:
@@ -122,7 +126,7 @@ class Successors:
         return mask
 
     def closure(self, state: State) -> State:
-        """The state with its derived facts."""
+        """Return the state with its derived facts."""
         for stratum in self._strata:
             before = -1
             while before != state:
@@ -142,11 +146,11 @@ class Successors:
         return state
 
     def holds_goal(self, closed: State) -> bool:
-        """Whether the goal holds in a state with its derived facts."""
+        """Check that the goal holds in a state with its derived facts."""
         return closed & self.goal == self.goal and not closed & self.goal_absent
 
     def applicable(self, closed: State) -> list[int]:
-        """The operators whose preconditions hold; guards are not looked at."""
+        """Return the operators whose preconditions hold; guards are not looked at."""
         before, absent = self.before, self.absent
         found = [i for i in self._always if not absent[i] & closed]
         mask, watched = closed & self._watch_mask, self._watched
@@ -160,7 +164,9 @@ class Successors:
         return found
 
     def penalties(self, facts: State) -> dict[int, float]:
-        """For a guard's facts: the operators that it costs something when it is triggered, and how much."""
+        """Return for a guard's facts the operators that it costs something when it is triggered,
+        and how much.
+        """
         known = self._penalties.get(facts)
         if known is None:
             known = self._penalties[facts] = dict[int, float]()
@@ -171,7 +177,7 @@ class Successors:
         return known
 
     def _owners(self, facts: State) -> Iterator[tuple[int, Fact | None]]:
-        """The operators that have the guard with these facts, and what lifts it."""
+        """Find the operators that have the guard with these facts, and what waives it."""
         yield from self._guards_on.get(facts, ())
         if self._blocked and facts.bit_count() == 1:
             fact = self.facts[facts.bit_length() - 1]
@@ -182,7 +188,7 @@ class Successors:
                             yield index, guard.waived_by
 
     def triggered(self, state: State) -> Iterator[int]:
-        """The guards' facts that a state contains."""
+        """Find the guards' facts that a state contains."""
         mask = state & self.guard_mask
         for facts in self._many:
             if facts & mask == facts:
@@ -193,7 +199,7 @@ class Successors:
             yield low
 
     def extras(self, state: State) -> dict[int, float]:
-        """The operators with triggered guards that have a price, and these prices' sums."""
+        """Return the operators with triggered guards that have a price, and these prices' sums."""
         key = state & self.guard_mask
         known = self._extras.get(key)
         if known is None:
@@ -205,7 +211,9 @@ class Successors:
         return known
 
     def step_cost(self, index: int, state: State) -> float:
-        """The operator's cost in the state, with the prices of its triggered guards; infinite where it is forbidden."""
+        """Return the operator's cost in the state, with the prices of its triggered guards;
+        infinite where it is forbidden.
+        """
         return (
             self.cost[index] + self.extras(state).get(index, 0.0)
             if self._has_guards[index]
@@ -213,7 +221,7 @@ class Successors:
         )
 
     def apply(self, index: int, state: State, closed: State) -> State:
-        """The state after the operator (adding wins over deleting)."""
+        """Apply the operator (adding wins over deleting); return the state after it."""
         after = (state & self.kept[index]) | self.added[index]
         if self.conditional[index]:
             added = self.added[index]
@@ -225,7 +233,9 @@ class Successors:
         return after
 
     def _collect_guards(self) -> None:
-        """Sort the guards by their facts. Those not made yet are made where a listed price matters, or later."""
+        """Sort the guards by their facts. Those not made yet are made where a listed price matters,
+        or later.
+        """
         blocked: dict[DerivedGuards, dict[Row, list[int]]] = {}
         for index, operator in enumerate(self.operators):
             guards = operator.guards
@@ -282,7 +292,9 @@ class Successors:
         return [strata[number] for number in sorted(strata)]
 
     def _watch(self) -> tuple[dict[int, list[int]], list[int]]:
-        """Each operator under the one of its preconditions that the fewest operators share."""
+        """Watch each operator under the one of its preconditions that the fewest operators
+        share.
+        """
         uses: dict[Fact, int] = {}
         for i in self.alive:
             for fact in self.operators[i].positive:

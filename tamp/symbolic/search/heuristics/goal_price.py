@@ -1,4 +1,4 @@
-"""What it costs that the goal is derived: the prices of the static facts that axioms rest on."""
+"""The price of deriving the goal: the prices of the static facts that axioms rest on."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from tamp.symbolic.search.successors import State, Successors, bits
 class GoalPrice:
     """The price of the goal's cheapest derivation in a state; axioms with a negation count as free.
 
-    No step pays for it, so a search that takes the first goal state takes the dearest derivation as gladly as any.
+    No step pays for it, so a search that takes the first goal state takes the dearest derivation as
+    gladly as any.
     """
 
     def __init__(self, successors: Successors) -> None:
@@ -25,7 +26,7 @@ class GoalPrice:
                 )
 
     def __call__(self, state: State) -> float:
-        """Of a state without its derived facts, in which the goal holds."""
+        """Price the goal in a state without its derived facts, in which the goal holds."""
         if not self._axioms:
             return 0.0
         costs = dict.fromkeys(bits(state), 0.0)

@@ -1,8 +1,9 @@
-"""Facts that every plan makes true at some time, and which of them are still to come.
+"""Fact landmarks: facts that every plan makes true at some time, and those of them that are still
+to come.
 
-All fact landmarks of the delete relaxation, found by one fixpoint over sets of facts (Zhu and Givan, Landmark
-extraction via planning graph propagation, 2003; Keyder, Richter, Helmert, Sound and complete landmarks for and/or
-graphs, 2010).
+All fact landmarks of the delete relaxation, found by one fixpoint over sets of facts (Zhu and
+Givan, Landmark extraction via planning graph propagation, 2003; Keyder, Richter, Helmert, Sound and
+complete landmarks for and/or graphs, 2010).
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ Mask = int
 class Landmarks:
     """The landmarks of a task, and those reached on the way to each state that was asked for.
 
-    A landmark counts as long as it was not true on the way; again when it is false now and is a goal, or is needed by
-    all that first achieves a landmark that was not true yet (Richter and Westphal, LAMA, 2010).
+    A landmark counts as long as it was not true on the way; again when it is false now and is a
+    goal, or is needed by all that first achieves a landmark that was not true yet (Richter and
+    Westphal, LAMA, 2010).
     """
 
     def __init__(self, successors: Successors) -> None:
@@ -74,7 +76,7 @@ class Landmarks:
         self._needs = self._first_needs(sets, before, effects)
 
     def remaining(self, closed: State, parent: State | None) -> Mask:
-        """The landmarks that are still to come, or to come again.
+        """Return the landmarks that are still to come, or to come again.
 
         Args:
             closed: The state with its derived facts.
@@ -93,7 +95,7 @@ class Landmarks:
         return missing | (again & ~now & self._all)
 
     def cost(self, remaining: Mask) -> float:
-        """The sum of the cheapest achievers' costs."""
+        """Sum the costs of the landmarks' cheapest achievers."""
         weights = self._weights
         return sum(weights[fact] for fact in bits(remaining))
 
@@ -111,7 +113,9 @@ class Landmarks:
     def _first_needs(
         self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]
     ) -> dict[int, Mask]:
-        """For each landmark what all its first achievers need: those that do not need itself."""
+        """Return for each landmark what all its first achievers need: those that do not need
+        itself.
+        """
         needs: dict[int, Mask] = {}
         for i, facts in enumerate(effects):
             if not all(sets[fact] for fact in before[i]):

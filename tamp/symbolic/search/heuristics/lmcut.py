@@ -1,8 +1,10 @@
-"""The landmark-cut heuristic (Helmert and Domshlak, Landmarks, Critical Paths and Abstractions, 2009): admissible.
+"""The landmark-cut heuristic (Helmert and Domshlak, Landmarks, Critical Paths and Abstractions,
+2009): admissible.
 
-Each cut is a set of operators of which every plan of the delete relaxation needs one. It counts with the cost of the
-cheapest, which is taken off the cost of all operators in it. An operator with conditional effects is several relaxed
-operators: all of them get cheaper when one is in a cut, since one application may do all they do.
+Each cut is a set of operators of which every plan of the delete relaxation needs one. It counts
+with the cost of the cheapest, which is taken off the cost of all operators in it. An operator with
+conditional effects is several relaxed operators: all of them get cheaper when one is in a cut,
+since one application may do all they do.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ EXPECTED_CUTS = 10
 class LandmarkCut:
     """The heuristic for the states that share one relaxed task.
 
-    Two facts are added: one that always holds, for operators without preconditions, and one that stands for the goal.
+    Two facts are added: one that always holds, for operators without preconditions, and one that
+    stands for the goal.
 
     Args:
         relaxation: Whose operators they are.
@@ -46,7 +49,9 @@ class LandmarkCut:
         self._costs = kernels.incremented(it.costs, integers(()), kernels.reals(()), 1)
 
     def value(self, closed: State) -> float:
-        """The estimate for a state with its derived facts; infinite in a dead end."""
+        """Estimate the cost from a state with its derived facts by landmark cuts; infinite in a
+        dead end.
+        """
         kernels = self.relaxed_state.kernels
         here = kernels.integers(
             (*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid)
@@ -69,7 +74,7 @@ class LandmarkCuts:
         self._known: dict[State, LandmarkCut] = {}
 
     def value(self, closed: State) -> float:
-        """The estimate for a state with its derived facts."""
+        """Estimate the cost from a state with its derived facts."""
         relaxed_state, key = (
             self._relaxation.relaxed_state(closed, EXPECTED_CUTS),
             self._relaxation.key(closed),

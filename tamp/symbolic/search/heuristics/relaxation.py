@@ -1,9 +1,10 @@
 """The delete relaxation of a state: the cheapest way to each fact when nothing is ever deleted.
 
-Three things go beyond STRIPS. A negative condition violated in the evaluated state waits for the complement of its
-fact, which the operators that delete the fact achieve. A triggered guard waits likewise, or is paid for: its operator
-gets a precondition that costs the lesser of the guard's price and of removing its facts. Conditional effects and axioms
-are operators of their own. Negated derived facts are taken for free (only recursive ones are left at this stage).
+Three things go beyond STRIPS. A negative condition violated in the evaluated state waits for the
+complement of its fact, which the operators that delete the fact achieve. A triggered guard waits
+likewise, or is paid for: its operator gets a precondition that costs the lesser of the guard's
+price and of removing its facts. Conditional effects and axioms are operators of their own. Negated
+derived facts are taken for free (only recursive ones are left at this stage).
 """
 
 from __future__ import annotations
@@ -18,12 +19,15 @@ from tamp.symbolic.search.heuristics.loops.selection import Kernels, choose
 from tamp.symbolic.search.successors import State, Successors, bits
 
 MAX_RELAXED_STATES = 64
-"""So many relaxed states are kept; one of a large task takes a megabyte, and making it again less time than exploring."""
+"""So many relaxed states are kept; one of a large task takes a megabyte, and making it again less
+time than exploring.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class RelaxedState:
-    """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
+    """The relaxed task for the states in which the same guards are triggered and negative
+    conditions violated.
 
     Attributes:
         kernels: Those that its lists are made for.
@@ -51,18 +55,20 @@ class RelaxedState:
 
     @property
     def operators(self) -> int:
-        """How many relaxed operators there are."""
+        """Count the relaxed operators."""
         return len(self.before.starts) - 1
 
     @property
     def facts(self) -> int:
-        """How many facts, complements and guards there are."""
+        """Count the facts, complements and guards."""
         return len(self.needed.starts) - 1
 
 
 @dataclass(frozen=True, slots=True)
 class RelaxedExploration:
-    """The result: costs of facts, and for each the relaxed operator that reaches it best (-1: it holds, or is paid)."""
+    """The result: costs of facts, and for each the relaxed operator that reaches it best (-1: it
+    holds, or is paid).
+    """
 
     costs: Reals
     supporters: Integers
@@ -71,11 +77,13 @@ class RelaxedExploration:
 
     @property
     def goal_costs(self) -> list[float]:
-        """What each fact of the goal costs."""
+        """Return what each fact of the goal costs."""
         return [float(self.costs[goal]) for goal in self.goals]
 
     def paid(self, operator: int) -> float:
-        """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than removes their facts."""
+        """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than
+        removes their facts.
+        """
         it = self.relaxed_state
         waited = it.guarded.get(operator, ())
         return it.raised.get(operator, 0.0) + sum(
@@ -84,7 +92,7 @@ class RelaxedExploration:
 
     @property
     def dead(self) -> bool:
-        """Whether the goal is out of reach even in the relaxation, so that the state is a dead end."""
+        """Check for a dead end: the goal is out of reach even in the relaxation."""
         return math.inf in self.goal_costs
 
 
@@ -93,8 +101,8 @@ class Relaxation:
 
     Args:
         successors: The task.
-        steps: Count steps too where some operator costs nothing, so that estimates tell such steps from none at all.
-            Not admissible.
+        steps: Count steps too where some operator costs nothing, so that estimates tell such steps
+            from none at all. Not admissible.
 
     Attributes:
         owners: The operator that each relaxed operator belongs to, -1 for axioms.
@@ -159,7 +167,9 @@ class Relaxation:
         self._prepare(choose(0))
 
     def _prepare(self, kernels: Kernels) -> None:
-        """Make the lists that the loops take, of the states that trigger no guards and violate nothing."""
+        """Make the lists that the kernels take, of the states that trigger no guards and violate
+        nothing.
+        """
         before = kernels.rows(self._before)
         effects, needed = kernels.rows(self._effects), kernels.transposed(before, 2 * self._size)
         self._base = RelaxedState(kernels, before, kernels.reals(self._costs), effects, needed)
@@ -181,7 +191,7 @@ class Relaxation:
             self._negative.setdefault(fact, []).append(number)
 
     def _removal_costs(self) -> list[float]:
-        """For each fact the cost of the cheapest operator that deletes it."""
+        """Compute for each fact the cost of the cheapest operator that deletes it."""
         costs = [math.inf] * self._size
         for i, effects in enumerate(self._effects):
             for effect in effects:
@@ -190,18 +200,20 @@ class Relaxation:
         return costs
 
     def holding(self, closed: State) -> list[int]:
-        """The relaxed facts that hold in a state with its derived facts: facts, and complements that the goal names."""
+        """Return the relaxed facts that hold in a state with its derived facts: facts, and
+        complements that the goal names.
+        """
         return [
             *bits(closed),
             *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1),
         ]
 
     def key(self, state: State) -> State:
-        """What states with the same relaxed_state have in common."""
+        """Return what states with the same relaxed task have in common."""
         return state & self._negated
 
     def relaxed_state(self, state: State, effort: int = 1) -> RelaxedState:
-        """The relaxed task as seen from a state, to be gone through about so many times."""
+        """Return the relaxed task as seen from a state, to be gone through about so many times."""
         kernels = choose(effort * self._entries)
         if kernels is not self._base.kernels:
             self._prepare(kernels)
@@ -279,9 +291,11 @@ class Relaxation:
         )
 
     def explore(self, closed: State, *, additive: bool) -> RelaxedExploration:
-        """Costs of all facts from a state: sums of the preconditions' costs (hadd) or their maximum (hmax).
+        """Compute the costs of all facts from a state: sums of the preconditions' costs (hadd) or
+        their maximum (hmax).
 
-        Facts are taken in the order of their costs, until the goal is reached at the cost of all that is left.
+        Facts are taken in the order of their costs, until the goal is reached at the cost of all
+        that is left.
 
         Args:
             closed: The state with its derived facts.
@@ -299,11 +313,13 @@ class Relaxation:
         return RelaxedExploration(costs, supporters, it, self.goals)
 
     def plan(self, exploration: RelaxedExploration) -> tuple[float, list[int]]:
-        """The cost of a relaxed plan made of best supporters, guards' prices included, and its operators.
+        """Extract a relaxed plan made of best supporters: its cost, guards' prices included, and
+        its operators.
 
-        Facts are taken in the order of falling cost. One that an operator chosen already adds needs no supporter of
-        its own, if that operator is cheaper than what the fact is needed for: the hand is free for the next body once
-        this one is placed where it shall be, it need not be put back first.
+        Facts are taken in the order of falling cost. One that an operator chosen already adds needs
+        no supporter of its own, if that operator is cheaper than what the fact is needed for: the
+        hand is free for the next body once this one is placed where it shall be, it need not be put
+        back first.
         """
         it = exploration.relaxed_state
         cost, plan = it.kernels.relaxed_plan(

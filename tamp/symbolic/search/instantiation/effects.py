@@ -24,7 +24,9 @@ class LiftedEffect:
 
 
 def lifted_effects(action: Action, normalizer: Normalizer) -> tuple[LiftedEffect, ...]:
-    """Normalize an action's effects. A quantified variable may have the name of one of the action's parameters."""
+    """Normalize an action's effects. A quantified variable may have the name of one of the action's
+    parameters.
+    """
     effects: list[LiftedEffect] = []
     for effect in action.effects:
         names = {parameter.name: f"{parameter.name} of effect" for parameter in effect.parameters}
@@ -84,7 +86,9 @@ class Effects:
                     self._expand(effect, condition, rows)
 
     def _expand(self, effect: LiftedEffect, condition: Literals, rows: list[Row]) -> None:
-        """Find all instances of one effect, by the values of the action's variables that it mentions."""
+        """Find all instances of one effect, by the values of the action's variables that it
+        mentions.
+        """
         body = self._predicates.body(condition)
         used = {
             term
@@ -93,7 +97,8 @@ class Effects:
         }
         used |= {term for left, right, _ in condition.equalities for term in (left, right)}
         shared = tuple(name for name in self._known if name in used)
-        # Types of the action's own parameters have been checked already; only what exists can be deleted.
+        # Types of the action's own parameters have been checked already; only what exists can be
+        # deleted.
         atoms = [
             a
             for a in body.positive
@@ -153,7 +158,8 @@ class Effects:
         self._expanded.append((effect.adds, key, instances))
 
     def of(self, row: Row, before: Facts) -> tuple[Facts, Facts, tuple[ConditionalEffect, ...]]:
-        """Added facts, deleted facts and conditional effects of the operator with this binding.
+        """Return the added facts, deleted facts and conditional effects of the operator with this
+        binding.
 
         Args:
             row: The binding.
@@ -200,7 +206,9 @@ class Effects:
     def _split(
         self, number: int, key: Row, instances: list[_Instance]
     ) -> tuple[Facts, list[_Instance]]:
-        """The facts changed in any case, one set for all operators with this key, and the conditional instances."""
+        """Split off the facts changed in any case, one set for all operators with this key, from
+        the conditional instances.
+        """
         table = self._shared.setdefault(number, {})
         if key not in table:
             always = frozenset(

@@ -1,4 +1,4 @@
-"""A lifted task's operators without variables, worked out once, or again and again while facts come along."""
+"""Instantiation of a lifted task: once, or again and again while facts come along."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ def instantiate(
 
 
 class Instantiator:
-    """Instantiates a task again and again while static facts and objects come along: only what is new is joined.
+    """Instantiates a task again and again while static facts and objects come along: only what is
+    new is joined.
 
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
-        assumed: Static predicates of tests that are taken to hold, without listing their facts, where they would lift
-            a guard.
+        assumed: Static predicates of tests that are taken to hold, without listing their facts,
+            where they would lift a guard.
     """
 
     def __init__(self, task: Task, assumed: frozenset[str] = frozenset()) -> None:
@@ -44,15 +45,18 @@ class Instantiator:
         objects: Mapping[str, Types] | None = None,
         refused: frozenset[Fact] = frozenset(),
     ) -> InstantiatedTask:
-        """The task over these facts. It begins anew where one of the last time is missing, or an absence has ended.
+        """Instantiate the task over these facts. It begins anew where one of the last time is
+        missing, or an absence has ended.
 
         Args:
-            facts: Static facts besides those of the initial state: certified by streams, really or optimistically.
+            facts: Static facts besides those of the initial state: certified by streams, really or
+                optimistically.
             objects: Further objects with their types, placeholders among them.
             refused: Facts of the assumed predicates that are known not to hold.
 
         Raises:
-            InputError: A derived fact depends on its own negation, or an action's cost is not known.
+            InputError: A derived fact depends on its own negation, or an action's cost is not
+                known.
         """
         known = frozenset(facts)
         new = known - self._facts

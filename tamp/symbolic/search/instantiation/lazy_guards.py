@@ -1,7 +1,8 @@
 """Guards that are made only when they are asked for.
 
-A task has as many guards as operators times poses of other bodies (24,000 for 8 bodies, 164,000 for 20), but a search
-meets few of them: those of the poses that bodies take, or those that a price makes matter.
+A task has as many guards as operators times poses of other bodies (24,000 for 8 bodies, 164,000 for
+20), but a search meets few of them: those of the poses that bodies take, or those that a price
+makes matter.
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ from tamp.symbolic.search.operators import Facts, Guard
 
 
 class DerivedGuards:
-    """The guards that `not d(...)` amounts to, by a rule of d with one fluent and one absent assumed atom in its body.
+    """The guards that `not d(...)` amounts to, by a rule of d with one fluent and one absent
+    assumed atom in its body.
 
-    For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2) is a guard of
-    `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
+    For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2)
+    is a guard of `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
     """
 
     def __init__(self, predicates: PredicateKinds, definition: Definition) -> None:
@@ -41,7 +43,7 @@ class DerivedGuards:
 
     @staticmethod
     def fits(predicates: PredicateKinds, definition: Definition) -> bool:
-        """Whether a rule has the form that this class is about."""
+        """Check that a rule has the form that this class is about."""
         kinds = predicates.classify(definition.literals)
         terms = definition.head.terms
         return (
@@ -55,7 +57,7 @@ class DerivedGuards:
 
     @property
     def fluent(self) -> str:
-        """The predicate of the facts that block."""
+        """Return the predicate of the facts that trigger its guards."""
         return self._fluent.predicate
 
     def add(self, rows: Iterable[Row]) -> None:
@@ -64,7 +66,7 @@ class DerivedGuards:
         self._on.clear()
 
     def of(self, row: Row) -> tuple[Guard, ...]:
-        """All guards of one negated fact."""
+        """Return all guards of one negated fact."""
         made = self._made.get(row)
         if made is None:
             made = self._made[row] = tuple(
@@ -73,7 +75,7 @@ class DerivedGuards:
         return made
 
     def triggered(self, row: Row, state: Facts) -> list[Guard]:
-        """The guards of one negated fact that a state triggers, in the facts' order."""
+        """Return the guards of one negated fact that a state triggers, in the facts' order."""
         names = tuple(dict.fromkeys(term for term in self._fluent.terms if term.startswith("?")))
         if row in self._made or set(names) & set(self._head.terms):
             return [guard for guard in self.of(row) if guard.facts <= state]
@@ -82,30 +84,32 @@ class DerivedGuards:
         return [guard for _, guard in self._find((*self._head.terms, *names), rows)]
 
     def on(self, fact: Fact) -> list[tuple[Row, Guard]]:
-        """The guards, with their rows, that a fluent fact triggers."""
+        """Return the guards, with their rows, that a fluent fact triggers."""
         found = self._on.get(fact)
         if found is None:
             found = self._on[fact] = list(self._match(self._fluent, [fact]))
         return found
 
     def waived_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards, with their rows, that one of the static facts waives, or would waive were it not refused."""
+        """Find the guards, with their rows, that one of the static facts waives, or would waive
+        were it not refused.
+        """
         return self._match(
             self._absent, [fact for fact in facts if fact[0] == self._absent.predicate]
         )
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
-        """The guards that nothing waives."""
+        """Find the guards that nothing waives."""
         return self.waived_by(sorted(self._predicates.refused))
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards of registered rows for which the atom is one of the facts."""
+        """Find the guards of registered rows for which the atom is one of the facts."""
         names = tuple(dict.fromkeys(term for term in atom.terms if term.startswith("?")))
         return self._find(names, self._values(atom, names, facts), self._rows)
 
     @staticmethod
     def _values(atom: Atom, names: tuple[str, ...], facts: list[Fact]) -> list[Row]:
-        """The values of the atom's variables in those facts that match it."""
+        """Return the values of the atom's variables in those facts that match it."""
         first = {term: 1 + atom.terms.index(term) for term in atom.terms}
         return [
             tuple(fact[first[name]] for name in names)
@@ -143,7 +147,7 @@ class LazyGuards(Sequence[Guard]):
         self.blocked = blocked
 
     def triggered(self, state: Facts) -> tuple[Guard, ...]:
-        """The guards whose facts a state contains; only these are made."""
+        """Return the guards whose facts a state contains; only these are made."""
         made = [guard for guard in self.made if guard.facts <= state]
         return (
             *made,

@@ -1,8 +1,9 @@
-"""What must hold for a derived fact not to hold: clauses, worked out as literals, guards or choices.
+"""Negated derived facts: the clauses that must hold for one not to hold, worked out as literals,
+guards or choices.
 
-`not d(args)` says that the body of each instantiated rule of d(args) is broken: a clause. A clause of one literal is that
-literal; one that says that some of several fluents must be absent is a guard; anything else becomes an auxiliary
-derived fact (a *choice*) with one axiom a literal.
+`not d(args)` says that the body of each instantiated rule of d(args) is broken: a clause. A clause
+of one literal is that literal; one that says that some of several fluents must be absent is a
+guard; anything else becomes an auxiliary derived fact (a *choice*) with one axiom a literal.
 """
 
 from __future__ import annotations
@@ -60,11 +61,12 @@ class Negation:
         self.meanings: dict[str, str] = {}
 
     def refute(self, fact: Fact, *, guards: bool) -> Needs:
-        """What `not fact` needs.
+        """Return what `not fact` needs.
 
         Args:
             fact: Of a derived or auxiliary predicate.
-            guards: Whether guards may be used (in operators' preconditions); otherwise they become choices.
+            guards: Whether guards may be used (in operators' preconditions); otherwise they become
+                choices.
         """
         if fact not in self._known:
             self.prepare(fact[0], [fact[1:]])
@@ -176,7 +178,7 @@ class Negation:
             needs.positive.append(self._choice(possible, waivers))
 
     def _choice(self, literals: list[Literal], waivers: tuple[Fact, ...]) -> Fact:
-        """A fact that holds when one of the literals does, or one of the static facts."""
+        """Return a fact that holds when one of the literals does, or one of the static facts."""
         key = (tuple(sorted(set(literals))), waivers)
         if key in self._choices:
             return self._choices[key]

@@ -1,4 +1,6 @@
-"""Formulas to rules: disjunctions split, existential variables freed, universal ones turned into negated rules."""
+"""Normal form of formulas: disjunctions split, existential variables freed, universal ones
+turned into negated rules.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ from tamp.symbolic.pddl.structs import (
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
 
 MAX_CONJUNCTIONS = 12
-"""A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary predicates."""
+"""A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary
+predicates.
+"""
 
 Types = tuple[str, ...]
 Scope = Mapping[str, Types]
@@ -36,13 +40,15 @@ class Literals:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The variables without their types."""
+        """Return the variables without their types."""
         return tuple(name for name, _ in self.variables)
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """A rule of a derived or auxiliary predicate: head <- exists (the variables that are not in head). literals."""
+    """A rule of a derived or auxiliary predicate: head <- exists (the variables that are not in
+    head). literals.
+    """
 
     head: Atom
     literals: Literals
@@ -52,7 +58,8 @@ _Part = tuple[tuple[Parameter, ...], tuple[tuple[bool, Atom], ...]]
 
 
 class Normalizer:
-    """Turns formulas into disjunctions of literals. Collects the rules of the derived and auxiliary predicates.
+    """Turns formulas into disjunctions of literals. Collects the rules of the derived and auxiliary
+    predicates.
 
     Attributes:
         definitions: Rules by the predicate that they define.
@@ -60,7 +67,8 @@ class Normalizer:
 
     Args:
         domain: Gives the types and the derived predicates.
-        given: Derived predicates of which facts are given as well, so that their rules do not say all.
+        given: Derived predicates of which facts are given as well, so that their rules do not say
+            all.
     """
 
     def __init__(self, domain: Domain, given: frozenset[str] = frozenset()) -> None:
@@ -83,7 +91,8 @@ class Normalizer:
     def split(
         self, formula: Formula, scope: Scope, names: Mapping[str, str] | None = None
     ) -> list[Literals]:
-        """The formula as a disjunction; each disjunct has the scope's variables and those of existential quantifiers.
+        """Split the formula into a disjunction; each disjunct has the scope's variables and those
+        of existential quantifiers.
 
         Args:
             formula: Any formula.
@@ -112,7 +121,7 @@ class Normalizer:
         return disjuncts
 
     def _typed(self, atom: Atom) -> Atom:
-        """A type used as a predicate names the type's relation."""
+        """Replace a type used as a predicate by the type's relation."""
         if atom.predicate in self._domain.types and atom.predicate not in self._domain.predicates:
             return Atom(type_relation((atom.predicate,)), atom.terms)
         return Atom(atom.predicate, atom.terms)
@@ -156,7 +165,9 @@ class Normalizer:
     def _unfold(
         self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]
     ) -> list[_Part]:
-        """The rule's body in the place of its head, with the types that it asks of its arguments."""
+        """Put the rule's body in the place of its head, with the types that it asks of its
+        arguments.
+        """
         names = dict(zip(rule.head.terms, terms, strict=True))
         typed = tuple(
             (True, Atom(type_relation(parameter.types), (names[parameter.name],)))
@@ -182,7 +193,9 @@ class Normalizer:
     def _name(
         self, formula: Formula | None, parts: list[_Part], scope: dict[str, Types], kind: str
     ) -> Atom:
-        """An auxiliary predicate of the free variables that holds when one of the parts does."""
+        """Name an auxiliary predicate of the free variables that holds when one of the parts
+        does.
+        """
         free: dict[str, Types] = {}
         for parameters, literals in parts:
             bound = {parameter.name for parameter in parameters}
@@ -204,14 +217,17 @@ class Normalizer:
         return head
 
     def goal(self, disjuncts: list[Literals], formula: Formula) -> Atom:
-        """An auxiliary predicate without arguments that holds when one of the disjuncts does."""
+        """Name an auxiliary predicate without arguments that holds when one of the disjuncts
+        does.
+        """
         name = f"goal {len(self.auxiliary) + 1}"
         self.auxiliary[name] = formula
         self.definitions[name] = [Definition(Atom(name, ()), literals) for literals in disjuncts]
         return Atom(name, ())
 
     def reached(self, roots: Iterable[Literals], recursive: frozenset[str]) -> list[str]:
-        """The predicates whose facts must be derived; others are only ever negated, and worked out fact by fact.
+        """Return the predicates whose facts must be derived; others are only ever negated, and
+        worked out fact by fact.
 
         Args:
             roots: All conjunctions in which an action or the goal uses predicates.
@@ -243,24 +259,28 @@ class Normalizer:
                 wanted.setdefault((atom.predicate, not refuted))
 
     def meanings(self) -> dict[str, str]:
-        """The auxiliary predicates with the formulas that they stand for, in PDDL."""
+        """Show the auxiliary predicates' formulas in PDDL, by name."""
         return {name: show(formula) for name, formula in self.auxiliary.items()}
 
 
 def show(formula: Formula) -> str:
-    """A formula in PDDL, on one line."""
+    """Show a formula in PDDL, on one line."""
     if isinstance(formula, Atom):
         return f"({' '.join((formula.predicate, *(t.split(' ')[0] for t in formula.terms)))})"
     if isinstance(formula, Not):
         return f"(not {show(formula.body)})"
     if isinstance(formula, And | Or):
-        return f"({' '.join(('and' if isinstance(formula, And) else 'or', *map(show, formula.parts)))})"
+        connective = "and" if isinstance(formula, And) else "or"
+        return f"({' '.join((connective, *map(show, formula.parts)))})"
     word = "exists" if isinstance(formula, Exists) else "forall"
-    return f"({word} ({' '.join(p.name.split(' ')[0] for p in formula.parameters)}) {show(formula.body)})"
+    variables = " ".join(p.name.split(" ")[0] for p in formula.parameters)
+    return f"({word} ({variables}) {show(formula.body)})"
 
 
 def type_relation(types: Types) -> str:
-    """The name of the relation of the objects that have one of the types. Not a word of PDDL, since it has a blank."""
+    """Name the relation of the objects that have one of the types. Not a word of PDDL, since it
+    has a blank.
+    """
     return " ".join(("type", *sorted(types)))
 
 

@@ -1,4 +1,6 @@
-"""Which predicates change, which are derived, which are static; and the relations of a task before anything happens."""
+"""Predicates by kind, fluent, derived or static; and the relations of a task before anything
+happens.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +23,8 @@ from tamp.symbolic.search.operators import ANY
 class ClassifiedAtoms:
     """The atoms of a conjunction by what becomes of them.
 
-    `positive` and `negative` hold fluent atoms, `derived` and `refuted` atoms of derived and auxiliary predicates,
-    `static` and `absent` atoms of static predicates.
+    `positive` and `negative` hold fluent atoms, `derived` and `refuted` atoms of derived and
+    auxiliary predicates, `static` and `absent` atoms of static predicates.
     """
 
     positive: tuple[Atom, ...]
@@ -65,7 +67,9 @@ class PredicateKinds:
         self.add((), {**task.domain.constants, **task.objects})
 
     def add(self, facts: Iterable[Fact], objects: Mapping[str, Types]) -> dict[str, list[Row]]:
-        """Take over static facts (others are left out) and objects; returns what is new, by predicate."""
+        """Take over static facts (others are left out) and objects; returns what is new, by
+        predicate.
+        """
         new = self._add(fact for fact in facts if fact[0] not in self.fluent)
         fresh = {name: types for name, types in objects.items() if name not in self._objects}
         self._objects |= fresh
@@ -89,13 +93,15 @@ class PredicateKinds:
         return new
 
     def may_hold(self, fact: Fact) -> bool:
-        """Whether a static fact is known, or of a predicate that is assumed to hold and not refused."""
+        """Check that a static fact is known, or of a predicate that is assumed to hold and not
+        refused.
+        """
         if fact[1:] in self.relations.rows(fact[0]):
             return True
         return fact[0] in self.assumed and fact not in self.refused
 
     def recursive(self) -> frozenset[str]:
-        """Derived predicates that depend on themselves."""
+        """Return the derived predicates that depend on themselves."""
         definitions = self._normalizer.definitions
         below = {
             name: {
@@ -133,11 +139,14 @@ class PredicateKinds:
 
         positive, negative = literals.positive, literals.negative
         return ClassifiedAtoms(
-            of(positive, 0), of(negative, 0), of(positive, 1), of(negative, 1), of(positive, 2), of(negative, 2)
+            of(positive, 0), of(negative, 0),
+            of(positive, 1), of(negative, 1),
+            of(positive, 2), of(negative, 2),
         )  # fmt: skip
 
     def body(self, literals: Literals, *, absent: bool = True, derived: bool = True) -> Body:
-        """What a join can check: positive atoms, types, equalities and, if wanted, the absent static atoms.
+        """Build what a join can check: positive atoms, types, equalities and, if wanted, the absent
+        static atoms.
 
         Variables of the root type that occur in an atom need no relation of their own.
         """
@@ -155,12 +164,16 @@ class PredicateKinds:
         return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
 
     def unnamed(self, literals: Literals) -> tuple[Atom, ...]:
-        """For each variable that no positive atom names: that there is the object that it stands for."""
+        """Return for each variable that no positive atom names: that there is the object that it
+        stands for.
+        """
         covered = {term for atom in literals.positive for term in atom.terms}
         return tuple(Atom(ANY, (name,)) for name, _ in literals.variables if name not in covered)
 
     def type_atom(self, variable: str, types: Types) -> Atom:
-        """The atom that says that the variable has one of the types; its relation is made when first asked for."""
+        """Return the atom that says that the variable has one of the types; its relation is made
+        when first asked for.
+        """
         name = type_relation(types)
         if name not in self._types:
             self.relations.add(name, self._fitting(types, self._objects))
@@ -168,7 +181,9 @@ class PredicateKinds:
         return Atom(name, (variable,))
 
     def any_atom(self, variable: str, types: Types) -> Atom:
-        """The same of one object only, which the task itself has: for a variable that makes no difference."""
+        """Return the same of one object only, which the task itself has: for a variable that
+        makes no difference.
+        """
         fitting = self._fitting(types, {**self._task.domain.constants, **self._task.objects})
         if not fitting:
             return self.type_atom(variable, types)
@@ -181,5 +196,5 @@ class PredicateKinds:
         return [(name,) for name in sorted(objects) if fits[objects[name]]]
 
     def definitions(self, predicate: str) -> list[Definition]:
-        """The rules of a derived or auxiliary predicate."""
+        """Return the rules of a derived or auxiliary predicate."""
         return self._normalizer.definitions[predicate]

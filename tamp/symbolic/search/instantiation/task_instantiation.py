@@ -1,9 +1,10 @@
-"""From a lifted task to operators without variables, by joins over static facts and relaxed reachability.
+"""Instantiation: from a lifted task to operators without variables, by joins over static facts and
+relaxed reachability.
 
-Predicates that no action changes and no rule derives are static: their facts are joined, smallest first, never
-enumerated. Fluent and derived preconditions take part in the join as relations that grow by a semi-naive fixpoint, so
-that only what is reachable in the delete relaxation is instantiated (Helmert, Concise finite-domain representations,
-2009).
+Predicates that no action changes and no rule derives are static: their facts are joined, smallest
+first, never enumerated. Fluent and derived preconditions take part in the join as relations that
+grow by a semi-naive fixpoint, so that only what is reachable in the delete relaxation is
+instantiated (Helmert, Concise finite-domain representations, 2009).
 """
 
 from __future__ import annotations
@@ -121,7 +122,9 @@ class Instantiation:
         )
 
     def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
-        """The operators of all bindings; `made` keeps those that nothing which may come along can change."""
+        """The operators of all bindings; `made` keeps those that nothing which may come along can
+        change.
+        """
         action, rule = variant.action, variant.rule
         rows = sorted(rule.rows)
         if not rows:
@@ -323,7 +326,9 @@ def _action_rule(
     literals: Literals,
     effects: tuple[LiftedEffect, ...],
 ) -> Rule:
-    """A parameter that neither conditions nor effects nor the cost mention takes one value: others change nothing."""
+    """Build the rule of an action. A parameter that neither conditions nor effects nor the cost
+    mention takes one value: others change nothing.
+    """
     heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
     conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
     mentioned = {
@@ -343,7 +348,7 @@ def _action_rule(
 
 
 def _effect_rules(predicates: PredicateKinds, variant: _Variant) -> list[Rule]:
-    """Rules for the conditional and universal effects that add something."""
+    """Build the rules of the conditional and universal effects that add something."""
     rules: list[Rule] = []
     for effect in variant.effects:
         for condition in effect.conditions if effect.adds and not effect.simple else ():

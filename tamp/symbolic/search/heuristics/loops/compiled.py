@@ -1,6 +1,8 @@
-"""The loops compiled by numba: importing this takes half a second, and compiles where that has not been done before.
+"""The loops compiled by numba: importing this takes half a second, and compiles where that has not
+been done before.
 
-Each is compiled from a copy that sees the compiled ones by their names, and numba's arrays instead of lists.
+Each is compiled from a copy that sees the compiled ones by their names, and numba's arrays instead
+of lists.
 """
 
 # pyright: basic

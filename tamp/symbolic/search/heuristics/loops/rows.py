@@ -1,6 +1,8 @@
-"""Lists of lists as two lists, the form that compiled code takes; and what makes new ones of them.
+"""Compressed sparse rows (CSR): lists of lists as two lists, the form that compiled code takes; and
+what makes new ones.
 
-The functions are Python that numba can compile, as those in kernels.py. Compiled, all lists are arrays.
+The functions are Python that numba can compile, as those in kernels.py. Compiled, all lists are
+arrays.
 """
 
 from __future__ import annotations
@@ -21,28 +23,30 @@ class CsrRows(NamedTuple):
     values: Integers
 
     def lists(self) -> list[list[int]]:
-        """As lists."""
+        """Return the rows as lists."""
         values, starts = list(map(int, self.values)), self.starts
         return [values[starts[i] : starts[i + 1]] for i in range(len(starts) - 1)]
 
 
 def csr_rows(lists: Sequence[Sequence[int]]) -> CsrRows:
-    """From lists."""
+    """Build compressed rows from lists."""
     return CsrRows(list(accumulate(map(len, lists), initial=0)), list(chain.from_iterable(lists)))
 
 
 def full(size: int, value: T) -> list[T]:
-    """So many times the value. Compiled it makes an array, so does `count_up`."""
+    """Return so many times the value. Compiled it makes an array, so does `count_up`."""
     return [value] * size
 
 
 def count_up(size: int) -> list[int]:
-    """0, 1, 2, ..."""
+    """Return 0, 1, 2, ..."""
     return list(range(size))
 
 
 def transposed(rows: CsrRows, size: int) -> CsrRows:
-    """Row j of the result, of so many, lists the rows that contain j, in ascending order."""
+    """Transpose: row j of the result, of so many, lists the rows that contain j, in ascending
+    order.
+    """
     ends = full(size + 1, 0)
     for j in rows.values:
         ends[j + 1] += 1
@@ -58,7 +62,9 @@ def transposed(rows: CsrRows, size: int) -> CsrRows:
 
 
 def appended(rows: CsrRows, at: Integers, what: Integers, size: int) -> CsrRows:
-    """what[k] appended to row at[k], in this order, in so many rows; those beyond the given ones start empty."""
+    """Append what[k] to row at[k], in this order, in so many rows; those beyond the given ones
+    start empty.
+    """
     ends = full(size + 1, 0)
     known = len(rows.starts) - 1
     for i in range(known):
@@ -79,7 +85,7 @@ def appended(rows: CsrRows, at: Integers, what: Integers, size: int) -> CsrRows:
 
 
 def incremented(values: Reals, at: Integers, by: Reals, more: int) -> list[float]:
-    """The values with by[k] added at at[k], and so many zeros behind them."""
+    """Return the values with by[k] added at at[k], and so many zeros behind them."""
     result = full(len(values) + more, 0.0)
     for i in range(len(values)):
         result[i] = values[i]

@@ -1,6 +1,8 @@
-"""Which loops run: plain Python at first, compiled ones once they pay, or where they are loaded anyway.
+"""Selection of the kernels: plain Python at first, compiled ones once they pay, or where they are
+loaded anyway.
 
-numba takes longer to load than a small task to solve, and much longer to compile. Both give the same numbers.
+numba takes longer to load than a small task to solve, and much longer to compile. Both give the
+same numbers.
 """
 
 from __future__ import annotations
@@ -15,10 +17,13 @@ from tamp.symbolic.search.heuristics.loops import kernels, rows
 from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
 
 LOAD_THRESHOLD = 2_000_000
-"""Entries that plain Python goes through before the compiled loops are loaded: about as long as loading takes."""
+"""Entries that plain Python goes through before the compiled loops are loaded: about as long as
+loading takes.
+"""
 
 COMPILE_THRESHOLD = 10_000_000
-"""Entries before they are compiled, where that has not been done yet: as long as compiling takes."""
+"""Entries before they are compiled, where that has not been done yet: as long as compiling takes.
+"""
 
 CACHED = (
     (kernels, ("explore", "relaxed_plan", "landmark_cut")),
@@ -67,7 +72,9 @@ PLAIN = Kernels(
 
 
 class _Meter:
-    """What plain Python has gone through in this process. It decides about time alone, never about a result."""
+    """What plain Python has gone through in this process. It decides about time alone, never about
+    a result.
+    """
 
     entries = 0
     enough: int | None = None
@@ -77,26 +84,30 @@ _METER = _Meter()
 
 
 def load() -> Kernels:
-    """The compiled loops, loaded now, and compiled where that has not been done."""
+    """Load the compiled kernels now, and compile them where that has not been done."""
     from tamp.symbolic.search.heuristics.loops.compiled import COMPILED
 
     return COMPILED
 
 
 def load_kept() -> None:
-    """Load the compiled loops where that is all there is to do: for who has numba loaded anyway."""
+    """Load the compiled kernels where that is all there is to do: for who has numba loaded
+    anyway.
+    """
     if compiled_before():
         load()
 
 
 def prepare() -> None:
-    """Compile the loops where that has not been done, before processes start that would each do it."""
+    """Compile the kernels where that has not been done, before processes start that would each
+    do it.
+    """
     if not compiled_before():
         load()
 
 
 def compiled_before() -> bool:
-    """Whether numba's cache beside the sources has all loops, none older than its source."""
+    """Check that numba's cache beside the sources has all kernels, none older than its source."""
     if "NUMBA_CACHE_DIR" in os.environ:
         return False
     for module, names in CACHED:
@@ -109,7 +120,7 @@ def compiled_before() -> bool:
 
 
 def choose(entries: int) -> Kernels:
-    """The loops for a piece of work that goes through so many entries."""
+    """Choose the kernels for a piece of work that goes through so many entries."""
     _METER.entries += entries
     if "tamp.symbolic.search.heuristics.loops.compiled" in sys.modules:
         return load()
