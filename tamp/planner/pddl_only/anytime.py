@@ -1,4 +1,6 @@
-"""A symbolic problem better and better: greedy first, then weighted A* with less weight, then A* for the proof."""
+"""Anytime search for a symbolic problem: greedy first, then weighted A* with less weight, then
+A* for the proof.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,13 @@ from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
 LADDER = (
-    ("wastar", "ff+landmarks", 5.0), ("wastar", "ff+landmarks", 2.0), ("wastar", "ff", 1.0), ("astar", "lmcut", 1.0),
-)  # fmt: skip
-"""Search, heuristic and weight, one after the other; the last one proves that nothing is cheaper."""
+    ("wastar", "ff+landmarks", 5.0),
+    ("wastar", "ff+landmarks", 2.0),
+    ("wastar", "ff", 1.0),
+    ("astar", "lmcut", 1.0),
+)
+"""Search, heuristic and weight, one after the other; the last one proves that nothing is cheaper.
+"""
 
 SHARE = 0.25
 """The part of the remaining time that a search before the last one gets."""
@@ -28,7 +34,8 @@ SHARE = 0.25
 def optimize_symbolic(
     problem: SymbolicProblem, *, max_time: float, improved: Callable[[SymbolicSolution], None]
 ) -> SymbolicSolution:
-    """Plan greedily, then look for cheaper plans until one is proven to be the cheapest, or the time is up.
+    """Plan greedily, then look for cheaper plans until one is proven to be the cheapest, or the
+    time is up.
 
     Args:
         problem: From `load_symbolic`.
@@ -56,8 +63,13 @@ def optimize_symbolic(
             while best.bound < best.cost:
                 started = time.perf_counter()
                 found = search(
-                    instantiated, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
-                )  # fmt: skip
+                    instantiated,
+                    search=name,
+                    heuristic=heuristic,
+                    weight=weight,
+                    deadline=within,
+                    below=best.cost,
+                )
                 best = _counted(
                     best, found.expanded, found.evaluated, time.perf_counter() - started
                 )
@@ -105,6 +117,5 @@ def _better(
     found = replace(
         best, outcome=Outcome.SOLVED, plan=plan.operators, search=search, heuristic=heuristic
     )
-    return replace(
-        found, history=(*best.history, (elapsed, found.cost)), bound=found.cost if optimal else best.bound
-    )  # fmt: skip
+    history = (*best.history, (elapsed, found.cost))
+    return replace(found, history=history, bound=found.cost if optimal else best.bound)

@@ -43,10 +43,12 @@ class SymbolicSolution:
         explanation: Why there is no plan, a line a cause.
         operators: How many operators the task has.
         facts: How many facts may change.
-        history: The plans on the way to this one and itself, where the first was not enough: seconds and cost.
+        history: The plans on the way to this one and itself, where the first was not enough:
+            seconds and cost.
         bound: What no plan costs less than, as far as a search with an admissible heuristic knows.
         seconds: Wall-clock time: "total", "instantiation", "search".
-        refuted: Plans that did not hold when they were replayed by the book: mistakes of the planner's, not returned.
+        refuted: Plans that did not hold when they were replayed by the book: mistakes of the
+            planner's, not returned.
     """
 
     problem: SymbolicProblem
@@ -67,22 +69,25 @@ class SymbolicSolution:
 
     @property
     def solved(self) -> bool:
-        """Whether there is a plan."""
+        """Tell that there is a plan."""
         return self.outcome is Outcome.SOLVED
 
     @property
     def cost(self) -> float:
-        """The sum of the actions' costs."""
+        """Sum the actions' costs."""
         return sum(operator.cost for operator in self.plan)
 
     @property
     def gap(self) -> float:
-        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        """Return the part of the cost that the lower bound leaves open: 0 when no plan is
+        cheaper.
+        """
         return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
 
 def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
-    """The names of a search and a heuristic that go together: A* asks for an admissible estimate.
+    """Choose the names of a search and a heuristic that go together: A* asks for an admissible
+    estimate.
 
     Raises:
         InputError: A name that is not known.
@@ -102,12 +107,14 @@ def solve_symbolic(
     heuristic: str | None = None,
     max_time: float = 30.0,
 ) -> SymbolicSolution:
-    """Plan.
+    """Plan: instantiate the task, search, and have the plan replayed.
 
     Args:
         problem: From `load_symbolic`.
-        search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind" is optimal.
-        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A* "lmcut".
+        search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind"
+            is optimal.
+        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A*
+            "lmcut".
         max_time: Seconds.
 
     Raises:
@@ -167,7 +174,9 @@ def _solve(
 
 
 def refutation(task: Task, plan: Plan | None) -> str | None:
-    """What is wrong with a plan when it is replayed by the book, as a line for people; None where it holds."""
+    """Replay a plan by the book and word what is wrong with it, as a line for people; None where
+    it holds.
+    """
     if plan is None:
         return None
     reason = violation(task, [(operator.name, operator.arguments) for operator in plan.operators])
