@@ -38,7 +38,7 @@ class Names:
         self._names = {value_key(value): name for name, value in constants.items()}
 
     def of(self, value: Any) -> str:
-        """The value's name; the same one for equal values."""
+        """Return the value's name; the same one for equal values."""
         key = value_key(value)
         name = self._names.get(key)
         if name is None:
@@ -57,7 +57,9 @@ class Names:
 
 
 class Initial(NamedTuple):
-    """Initial facts, the costs given with "=", the types given as facts, and warnings of what nothing asks for."""
+    """Initial facts, the costs given with "=", the types given as facts, and warnings of what
+    nothing asks for.
+    """
 
     facts: frozenset[Fact]
     costs: dict[Fact, float]
@@ -66,7 +68,9 @@ class Initial(NamedTuple):
 
 
 def initial_functions(init: Sequence[Any]) -> dict[str, Predicate]:
-    """The functions whose values are initial facts: PDDLStream's domains leave some undeclared."""
+    """Declare the functions whose values are initial facts: PDDLStream's domains leave some
+    undeclared.
+    """
     functions: dict[str, Predicate] = {}
     for item in init:
         head, arguments = _parts(item, "an initial fact")
@@ -77,7 +81,7 @@ def initial_functions(init: Sequence[Any]) -> dict[str, Predicate]:
 
 
 def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
-    """The initial facts of a list of tuples.
+    """Parse the initial facts of a list of tuples.
 
     Raises:
         InputError: A predicate that looks misspelt, or the wrong number of arguments.
@@ -102,7 +106,8 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
             types[name] = (*types.get(name, ()), head)
         elif head in domain.derived_predicates:
             raise InputError(
-                f"'{head}' is derived: its rules say where it holds, {item!r} cannot be an initial fact"
+                f"'{head}' is derived: its rules say where it holds, "
+                f"{item!r} cannot be an initial fact"
             )
         elif _unknown(head, domain.predicates):
             unused.setdefault(head)
@@ -117,7 +122,8 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
 
 
 def goal_formula(goal: Any, domain: Domain, names: Names) -> Formula:
-    """A goal as nested tuples: ("and", ("In", "b0", "red"), ("not", ("AtConf", conf)), ("exists", ["?p"], ...)).
+    """Parse a goal given as nested tuples: ("and", ("In", "b0", "red"), ("not", ("AtConf", conf)),
+    ("exists", ["?p"], ...)).
 
     Raises:
         InputError: An unknown predicate, the wrong number of arguments, an unbound variable.
@@ -154,7 +160,9 @@ def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) ->
 
 
 def _parameters(listed: Any, domain: Domain) -> tuple[Parameter, ...]:
-    """Variables, as one string or a list, each group optionally followed by "-" and a type."""
+    """Parse variables, as one string or a list, each group optionally followed by "-" and a
+    type.
+    """
     words = listed.split() if isinstance(listed, str) else [str(word) for word in listed]
     result: list[Parameter] = []
     waiting: list[str] = []
@@ -189,7 +197,7 @@ def _parts(item: Any, what: str) -> tuple[str, tuple[Any, ...]]:
 
 
 def _unknown(name: str, known: Mapping[str, Any]) -> bool:
-    """Whether it is none of them, nor looks like one of them misspelt."""
+    """Check that it is none of them, nor looks like one of them misspelt."""
     return name not in known and closest(name, known) is None
 
 

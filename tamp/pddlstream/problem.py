@@ -63,7 +63,8 @@ class Bound(NamedTuple):
     Attributes:
         task: With its streams.
         warnings: What looks odd.
-        uncalled: What only an optimizer would certify, which is never called: no plan is no proof then.
+        uncalled: What only an optimizer would certify, which is never called: no plan is no proof
+            then.
         names: Predicates of the task to those that the user wrote, where they differ.
     """
 
@@ -74,7 +75,7 @@ class Bound(NamedTuple):
 
 
 def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
-    """The task with its streams, and what there is to say of it.
+    """Bind the task to its streams, and collect what there is to say of it.
 
     Raises:
         InputError: Anything wrong with the texts, the map or the facts.
@@ -155,7 +156,7 @@ def _always(*inputs: Any) -> bool:
 def _tests(
     predicate: Function, domain: Domain, function: Callable[..., Any]
 ) -> tuple[BoundStream, BoundStream]:
-    """The streams that promise a decided predicate, and its complement."""
+    """Build the streams that promise a decided predicate, and its complement."""
 
     def holds(*inputs: Any, call: Any) -> bool:
         return bool(function(*inputs))
@@ -177,7 +178,7 @@ def _tests(
 
 
 def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
-    """The stream that promises that a test does not pass."""
+    """Build the stream that promises that a test does not pass."""
     (atom,) = stream.certified
     test = stream_function(stream, function)
 
@@ -208,7 +209,7 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
 
 
 def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]:
-    """Those that a domain's text calls."""
+    """Select those that a domain's text calls."""
     lower = text.lower()
     return {
         name: one
@@ -220,7 +221,9 @@ def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]
 def _check_map(
     functions: Mapping[str, Any], declared: Sequence[Stream | Function]
 ) -> Iterator[str]:
-    """A warning of each function that no stream is called, unless it is a misspelt one: that is an error."""
+    """Warn of each function that no stream is called, unless it is a misspelt one: that is an
+    error.
+    """
     for one in declared:
         if one.name not in functions:
             place = one.place
@@ -242,7 +245,9 @@ def _check_map(
 
 
 def _constants(given: Mapping[str, Any], domain: Domain) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """The domain's constants with their values, by default their names; and warnings of others."""
+    """Return the domain's constants with their values, by default their names; and warnings of
+    others.
+    """
     lower = {name.lower(): value for name, value in given.items()}
     warnings: list[str] = []
     for name in lower:
@@ -259,7 +264,9 @@ def _text(source: str | Path) -> tuple[str, Path | None]:
 
 
 def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
-    """The facts in a streams file: (name, number of arguments, where). PDDLStream's domains leave some undeclared."""
+    """Generate the facts in a streams file: (name, number of arguments, where). PDDLStream's
+    domains leave some undeclared.
+    """
     for node in nodes:
         if not isinstance(node, Group) or not node.items:
             continue
@@ -283,7 +290,7 @@ def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
 
 
 def stream_functions(nodes: Sequence[Node]) -> Iterator[tuple[str, Predicate]]:
-    """The functions that a streams file computes, with as many arguments as it says."""
+    """Generate the functions that a streams file computes, with as many arguments as it says."""
     for node in nodes:
         if not isinstance(node, Group):
             continue
@@ -297,7 +304,7 @@ def stream_functions(nodes: Sequence[Node]) -> Iterator[tuple[str, Predicate]]:
 
 
 def _lists(before: Node | None) -> bool:
-    """Whether what follows is a list of words, no condition."""
+    """Check that what follows is a list of words, no condition."""
     return isinstance(before, Symbol) and before.text in (
         ":inputs",
         ":outputs",
