@@ -16,6 +16,7 @@ from benchmarks.search import cupboard
 from tamp.symbolic.search.heuristics import relaxation
 from tamp.symbolic.search.heuristics.loops import selection as tiers
 from tamp.symbolic.search.heuristics.loops.compiled import COMPILED
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.symbolic.search.heuristics.loops.rows import CsrRows, csr_rows
 from tamp.symbolic.search.heuristics.registry import HEURISTICS
 from tamp.symbolic.search.instantiation.instantiator import instantiate
@@ -53,7 +54,7 @@ def test_all_ways_say_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> No
     for turns in ([tiers.PLAIN], [COMPILED], [tiers.PLAIN, COMPILED]):
         asked = [0]
 
-        def choose(entries: int, turns: list[tiers.Kernels] = turns, asked: list[int] = asked) -> tiers.Kernels:
+        def choose(entries: int, turns: list[Kernels] = turns, asked: list[int] = asked) -> Kernels:
             asked[0] += 1
             return turns[asked[0] // 3 % len(turns)]
 
@@ -73,7 +74,7 @@ def test_a_search_ends_alike_whichever_loops_it_runs(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("loops", [tiers.PLAIN, COMPILED], ids=["plain", "compiled"])
-def test_rows_are_turned_and_appended_to(loops: tiers.Kernels) -> None:
+def test_rows_are_turned_and_appended_to(loops: Kernels) -> None:
     rows = loops.rows([[2, 0], [], [2]])
     assert loops.transposed(rows, 4).lists() == [[0], [], [0, 2], []]
     more = loops.appended(rows, loops.integers([1, 3, 1]), loops.integers([5, 6, 7]), 5)
@@ -120,6 +121,9 @@ def test_only_what_numba_has_all_of_and_newer_than_its_source_counts_as_compiled
 def test_what_was_compiled_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside the sources, where numba puts it unless a variable or a read-only folder has it put it elsewhere."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    code = "from tamp.symbolic.search.heuristics.loops import selection; selection.load(); print(selection.compiled_before())"
+    code = (
+        "from tamp.symbolic.search.heuristics.loops import selection; "
+        "selection.load(); print(selection.compiled_before())"
+    )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "True"

@@ -9,7 +9,8 @@ since one application may do all they do.
 
 from __future__ import annotations
 
-from tamp.symbolic.search.heuristics.relaxation import MAX_RELAXED_STATES, Relaxation, RelaxedState
+from tamp.symbolic.search.heuristics.relaxation import MAX_RELAXED_STATES, Relaxation
+from tamp.symbolic.search.heuristics.relaxed_state import RelaxedState
 from tamp.symbolic.search.successors import State
 
 EXPECTED_CUTS = 10

@@ -17,7 +17,7 @@ import numpy as np
 from numba import types
 
 from tamp.symbolic.search.heuristics.loops import kernels, rows
-from tamp.symbolic.search.heuristics.loops.selection import Kernels
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.system.compilation import njit
 
 _I, _F, _N, _C = types.int64[::1], types.float64[::1], types.float64, types.int64

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.symbolic.search.heuristics.loops import kernels, rows
-from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
 
 LOAD_THRESHOLD = 2_000_000
 """Entries that plain Python goes through before the compiled loops are loaded: about as long as
@@ -30,32 +28,6 @@ CACHED = (
     (rows, ("transposed", "appended", "incremented")),
 )
 """The functions that numba keeps on disk, by module."""
-
-
-@dataclass(frozen=True, slots=True)
-class Kernels:
-    """The loops, and what makes the lists that they take."""
-
-    explore: Callable[
-        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]
-    ]
-    relaxed_plan: Callable[
-        [Reals, Integers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
-        tuple[float, Integers],
-    ]
-    landmark_cut: Callable[
-        [CsrRows, CsrRows, CsrRows, CsrRows, Reals, Integers, Integers, CsrRows, int], float
-    ]
-    transposed: Callable[[CsrRows, int], CsrRows]
-    appended: Callable[[CsrRows, Integers, Integers, int], CsrRows]
-    incremented: Callable[[Reals, Integers, Reals, int], Reals]
-    integers: Callable[[Sequence[int]], Integers]
-    reals: Callable[[Sequence[float]], Reals]
-
-    def rows(self, lists: Sequence[Sequence[int]]) -> CsrRows:
-        """CsrRows from lists."""
-        made = rows.csr_rows(lists)
-        return CsrRows(self.integers(made.starts), self.integers(made.values))
 
 
 PLAIN = Kernels(
