@@ -10,28 +10,22 @@ instantiated (Helmert, Concise finite-domain representations, 2009).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
 
 from tamp.errors import InputError
-from tamp.symbolic.pddl.structs import Action, Atom, Fact, Task
+from tamp.symbolic.pddl.structs import Action, Fact, Task
 from tamp.symbolic.search.instantiation.axioms import stratify
-from tamp.symbolic.search.instantiation.datalog import Body, Row, Rule, filler, fixpoint
-from tamp.symbolic.search.instantiation.effects import Effects, LiftedEffect, lifted_effects
-from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
+from tamp.symbolic.search.instantiation.datalog import Row, Rule, filler, fixpoint
+from tamp.symbolic.search.instantiation.effects import LiftedEffect, lifted_effects
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types
+from tamp.symbolic.search.instantiation.operator_templates import (
+    OperatorTemplate,
+    Variant,
+    action_rule,
+    effect_rules,
+)
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Operator
-
-
-@dataclass(frozen=True, slots=True)
-class _Variant:
-    """One disjunct of an action's precondition."""
-
-    action: Action
-    literals: Literals
-    effects: tuple[LiftedEffect, ...]
-    rule: Rule
 
 
 class Instantiation:
@@ -65,9 +59,7 @@ class Instantiation:
         (self._goal_literals,) = goals
         self._predicates = predicates = PredicateKinds(task, normalizer, assumed)
         self._recursive = predicates.recursive()
-        self._variants = [
-            _Variant(*variant, _action_rule(predicates, *variant)) for variant in split
-        ]
+        self._variants = [Variant(*variant, action_rule(predicates, *variant)) for variant in split]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
         self._definitions: dict[str, list[tuple[Definition, Rule]]] = {
@@ -79,7 +71,7 @@ class Instantiation:
         }
         self._rules = [variant.rule for variant in self._variants]
         self._rules += [
-            rule for variant in self._variants for rule in _effect_rules(predicates, variant)
+            rule for variant in self._variants for rule in effect_rules(predicates, variant)
         ]
         self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
         self.absences = frozenset(
@@ -121,100 +113,28 @@ class Instantiation:
             initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings
         )
 
-    def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
-        """The operators of all bindings; `made` keeps those that nothing which may come along can
-        change.
+    def _operators(self, variant: Variant, made: dict[Row, Operator]) -> list[Operator]:
+        """Instantiate the operators of all bindings.
+
+        `made` keeps those that nothing which may come along can change.
         """
-        action, rule = variant.action, variant.rule
-        rows = sorted(rule.rows)
+        rows = sorted(variant.rule.rows)
         if not rows:
             return []
-        known = {name: i for i, name in enumerate(rule.variables)}
+        template = OperatorTemplate(
+            variant, rows, self._predicates, self._negation, self._need, self._cost
+        )
 
-        def fills(atoms: Iterable[Atom]) -> list[Callable[[Row], Fact]]:
-            return [filler((atom.predicate, *atom.terms), known) for atom in atoms]
-
-        kinds = self._predicates.classify(variant.literals)
-        for atom in kinds.refuted:
-            self._negation.prepare(atom.predicate, map(filler(atom.terms, known), rows))
-        positive = fills((*kinds.positive, *kinds.derived))
-        derived = fills(kinds.derived)
-        negative = [
-            (atom.predicate, fill)
-            for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)
-        ]
-        refuted = fills(kinds.refuted)
-        named = {parameter.name for parameter in action.parameters}
-        unnamed = [
-            atom
-            for atom in self._predicates.unnamed(variant.literals)
-            if atom.terms[0] not in named
-        ]
-        static = fills(
-            [*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed]
-        )
-        arguments = filler([parameter.name for parameter in action.parameters], known)
-        relations = self._predicates.relations
-        effects = Effects(
-            variant.effects, rule.variables, rows, self._predicates, self._negation, self._need
-        )
-        cost = action.cost
-        price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
-        simple = not (kinds.negative or kinds.refuted) and all(
-            effect.simple for effect in variant.effects
-        )
-        deletes = sum(not effect.adds for effect in variant.effects)
         operators: list[Operator] = []
         for row in rows:
-            kept = made.get(row)
-            if kept is not None:
-                for fill in derived:
-                    self._need(fill(row))
-                spent = self._cost(price(row)) if price else kept.cost
-                operators.append(kept if spent == kept.cost else replace(kept, cost=spent))
+            if (kept := made.get(row)) is not None:
+                operators.append(template.renew(kept, row))
                 continue
-            before = frozenset([fill(row) for fill in positive])
-            needs = Needs()
-            for predicate, fill in negative:
-                fact = fill(row)
-                if fact[1:] in relations.rows(predicate):
-                    needs.negative.append(fact)
-            for fill in refuted:
-                needs.add(self._negation.refute(fill(row), guards=True))
-            for fill in derived:
-                self._need(fill(row))
-            if needs.positive:
-                before |= frozenset(needs.positive)
-            for fact in needs.positive:
-                self._need(fact)
-            after = frozenset(needs.negative)
-            if needs.impossible or not before.isdisjoint(after):
-                continue
-            for fact in needs.negative:
-                self._need(fact)
-            added, deleted, conditional = effects.of(row, before)
-            operators.append(
-                Operator(
-                    action.name,
-                    arguments(row),
-                    before,
-                    after,
-                    added,
-                    deleted,
-                    self._cost(price(row))
-                    if price
-                    else float(cost)
-                    if isinstance(cost, int | float)
-                    else 0.0,
-                    frozenset([fill(row) for fill in static]),
-                    LazyGuards(tuple(needs.guards), tuple(needs.blocked))
-                    if needs.blocked
-                    else tuple(needs.guards),
-                    conditional,
-                )
-            )
-            if simple and len(deleted) == deletes:
-                made[row] = operators[-1]
+            operator = template.instantiate(row)
+            if operator is not None:
+                operators.append(operator)
+                if template.is_final(operator):
+                    made[row] = operator
         return operators
 
     def _cost(self, fact: Fact) -> float:
@@ -318,51 +238,3 @@ class Instantiation:
                     Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given)
                 )
         return axioms
-
-
-def _action_rule(
-    predicates: PredicateKinds,
-    action: Action,
-    literals: Literals,
-    effects: tuple[LiftedEffect, ...],
-) -> Rule:
-    """Build the rule of an action. A parameter that neither conditions nor effects nor the cost
-    mention takes one value: others change nothing.
-    """
-    heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
-    conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
-    mentioned = {
-        term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms
-    }
-    mentioned |= {
-        term for one in conditions for left, right, _ in one.equalities for term in (left, right)
-    }
-    mentioned |= {term for effect in effects for term in effect.atom.terms}
-    mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
-    free = {name: types for name, types in literals.variables if name not in mentioned}
-    body = predicates.body(
-        replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free))
-    )
-    any_ = tuple(predicates.any_atom(name, types) for name, types in free.items())
-    return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
-
-
-def _effect_rules(predicates: PredicateKinds, variant: _Variant) -> list[Rule]:
-    """Build the rules of the conditional and universal effects that add something."""
-    rules: list[Rule] = []
-    for effect in variant.effects:
-        for condition in effect.conditions if effect.adds and not effect.simple else ():
-            before, when = variant.rule.body, predicates.body(condition)
-            body = Body(
-                tuple(dict.fromkeys((*before.positive, *when.positive))),
-                (*before.negative, *when.negative),
-                (*before.equalities, *when.equalities),
-            )
-            rules.append(
-                Rule(
-                    tuple(dict.fromkeys((*variant.literals.names, *condition.names))),
-                    body,
-                    (effect.atom,),
-                )
-            )
-    return rules
