@@ -12,6 +12,7 @@ from tamp.errors import InputError, closest
 from tamp.pddlstream.adapters import stream_function
 from tamp.pddlstream.checks import check_parts
 from tamp.pddlstream.facts import Names, goal_formula, initial_facts, initial_functions
+from tamp.pddlstream.streams_text import facts_of, stream_functions
 from tamp.stream import Rejection, Wild
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
@@ -19,9 +20,8 @@ from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.complement import complement_name, negated_tests, with_complements
 from tamp.symbolic.pddl.exogenous import compile_away
 from tamp.symbolic.pddl.files import read_pddl
-from tamp.symbolic.pddl.formulas import RESERVED
 from tamp.symbolic.pddl.lint import lint
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, warning
+from tamp.symbolic.pddl.nodes import warning
 from tamp.symbolic.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
 from tamp.symbolic.pddl.sexpr import read
 from tamp.symbolic.pddl.started import without_started
@@ -88,7 +88,7 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     ]
     undeclared: dict[str, Predicate] = {}
     for text, file in sources:
-        for name, size, _ in _heads(read(text, file)):
+        for name, size, _ in facts_of(read(text, file)):
             undeclared.setdefault(
                 name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size)))
             )
@@ -263,61 +263,10 @@ def _text(source: str | Path) -> tuple[str, Path | None]:
     return (source, None) if isinstance(source, str) else (read_pddl(source), source)
 
 
-def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
-    """Generate the facts in a streams file: (name, number of arguments, where). PDDLStream's
-    domains leave some undeclared.
-    """
-    for node in nodes:
-        if not isinstance(node, Group) or not node.items:
-            continue
-        head = node.head
-        if head == "define":
-            yield from _heads(node.items[2:])
-        elif head in (":stream", ":wild-stream", ":rule", ":predicate", ":function", ":optimizer"):
-            items = list(node.items[1:])
-            if head == ":function" and items and isinstance(items[0], Group):
-                items = items[1:]
-            after = [b for a, b in zip([None, *items], items, strict=False) if not _lists(a)]
-            yield from _heads(after)
-        elif head in (":variables", ":constraint"):
-            yield from _heads(
-                [b for a, b in zip(node.items, node.items[1:], strict=False) if not _lists(a)]
-            )
-        elif head == "and":
-            yield from _heads(node.items[1:])
-        elif head is not None and head[0] not in "?:" and head not in RESERVED:
-            yield head, len(node.items) - 1, node
-
-
-def stream_functions(nodes: Sequence[Node]) -> Iterator[tuple[str, Predicate]]:
-    """Generate the functions that a streams file computes, with as many arguments as it says."""
-    for node in nodes:
-        if not isinstance(node, Group):
-            continue
-        if node.head == "define":
-            yield from stream_functions(node.items[2:])
-        elif node.head == ":function" and len(node.items) > 1 and isinstance(node.items[1], Group):
-            head = node.items[1]
-            if head.head is not None:
-                parameters = tuple(Parameter(f"?x{i}") for i in range(len(head.items) - 1))
-                yield head.head, Predicate(head.head, parameters)
-
-
-def _lists(before: Node | None) -> bool:
-    """Check that what follows is a list of words, no condition."""
-    return isinstance(before, Symbol) and before.text in (
-        ":inputs",
-        ":outputs",
-        ":fluents",
-        ":variables",
-        ":objective",
-    )
-
-
 def _undeclared(sources: Sequence[tuple[str, Path | None]], domain: Domain) -> Iterator[str]:
     seen: set[str] = set()
     for text, file in sources:
-        for name, _, group in _heads(read(text, file)):
+        for name, _, group in facts_of(read(text, file)):
             declared = domain.predicates.get(name)
             if declared is not None and declared.place is None and name not in seen:
                 seen.add(name)

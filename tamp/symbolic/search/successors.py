@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.axiom_strata import axiom_strata
 from tamp.symbolic.search.instantiation.datalog import Row
 from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards, LazyGuards
 from tamp.symbolic.search.operators import Facts, InstantiatedTask
@@ -29,18 +29,6 @@ def bits(mask: int) -> Iterator[int]:
         low = mask & -mask
         yield low.bit_length() - 1
         mask ^= low
-
-
-@dataclass(slots=True)
-class _Stratum:
-    """The axioms of one stratum, each under the lowest bit of its body."""
-
-    watched: dict[int, list[tuple[int, int, int]]] = field(
-        default_factory=dict[int, list[tuple[int, int, int]]]
-    )
-    free: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
-    mask: int = 0
-    recursive: bool = False
 
 
 class Successors:
@@ -89,7 +77,7 @@ class Successors:
         self.goal = mask(instantiated.goal.positive)
         self.goal_absent = mask(instantiated.goal.negative)
         self.derived_mask = mask(axiom.head for axiom in instantiated.axioms)
-        self._strata = self._sort_axioms()
+        self._strata = axiom_strata(instantiated.axioms, mask)
         self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in instantiated.axioms]
         self._watched, self._always = self._watch()
         self._watch_mask = sum(1 << i for i in self._watched)
@@ -272,24 +260,6 @@ class Successors:
             mentioned.add(axiom.head)
             mentioned |= axiom.positive | axiom.negative
         return mentioned
-
-    def _sort_axioms(self) -> list[_Stratum]:
-        strata: dict[int, _Stratum] = {}
-        heads: dict[int, int] = {}
-        for axiom in self.instantiated.axioms:
-            heads[axiom.stratum] = heads.get(axiom.stratum, 0) | self.mask((axiom.head,))
-        for axiom in self.instantiated.axioms:
-            stratum = strata.setdefault(axiom.stratum, _Stratum())
-            positive, negative = self.mask(axiom.positive), self.mask(axiom.negative)
-            head = self.mask((axiom.head,))
-            if positive:
-                low = positive & -positive
-                stratum.watched.setdefault(low, []).append((positive, negative, head))
-                stratum.mask |= low
-            else:
-                stratum.free.append((negative, head))
-            stratum.recursive = stratum.recursive or bool(positive & heads[axiom.stratum])
-        return [strata[number] for number in sorted(strata)]
 
     def _watch(self) -> tuple[dict[int, list[int]], list[int]]:
         """Watch each operator under the one of its preconditions that the fewest operators
