@@ -33,15 +33,15 @@ def measure(name: str, size: int, seed: int, method: str, seconds: float) -> dic
     domain, problem = GENERATORS[name](size, Random(seed))
     task = parse_task(problem, parse_domain(domain))
     started = time.perf_counter()
-    grounded = instantiate(task)
+    instantiated = instantiate(task)
     ready = time.perf_counter()
-    result = search(grounded, search=method, heuristic=METHODS[method], deadline=Deadline(seconds))
+    result = search(instantiated, search=method, heuristic=METHODS[method], deadline=Deadline(seconds))
     spent = time.perf_counter() - ready
     if result.plan is not None:
-        trace(grounded, result.plan.operators)
+        trace(instantiated, result.plan.operators)
     return {
         "outcome": "solved" if result.plan else "" if result.reason is None else result.reason.name.lower(),
-        "operators": len(grounded.operators),
+        "operators": len(instantiated.operators),
         "cost": result.plan.cost if result.plan else float("nan"),
         "instantiate_s": ready - started,
         "search_s": spent,

@@ -124,16 +124,16 @@ def scale() -> None:
     for count in (4, 8, 12, 20):
         task, facts, objects = cupboard(count, tests=False)
         repeats = 5 if count <= 8 else 2
-        grounded = instantiate(task, facts, objects, assumed=TESTS)
+        instantiated = instantiate(task, facts, objects, assumed=TESTS)
         ready = measure(partial(instantiate, task, facts, objects, assumed=TESTS), repeats)
         for name in ("wastar", "greedy"):
             for kind, price in (("none", None), ("every fact", effort)):
-                result = search(grounded, search=name, price=price)
-                solved = measure(partial(search, grounded, search=name, price=price), repeats)
+                result = search(instantiated, search=name, price=price)
+                solved = measure(partial(search, instantiated, search=name, price=price), repeats)
                 row = {
                     "bodies": count,
-                    "operators": len(grounded.operators),
-                    "facts": len(grounded.reachable),
+                    "operators": len(instantiated.operators),
+                    "facts": len(instantiated.reachable),
                     "search": name,
                     "prices": kind,
                     "instantiate_ms": ready,

@@ -67,7 +67,7 @@ class Own:
             and answer < LIKELY
             and all(
                 fact in expected.state
-                for fact in relation.ground(dict(zip(relation.arguments, words, strict=True)), there)
+                for fact in relation.substitute(dict(zip(relation.arguments, words, strict=True)), there)
             )
         )
 

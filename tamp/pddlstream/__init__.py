@@ -1,4 +1,5 @@
-"""Problems written for PDDLStream: its domain and stream texts, a map of Python functions, facts as nested tuples.
+"""Problems written for PDDLStream: its domain and stream texts, a map of Python functions, facts as
+nested tuples.
 
 solution = solve(PDDLProblem(domain_pddl, constant_map, stream_pddl, stream_map, init, goal))
 """

@@ -14,7 +14,9 @@ NOTHING = Rejection("gave nothing")
 
 @dataclass(frozen=True)
 class WildOutput:
-    """Outputs of a stream, a list of tuples, and further facts that it found to be true: ("Near", q1, q2)."""
+    """Outputs of a stream, a list of tuples, and further facts that it found to be true: ("Near",
+    q1, q2).
+    """
 
     values: Sequence[tuple[Any, ...]] = ()
     facts: Sequence[tuple[Any, ...]] = ()
@@ -22,48 +24,50 @@ class WildOutput:
 
 @dataclass(frozen=True)
 class Adapted:
-    """A function whose kind was said: each of its calls makes an iterator over lists of output tuples."""
+    """A function whose kind was said: each of its calls makes an iterator over lists of output
+    tuples.
+    """
 
     lists: Callable[..., Iterator[Any]]
 
 
 def from_list_gen_fn(function: Callable[..., Iterable[Any]]) -> Adapted:
-    """A generator of lists of output tuples; an empty list is a failed try."""
+    """Adapt a generator of lists of output tuples; an empty list is a failed try."""
     return Adapted(lambda *args, **fluents: iter(function(*args, **fluents)))
 
 
 def from_gen_fn(function: Callable[..., Iterable[Any]]) -> Adapted:
-    """A generator of output tuples; None is a failed try."""
+    """Adapt a generator of output tuples; None is a failed try."""
     return Adapted(lambda *args, **fluents: map(_list, function(*args, **fluents)))
 
 
 def from_list_fn(function: Callable[..., Any]) -> Adapted:
-    """A function that returns the list of all output tuples."""
+    """Adapt a function that returns the list of all output tuples."""
     return Adapted(lambda *args, **fluents: iter([function(*args, **fluents)]))
 
 
 def from_fn(function: Callable[..., Any]) -> Adapted:
-    """A function that returns one output tuple, or None."""
+    """Adapt a function that returns one output tuple, or None."""
     return Adapted(lambda *args, **fluents: iter([_list(function(*args, **fluents))]))
 
 
 def from_test(test: Callable[..., Any]) -> Adapted:
-    """A function that says whether something holds."""
+    """Adapt a function that says whether something holds."""
     return Adapted(lambda *args, **fluents: iter([[()] if test(*args, **fluents) else []]))
 
 
 def from_gen(generator: Iterable[Any]) -> Adapted:
-    """A sequence of output tuples, the same for all inputs."""
+    """Adapt a sequence of output tuples, the same for all inputs."""
     return Adapted(lambda *args, **fluents: map(_list, generator))
 
 
 def from_constant(outputs: tuple[Any, ...]) -> Adapted:
-    """One output tuple, the same for all inputs."""
+    """Adapt one output tuple, the same for all inputs."""
     return from_fn(lambda *args, **fluents: outputs)
 
 
 def from_sampler(sampler: Callable[..., Any], max_attempts: float = float("inf")) -> Adapted:
-    """A function that is called again and again, each time for one output tuple or None."""
+    """Adapt a function that is called again and again, each time for one output tuple or None."""
 
     def tries(*args: Any, **fluents: Any) -> Iterator[Any]:
         attempts = 0
@@ -75,17 +79,19 @@ def from_sampler(sampler: Callable[..., Any], max_attempts: float = float("inf")
 
 
 def empty_gen() -> Adapted:
-    """Nothing, ever."""
+    """Give nothing, ever."""
     return Adapted(lambda *args, **fluents: iter(()))
 
 
 def stream_function(stream: Stream, function: Any) -> Callable[..., Any]:
-    """What the algorithms call for a stream: one yield a try, a bool for a test.
+    """Build what the algorithms call for a stream: one yield a try, a bool for a test.
 
     Args:
-        stream: Its declaration; with `:fluents` the function is given the state's facts as `fluents`.
-        function: From one of the adapters; or any function, then what it returns says what it is: an iterator's items
-            and a returned list are lists of output tuples or one tuple, a tuple is one output, a bool a test's answer.
+        stream: Its declaration; with `:fluents` the function is given the state's facts as
+            `fluents`.
+        function: From one of the adapters; or any function, then what it returns says what it is:
+            an iterator's items and a returned list are lists of output tuples or one tuple, a tuple
+            is one output, a bool a test's answer.
     """
 
     def tries(*inputs: Any, call: Call) -> Iterator[Any]:
@@ -114,7 +120,7 @@ def _list(outputs: Any) -> Any:
 
 
 def _items(result: Any) -> Iterator[Any]:
-    """The tries of a function whose kind was not said."""
+    """Return the tries of a function whose kind was not said."""
     if type(result).__name__ in ("bool", "bool_"):  # numpy's too
         return iter([[()] if result else []])
     if isinstance(result, Iterator):
@@ -125,7 +131,7 @@ def _items(result: Any) -> Iterator[Any]:
 
 
 def _tries(stream: Stream, item: Any) -> Iterator[Any]:
-    """One list of output tuples as one try each; facts besides go with the first."""
+    """Generate one list of output tuples as one try each; facts besides go with the first."""
     facts: Sequence[tuple[Any, ...]] = ()
     if isinstance(item, WildOutput):
         item, facts = item.values, item.facts

@@ -8,7 +8,19 @@ from typing import Any, NamedTuple
 
 from tamp.errors import InputError, closest
 from tamp.symbolic.algorithms.bound_stream import value_key
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter, Predicate
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Fact,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+    Predicate,
+)
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
@@ -26,11 +38,15 @@ class Names:
         self._names = {value_key(value): name for name, value in constants.items()}
 
     def of(self, value: Any) -> str:
-        """The value's name; the same one for equal values."""
+        """Return the value's name; the same one for equal values."""
         key = value_key(value)
         name = self._names.get(key)
         if name is None:
-            name = value if isinstance(value, str) and _WORD.fullmatch(value) and value not in self.values else ""
+            name = (
+                value
+                if isinstance(value, str) and _WORD.fullmatch(value) and value not in self.values
+                else ""
+            )
             number = len(self.values)
             while not name or name in self.values:
                 number += 1
@@ -41,7 +57,9 @@ class Names:
 
 
 class Initial(NamedTuple):
-    """Initial facts, the costs given with "=", the types given as facts, and warnings of what nothing asks for."""
+    """Initial facts, the costs given with "=", the types given as facts, and warnings of what
+    nothing asks for.
+    """
 
     facts: frozenset[Fact]
     costs: dict[Fact, float]
@@ -50,7 +68,9 @@ class Initial(NamedTuple):
 
 
 def initial_functions(init: Sequence[Any]) -> dict[str, Predicate]:
-    """The functions whose values are initial facts: PDDLStream's domains leave some undeclared."""
+    """Declare the functions whose values are initial facts: PDDLStream's domains leave some
+    undeclared.
+    """
     functions: dict[str, Predicate] = {}
     for item in init:
         head, arguments = _parts(item, "an initial fact")
@@ -61,7 +81,7 @@ def initial_functions(init: Sequence[Any]) -> dict[str, Predicate]:
 
 
 def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
-    """The initial facts of a list of tuples.
+    """Parse the initial facts of a list of tuples.
 
     Raises:
         InputError: A predicate that looks misspelt, or the wrong number of arguments.
@@ -85,20 +105,25 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
             name = names.of(arguments[0])
             types[name] = (*types.get(name, ()), head)
         elif head in domain.derived_predicates:
-            raise InputError(f"'{head}' is derived: its rules say where it holds, {item!r} cannot be an initial fact")
+            raise InputError(
+                f"'{head}' is derived: its rules say where it holds, "
+                f"{item!r} cannot be an initial fact"
+            )
         elif _unknown(head, domain.predicates):
             unused.setdefault(head)
         else:
             _check(head, len(arguments), domain, domain.predicates, "predicate", item)
             facts.add((head, *(names.of(argument) for argument in arguments)))
     warnings = tuple(
-        f"neither the domain nor a stream knows '{name}', of which there are initial facts" for name in unused
+        f"neither the domain nor a stream knows '{name}', of which there are initial facts"
+        for name in unused
     )
     return Initial(frozenset(facts), costs, types, warnings)
 
 
 def goal_formula(goal: Any, domain: Domain, names: Names) -> Formula:
-    """A goal as nested tuples: ("and", ("In", "b0", "red"), ("not", ("AtConf", conf)), ("exists", ["?p"], ...)).
+    """Parse a goal given as nested tuples: ("and", ("In", "b0", "red"), ("not", ("AtConf", conf)),
+    ("exists", ["?p"], ...)).
 
     Raises:
         InputError: An unknown predicate, the wrong number of arguments, an unbound variable.
@@ -114,7 +139,9 @@ def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) ->
         return Atom(head, tuple(_term(term, names, bound) for term in rest))
     wanted = {"not": 1, "imply": 2, "exists": 2, "forall": 2}.get(head)
     if wanted is not None and len(rest) != wanted:
-        raise InputError(f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}")
+        raise InputError(
+            f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}"
+        )
     if head in ("exists", "forall"):
         parameters = _parameters(rest[0], domain)
         inner = (*bound, *(parameter.name for parameter in parameters))
@@ -133,7 +160,9 @@ def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) ->
 
 
 def _parameters(listed: Any, domain: Domain) -> tuple[Parameter, ...]:
-    """Variables, as one string or a list, each group optionally followed by "-" and a type."""
+    """Parse variables, as one string or a list, each group optionally followed by "-" and a
+    type.
+    """
     words = listed.split() if isinstance(listed, str) else [str(word) for word in listed]
     result: list[Parameter] = []
     waiting: list[str] = []
@@ -168,13 +197,19 @@ def _parts(item: Any, what: str) -> tuple[str, tuple[Any, ...]]:
 
 
 def _unknown(name: str, known: Mapping[str, Any]) -> bool:
-    """Whether it is none of them, nor looks like one of them misspelt."""
+    """Check that it is none of them, nor looks like one of them misspelt."""
     return name not in known and closest(name, known) is None
 
 
-def _check(name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any) -> None:
+def _check(
+    name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any
+) -> None:
     if name not in known:
-        raise InputError(f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known)
+        raise InputError(
+            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known
+        )
     wanted = len(known[name].parameters)
     if wanted != count:
-        raise InputError(f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}")
+        raise InputError(
+            f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}"
+        )

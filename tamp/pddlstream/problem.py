@@ -12,20 +12,29 @@ from tamp.errors import InputError, closest
 from tamp.pddlstream.adapters import stream_function
 from tamp.pddlstream.checks import check_parts
 from tamp.pddlstream.facts import Names, goal_formula, initial_facts, initial_functions
+from tamp.pddlstream.streams_text import facts_of, stream_functions
 from tamp.stream import Rejection, Wild
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.complement import complement_name, negated_tests, with_complements
-from tamp.symbolic.pddl.exogenous import without_waiting
+from tamp.symbolic.pddl.exogenous import compile_away
 from tamp.symbolic.pddl.files import read_pddl
-from tamp.symbolic.pddl.formulas import RESERVED
 from tamp.symbolic.pddl.lint import lint
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, warning
+from tamp.symbolic.pddl.nodes import warning
 from tamp.symbolic.pddl.parser import Undeclared, output_types, parse_domain, parse_streams
 from tamp.symbolic.pddl.sexpr import read
 from tamp.symbolic.pddl.started import without_started
-from tamp.symbolic.pddl.structs import Atom, Domain, Function, Parameter, Predicate, Stream, StreamFile, Task
+from tamp.symbolic.pddl.structs import (
+    Atom,
+    Domain,
+    Function,
+    Parameter,
+    Predicate,
+    Stream,
+    StreamFile,
+    Task,
+)
 
 
 class PDDLProblem(NamedTuple):
@@ -54,7 +63,8 @@ class Bound(NamedTuple):
     Attributes:
         task: With its streams.
         warnings: What looks odd.
-        uncalled: What only an optimizer would certify, which is never called: no plan is no proof then.
+        uncalled: What only an optimizer would certify, which is never called: no plan is no proof
+            then.
         names: Predicates of the task to those that the user wrote, where they differ.
     """
 
@@ -65,7 +75,7 @@ class Bound(NamedTuple):
 
 
 def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
-    """The task with its streams, and what there is to say of it.
+    """Bind the task to its streams, and collect what there is to say of it.
 
     Raises:
         InputError: Anything wrong with the texts, the map or the facts.
@@ -73,14 +83,20 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     check_parts(problem)
     domain_text, domain_file = _text(problem.domain_pddl)
     listed = problem.stream_pddl
-    sources = [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
+    sources = [
+        _text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())
+    ]
     undeclared: dict[str, Predicate] = {}
     for text, file in sources:
-        for name, size, _ in _heads(read(text, file)):
-            undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
+        for name, size, _ in facts_of(read(text, file)):
+            undeclared.setdefault(
+                name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size)))
+            )
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     computed = _used(initial_functions(problem.init), domain_text)
-    declared = {name: one for text, file in sources for name, one in stream_functions(read(text, file))}
+    declared = {
+        name: one for text, file in sources for name, one in stream_functions(read(text, file))
+    }
     domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed, declared))
     files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
     streams = _joined(files)
@@ -89,24 +105,40 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     facts, costs, types, unused = initial_facts(problem.init, domain, names)
     goal = goal_formula(problem.goal, domain, names)
     warnings = [*_undeclared(sources, domain), *streams.notes, *lint(domain, streams, goal, facts)]
-    used = {"streams": [*streams.streams], "functions": [*streams.functions], "predicates": [*streams.predicates]}
-    warnings += [*unused, *spare, *_check_map(functions, [one for group in used.values() for one in group])]
+    used = {
+        "streams": [*streams.streams],
+        "functions": [*streams.functions],
+        "predicates": [*streams.predicates],
+    }
+    warnings += [
+        *unused,
+        *spare,
+        *_check_map(functions, [one for group in used.values() for one in group]),
+    ]
     started = without_started(domain, streams, goal)
-    waiting = without_waiting(started.domain, started.streams, started.goal, facts)
+    waiting = compile_away(started.domain, started.streams, started.goal, facts)
     domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
     bound += [_bound(rule, domain, _always) for rule in streams.rules]
-    bound += [test for predicate in decided.values() for test in _tests(predicate, domain, functions[predicate.name])]
+    bound += [
+        test
+        for predicate in decided.values()
+        for test in _tests(predicate, domain, functions[predicate.name])
+    ]
     negated = negated_tests(streams.streams, domain, goal)
     bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
     rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
     if unit_costs:
         actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
         rewritten = replace(rewritten, actions=actions)
-    objects = {name: types.get(name, ("object",)) for name in names.values if name not in domain.constants}
+    objects = {
+        name: types.get(name, ("object",)) for name in names.values if name not in domain.constants
+    }
     task = Task(domain.name, rewritten, objects, facts, goal, costs)
-    computed = tuple(BoundFunction(function, functions[function.name]) for function in streams.functions)
+    computed = tuple(
+        BoundFunction(function, functions[function.name]) for function in streams.functions
+    )
     stream_task = StreamTask(task, tuple(bound), names.values, computed, by_value=True)
     return Bound(stream_task, tuple(warnings), streams.uncalled, started.names)
 
@@ -121,8 +153,10 @@ def _always(*inputs: Any) -> bool:
     return True
 
 
-def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) -> tuple[BoundStream, BoundStream]:
-    """The streams that promise a decided predicate, and its complement."""
+def _tests(
+    predicate: Function, domain: Domain, function: Callable[..., Any]
+) -> tuple[BoundStream, BoundStream]:
+    """Build the streams that promise a decided predicate, and its complement."""
 
     def holds(*inputs: Any, call: Any) -> bool:
         return bool(function(*inputs))
@@ -131,15 +165,20 @@ def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) ->
         return Rejection(f"{predicate.name} holds") if function(*inputs) else True
 
     made: list[BoundStream] = []
-    for name, test in ((predicate.name, holds), (complement_name(predicate.name, domain), does_not_hold)):
+    for name, test in (
+        (predicate.name, holds),
+        (complement_name(predicate.name, domain), does_not_hold),
+    ):
         certified = (Atom(name, predicate.inputs, predicate.place),)
-        stream = Stream(f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place)
+        stream = Stream(
+            f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place
+        )
         made.append(BoundStream(stream, test, (), may_advise=False))
     return made[0], made[1]
 
 
 def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
-    """The stream that promises that a test does not pass."""
+    """Build the stream that promises that a test does not pass."""
     (atom,) = stream.certified
     test = stream_function(stream, function)
 
@@ -151,7 +190,9 @@ def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
 
     name = complement_name(atom.predicate, domain)
     certified = (Atom(name, atom.terms, atom.place),)
-    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False)
+    return BoundStream(
+        replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False
+    )
 
 
 def _joined(files: Sequence[StreamFile]) -> StreamFile:
@@ -168,13 +209,21 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
 
 
 def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]:
-    """Those that a domain's text calls."""
+    """Select those that a domain's text calls."""
     lower = text.lower()
-    return {name: one for name, one in functions.items() if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)}
+    return {
+        name: one
+        for name, one in functions.items()
+        if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)
+    }
 
 
-def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> Iterator[str]:
-    """A warning of each function that no stream is called, unless it is a misspelt one: that is an error."""
+def _check_map(
+    functions: Mapping[str, Any], declared: Sequence[Stream | Function]
+) -> Iterator[str]:
+    """Warn of each function that no stream is called, unless it is a misspelt one: that is an
+    error.
+    """
     for one in declared:
         if one.name not in functions:
             place = one.place
@@ -196,7 +245,9 @@ def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Functio
 
 
 def _constants(given: Mapping[str, Any], domain: Domain) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """The domain's constants with their values, by default their names; and warnings of others."""
+    """Return the domain's constants with their values, by default their names; and warnings of
+    others.
+    """
     lower = {name.lower(): value for name, value in given.items()}
     warnings: list[str] = []
     for name in lower:
@@ -212,51 +263,10 @@ def _text(source: str | Path) -> tuple[str, Path | None]:
     return (source, None) if isinstance(source, str) else (read_pddl(source), source)
 
 
-def _heads(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
-    """The facts in a streams file: (name, number of arguments, where). PDDLStream's domains leave some undeclared."""
-    for node in nodes:
-        if not isinstance(node, Group) or not node.items:
-            continue
-        head = node.head
-        if head == "define":
-            yield from _heads(node.items[2:])
-        elif head in (":stream", ":wild-stream", ":rule", ":predicate", ":function", ":optimizer"):
-            items = list(node.items[1:])
-            if head == ":function" and items and isinstance(items[0], Group):
-                items = items[1:]
-            after = [b for a, b in zip([None, *items], items, strict=False) if not _lists(a)]
-            yield from _heads(after)
-        elif head in (":variables", ":constraint"):
-            yield from _heads([b for a, b in zip(node.items, node.items[1:], strict=False) if not _lists(a)])
-        elif head == "and":
-            yield from _heads(node.items[1:])
-        elif head is not None and head[0] not in "?:" and head not in RESERVED:
-            yield head, len(node.items) - 1, node
-
-
-def stream_functions(nodes: Sequence[Node]) -> Iterator[tuple[str, Predicate]]:
-    """The functions that a streams file computes, with as many arguments as it says."""
-    for node in nodes:
-        if not isinstance(node, Group):
-            continue
-        if node.head == "define":
-            yield from stream_functions(node.items[2:])
-        elif node.head == ":function" and len(node.items) > 1 and isinstance(node.items[1], Group):
-            head = node.items[1]
-            if head.head is not None:
-                parameters = tuple(Parameter(f"?x{i}") for i in range(len(head.items) - 1))
-                yield head.head, Predicate(head.head, parameters)
-
-
-def _lists(before: Node | None) -> bool:
-    """Whether what follows is a list of words, no condition."""
-    return isinstance(before, Symbol) and before.text in (":inputs", ":outputs", ":fluents", ":variables", ":objective")
-
-
 def _undeclared(sources: Sequence[tuple[str, Path | None]], domain: Domain) -> Iterator[str]:
     seen: set[str] = set()
     for text, file in sources:
-        for name, _, group in _heads(read(text, file)):
+        for name, _, group in facts_of(read(text, file)):
             declared = domain.predicates.get(name)
             if declared is not None and declared.place is None and name not in seen:
                 seen.add(name)

@@ -1,4 +1,4 @@
-"""Planning a problem that was written for PDDLStream."""
+"""Planning for a problem that was written for PDDLStream."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ from tamp.system.interrupts import Alarm
 load_compiled_loops()
 
 CLOSER_LOOK = 500
-"""Draws after which a plan that no stream promises is given up, when none of them brought facts besides its outputs."""
+"""Draws after which a plan that no stream promises is given up, when none of them brought facts
+besides its outputs.
+"""
 
 
 class Action(NamedTuple):
@@ -41,7 +43,8 @@ class Solution:
         outcome: How it ended.
         plan: The actions, or None.
         cost: Of the plan; infinite without one.
-        certificate: What streams certified and the plan rests on, facts with values: ("Kin", "b0", conf, pose).
+        certificate: What streams certified and the plan rests on, facts with values: ("Kin", "b0",
+            conf, pose).
         explanation: Why there is no plan, a line a cause.
         warnings: What looks odd in the problem, and stream functions that failed.
         statistics: By stream.
@@ -60,7 +63,7 @@ class Solution:
 
     @property
     def solved(self) -> bool:
-        """Whether there is a plan."""
+        """Tell that there is a plan."""
         return self.outcome is Outcome.SOLVED
 
     def __iter__(self) -> Iterator[Any]:
@@ -75,14 +78,15 @@ def solve(
     max_time: float = 30.0,
     seed: int = 0,
 ) -> Solution:
-    """Plan.
+    """Plan with streams, as PDDLStream's `solve` does.
 
     Args:
         problem: The six parts of a problem, see `PDDLProblem`.
         algorithm: "adaptive" or "incremental".
         unit_costs: Whether every action costs one, whatever the domain says.
         max_time: Seconds.
-        seed: Of the order in which the planner tries things; the stream functions' randomness is their own.
+        seed: Of the order in which the planner tries things; the stream functions' randomness is
+            their own.
 
     Raises:
         InputError: Anything wrong with the problem or the names.
@@ -93,12 +97,15 @@ def solve(
         raise InputError(f"the time must be positive, not {max_time:g}")
     parts = cast(tuple[Any, ...], problem)
     if not isinstance(cast(Any, problem), tuple | list) or len(parts) != len(PDDLProblem._fields):
-        what = f"a problem is a tuple of {len(PDDLProblem._fields)} parts: {', '.join(PDDLProblem._fields)}"
+        names_of_parts = ", ".join(PDDLProblem._fields)
+        what = f"a problem is a tuple of {len(PDDLProblem._fields)} parts: {names_of_parts}"
         raise InputError(what, remedy="See PDDLProblem")
     task, warnings, uncalled, names = bind(PDDLProblem(*parts), unit_costs=unit_costs)
     deadline = Deadline(max_time)
     try:
-        result = Alarm(deadline, strangers=STRANGERS).run(lambda: _run(task, algorithm, seed, deadline))
+        result = Alarm(deadline, strangers=STRANGERS).run(
+            lambda: _run(task, algorithm, seed, deadline)
+        )
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
@@ -108,12 +115,18 @@ def solve(
     if uncalled and not solved:  # an optimizer might have given what is missing
         outcome = Outcome.EXHAUSTED if outcome is Outcome.INFEASIBLE else outcome
         explanation = (*explanation, *uncalled)
-    plan = [Action(action.name, tuple(values[word] for word in action.arguments)) for action in result.actions]
+    plan = [
+        Action(action.name, tuple(values[word] for word in action.arguments))
+        for action in result.actions
+    ]
     return Solution(
         outcome,
         plan if solved else None,
         sum(action.cost for action in result.actions) if solved else float("inf"),
-        tuple((names.get(fact[0], fact[0]), *(values[word] for word in fact[1:])) for fact in result.certified),
+        tuple(
+            (names.get(fact[0], fact[0]), *(values[word] for word in fact[1:]))
+            for fact in result.certified
+        ),
         explanation,
         (*warnings, *result.warnings),
         result.statistics,
@@ -132,19 +145,23 @@ def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Res
     result = ALGORITHMS[algorithm](task, make_rng, deadline, _silent)
     if result.outcome not in (Outcome.INFEASIBLE, Outcome.EXHAUSTED) or not task.streams:
         return result
-    # Two things no stream promises: facts besides its outputs, and an output that equals a value of the goal.
+    # Two things no stream promises: facts besides its outputs, and an output that equals a value of
+    # the goal.
     second = Incremental(task, make_rng, deadline, _silent, pruned=False)
     looked = second.solve(CLOSER_LOOK)
     if looked.outcome is Outcome.EXHAUSTED and second.binder.units < CLOSER_LOOK:
-        return looked  # not for want of draws: there are plans, but nothing proves that none of them holds
-    open_end = bool(second.streams.wild) or not all(isinstance(value, str) for value in _goal_values(task))
+        # Not for want of draws: there are plans, but nothing proves that none of them holds.
+        return looked
+    open_end = bool(second.streams.wild) or not all(
+        isinstance(value, str) for value in _goal_values(task)
+    )
     if looked.outcome is Outcome.EXHAUSTED and open_end:
         looked = second.solve()
     return looked if looked.outcome is Outcome.SOLVED or open_end else result
 
 
 def _goal_values(task: StreamTask) -> list[Any]:
-    """The values that the goal names."""
+    """Return the values that the goal names."""
     stack: list[Formula] = [task.task.goal]
     found: list[Any] = []
     while stack:

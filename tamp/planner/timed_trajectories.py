@@ -12,7 +12,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.motion.timing import time_path
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp, Grip, Motion, Path
-from tamp.symbolic.algorithms.result import GroundAction
+from tamp.symbolic.algorithms.result import PlanAction
 
 GRIP_TIME = 0.5
 """Seconds that the fingers take to open or close, at least."""
@@ -58,7 +58,7 @@ Timed = dict[tuple[object, ...], tuple[Path, Segment]]
 
 
 def trajectories(
-    context: Context, actions: Sequence[GroundAction], values: dict[str, object], known: Timed | None = None
+    context: Context, actions: Sequence[PlanAction], values: dict[str, object], known: Timed | None = None
 ) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 

@@ -68,7 +68,7 @@ def observe(
             unanswered[words] = str(error)
             continue
         if not math.isnan(answers[words]):
-            (holds if answers[words] >= LIKELY else fails).update(relation.ground(bound, at))
+            (holds if answers[words] >= LIKELY else fails).update(relation.substitute(bound, at))
     return Observation(frozenset(holds), frozenset(fails), unanswered, answers)
 
 

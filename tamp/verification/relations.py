@@ -79,7 +79,7 @@ class Relations:
             bodies = [bound[variable] for variable in relation.bodies]
             for chosen in product(*(poses[body] for body in bodies)):
                 where = dict(zip(bodies, chosen, strict=True))
-                facts = relation.ground(bound, where)
+                facts = relation.substitute(bound, where)
                 words = [names[bound[variable]] for variable in relation.arguments]
                 if all(at.get(body) == pose for body, pose in where.items()):
                     answer = self._ask(relation, classifier, scene, words)

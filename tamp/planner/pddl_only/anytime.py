@@ -1,4 +1,6 @@
-"""A symbolic problem better and better: greedy first, then weighted A* with less weight, then A* for the proof."""
+"""Anytime search for a symbolic problem: greedy first, then weighted A* with less weight, then
+A* for the proof.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,13 @@ from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
 LADDER = (
-    ("wastar", "ff+landmarks", 5.0), ("wastar", "ff+landmarks", 2.0), ("wastar", "ff", 1.0), ("astar", "lmcut", 1.0),
-)  # fmt: skip
-"""Search, heuristic and weight, one after the other; the last one proves that nothing is cheaper."""
+    ("wastar", "ff+landmarks", 5.0),
+    ("wastar", "ff+landmarks", 2.0),
+    ("wastar", "ff", 1.0),
+    ("astar", "lmcut", 1.0),
+)
+"""Search, heuristic and weight, one after the other; the last one proves that nothing is cheaper.
+"""
 
 SHARE = 0.25
 """The part of the remaining time that a search before the last one gets."""
@@ -28,7 +34,8 @@ SHARE = 0.25
 def optimize_symbolic(
     problem: SymbolicProblem, *, max_time: float, improved: Callable[[SymbolicSolution], None]
 ) -> SymbolicSolution:
-    """Plan greedily, then look for cheaper plans until one is proven to be the cheapest, or the time is up.
+    """Plan greedily, then look for cheaper plans until one is proven to be the cheapest, or the
+    time is up.
 
     Args:
         problem: From `load_symbolic`.
@@ -46,8 +53,8 @@ def optimize_symbolic(
 
     def improve() -> None:
         nonlocal best
-        grounded = instantiate(problem.task)
-        start = search(grounded, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
+        instantiated = instantiate(problem.task)
+        start = search(instantiated, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
         best = replace(best, bound=min(start.bound, best.cost))
         improved(best)
         for name, heuristic, weight in LADDER:
@@ -56,18 +63,29 @@ def optimize_symbolic(
             while best.bound < best.cost:
                 started = time.perf_counter()
                 found = search(
-                    grounded, search=name, heuristic=heuristic, weight=weight, deadline=within, below=best.cost
-                )  # fmt: skip
-                best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
+                    instantiated,
+                    search=name,
+                    heuristic=heuristic,
+                    weight=weight,
+                    deadline=within,
+                    below=best.cost,
+                )
+                best = _counted(
+                    best, found.expanded, found.evaluated, time.perf_counter() - started
+                )
                 if refutation(problem.task, found.plan) is not None:
                     best = replace(best, refuted=best.refuted + 1)
                     break
-                if last or found.reason is Reason.UNSOLVABLE:  # there is none: the bound is the cost
+                if (
+                    last or found.reason is Reason.UNSOLVABLE
+                ):  # there is none: the bound is the cost
                     proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
                     bound = best.cost if found.plan is None and proven else found.bound
                     best = replace(best, bound=max(best.bound, min(bound, best.cost)))
                 if found.plan is not None:
-                    best = _better(best, found.plan, name, heuristic, deadline.elapsed(), optimal=last)
+                    best = _better(
+                        best, found.plan, name, heuristic, deadline.elapsed(), optimal=last
+                    )
                     improved(best)
                 if found.plan is None:
                     break
@@ -78,15 +96,26 @@ def optimize_symbolic(
     return replace(best, optimal=optimal, seconds={**best.seconds, "total": deadline.elapsed()})
 
 
-def _counted(best: SymbolicSolution, expanded: int, evaluated: int, seconds: float) -> SymbolicSolution:
+def _counted(
+    best: SymbolicSolution, expanded: int, evaluated: int, seconds: float
+) -> SymbolicSolution:
     spent = {**best.seconds, "search": best.seconds["search"] + seconds}
-    return replace(best, expanded=best.expanded + expanded, evaluated=best.evaluated + evaluated, seconds=spent)
+    return replace(
+        best, expanded=best.expanded + expanded, evaluated=best.evaluated + evaluated, seconds=spent
+    )
 
 
 def _better(
-    best: SymbolicSolution, plan: Plan, search: str, heuristic: str, elapsed: float, *, optimal: bool
+    best: SymbolicSolution,
+    plan: Plan,
+    search: str,
+    heuristic: str,
+    elapsed: float,
+    *,
+    optimal: bool,
 ) -> SymbolicSolution:
-    found = replace(best, outcome=Outcome.SOLVED, plan=plan.operators, search=search, heuristic=heuristic)
-    return replace(
-        found, history=(*best.history, (elapsed, found.cost)), bound=found.cost if optimal else best.bound
-    )  # fmt: skip
+    found = replace(
+        best, outcome=Outcome.SOLVED, plan=plan.operators, search=search, heuristic=heuristic
+    )
+    history = (*best.history, (elapsed, found.cost))
+    return replace(found, history=history, bound=found.cost if optimal else best.bound)

@@ -1,4 +1,4 @@
-"""A symbolic problem by several searches at a time, each in a process of its own."""
+"""A portfolio of searches for a symbolic problem, each in a process of its own."""
 
 from __future__ import annotations
 
@@ -16,8 +16,12 @@ from tamp.system.deadline import Deadline
 from tamp.system.race import Tell, race
 
 ANY = (
-    ("greedy", "ff+landmarks"), ("wastar", "ff+landmarks"), ("eager", "ff"), ("greedy", "hadd"), ("wastar", "hadd"),
-)  # fmt: skip
+    ("greedy", "ff+landmarks"),
+    ("wastar", "ff+landmarks"),
+    ("eager", "ff"),
+    ("greedy", "hadd"),
+    ("wastar", "hadd"),
+)
 """Searches that differ in what they find easy."""
 
 OPTIMAL = (("astar", "lmcut"), ("astar", "hmax"), ("astar", "blind"))
@@ -25,20 +29,26 @@ OPTIMAL = (("astar", "lmcut"), ("astar", "hmax"), ("astar", "blind"))
 
 
 def portfolio(search: str | None, heuristic: str | None, jobs: int) -> list[tuple[str, str]]:
-    """The search that was asked for, and up to `jobs - 1` others that promise as much."""
+    """Return the search that was asked for, and up to `jobs - 1` others that promise as much."""
     first = choose(search, heuristic)
     optimal = first[0] == "astar" and ADMISSIBLE.issuperset(first[1].split("+"))
     return list(dict.fromkeys((first, *(OPTIMAL if optimal else ANY))))[:jobs]
 
 
 def solve_symbolic_parallel(
-    problem: SymbolicProblem, *, jobs: int, search: str | None, heuristic: str | None, max_time: float
+    problem: SymbolicProblem,
+    *,
+    jobs: int,
+    search: str | None,
+    heuristic: str | None,
+    max_time: float,
 ) -> SymbolicSolution:
     """Plan by several searches; the first plan, or proof that there is none, counts.
 
     Args:
         problem: From `load_symbolic`.
-        jobs: Most processes at a time; there are only as many as there are different searches for the purpose.
+        jobs: Most processes at a time; there are only as many as there are different searches for
+            the purpose.
         search: Of the first one, as for `solve_symbolic`; if it is optimal, so are the others.
         heuristic: Of the first one.
         max_time: Seconds.
@@ -54,9 +64,15 @@ def solve_symbolic_parallel(
 
     def member(search: str, heuristic: str) -> Callable[[Tell], dict[str, Any]]:
         def run(tell: Tell) -> dict[str, Any]:
-            solution = solve_symbolic(problem, search=search, heuristic=heuristic, max_time=deadline.left())
+            solution = solve_symbolic(
+                problem, search=search, heuristic=heuristic, max_time=deadline.left()
+            )
             solution = replace(solution, plan=tuple(map(_bare, solution.plan)))
-            return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+            return {
+                part.name: getattr(solution, part.name)
+                for part in fields(solution)
+                if part.name != "problem"
+            }
 
         return run
 
@@ -74,5 +90,5 @@ def solve_symbolic_parallel(
 
 
 def _bare(operator: Operator) -> Operator:
-    """What of an operator a report reads."""
+    """Keep of an operator what a report reads."""
     return Operator(operator.name, operator.arguments, NONE, NONE, NONE, NONE, operator.cost)

@@ -30,7 +30,7 @@ class SymbolicProblem:
 
     @property
     def name(self) -> str:
-        """As in the problem's file."""
+        """Return the name in the problem's file."""
         return self.task.name
 
 
@@ -47,6 +47,5 @@ def load_symbolic(domain: str | Path, problem: str | Path) -> SymbolicProblem:
     domain_file, problem_file = find_domain(domain), Path(problem)
     parsed = parse_domain(read_pddl(domain_file), domain_file)
     task = parse_task(read_pddl(problem_file), parsed, problem_file)
-    return SymbolicProblem(
-        task, domain_file.resolve(), problem_file.resolve(), (*task.notes, *lint(parsed, None, task.goal, task.initial))
-    )  # fmt: skip
+    warnings = (*task.notes, *lint(parsed, None, task.goal, task.initial))
+    return SymbolicProblem(task, domain_file.resolve(), problem_file.resolve(), warnings)

@@ -18,24 +18,28 @@ from tamp.system.outputs import write_whole
 
 
 def headline(problem: SymbolicProblem) -> str:
-    """One line about the problem."""
+    """Word one line about the problem."""
     task = problem.task
     goals = len(task.goal.parts) if isinstance(task.goal, And) else 1
     objects = _count(len(task.objects), "object")
-    return f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    return (
+        f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    )
 
 
 def summary(solution: SymbolicSolution) -> str:
-    """What the command line prints when planning has ended."""
+    """Word what the command line prints when planning has ended."""
     lines = [f"warning: {text}" for text in solution.problem.warnings]
     total = solution.seconds.get("total", 0.0)
     if solution.solved:
         lines += [f"warning: {line}" for line in solution.explanation]
         optimal = " (optimal)" if solution.optimal else ""
         lines += [
-            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, cost {solution.cost:g}{optimal}", "",
-            *(f"  {number:2d}  {operator}" for number, operator in enumerate(solution.plan, start=1)),
-        ]  # fmt: skip
+            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, "
+            f"cost {solution.cost:g}{optimal}",
+            "",
+            *(f"  {number:2d}  {operator}" for number, operator in enumerate(solution.plan, 1)),
+        ]
         if not solution.plan:
             lines.append("  the goal holds at the start")
     elif solution.outcome is Outcome.TIMEOUT:
@@ -46,21 +50,23 @@ def summary(solution: SymbolicSolution) -> str:
     facts = f"{_count(solution.operators, 'operator')} and {_count(solution.facts, 'fact')}"
     lines += [
         "",
-        f"  search   {solution.search} with {solution.heuristic} · {_count(solution.expanded, 'state')} expanded, "
+        f"  search   {solution.search} with {solution.heuristic} · "
+        f"{_count(solution.expanded, 'state')} expanded, "
         f"{solution.evaluated:,} evaluated · {facts}",
     ]
     return "\n".join(lines)
 
 
 def improvement(solution: SymbolicSolution) -> str:
-    """One line about the latest improvement."""
+    """Word one line about the latest improvement."""
     seconds, cost = solution.history[-1]
     count = _count(len(solution.plan), "action")
-    return f"{seconds:7.2f} s  {count}, cost {cost:g}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
+    bounds = f"no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
+    return f"{seconds:7.2f} s  {count}, cost {cost:g}, {bounds}"
 
 
 def document(solution: SymbolicSolution) -> dict[str, Any]:
-    """What `--json` prints, and with the inputs the plan file's content."""
+    """Build what `--json` prints, and with the inputs the plan file's content."""
     return {
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
@@ -83,14 +89,19 @@ def document(solution: SymbolicSolution) -> dict[str, Any]:
 
 
 def plan_text(solution: SymbolicSolution) -> str:
-    """The plan file of a solved problem; its schema is tamp/plan/symbolic-plan.schema.json."""
+    """Format the plan file of a solved problem; its schema is
+    tamp/plan/symbolic-plan.schema.json.
+    """
     problem = solution.problem
     content = {
         "format": "tamp-symbolic-plan",
         "version": 1,
         "inputs": {"problem": _file(problem.problem), "domain": _file(problem.domain)},
         "options": {"search": solution.search, "heuristic": solution.heuristic},
-        "versions": {"tamp": distribution_version(), "python": platform.python_version()},
+        "versions": {
+            "tamp": distribution_version(),
+            "python": platform.python_version(),
+        },
         **_plan(solution),
     }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
@@ -113,7 +124,9 @@ def write_symbolic_plan(solution: SymbolicSolution, path: Path) -> Path:
 
 
 def _plan(solution: SymbolicSolution) -> dict[str, Any]:
-    actions = [{"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan]
+    actions = [
+        {"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan
+    ]
     return {"actions": actions, "cost": solution.cost, "optimal": solution.optimal}
 
 

@@ -14,7 +14,7 @@ from tamp.symbolic.algorithms.result import Outcome, StreamTask
 from tamp.symbolic.pddl.structs import Formula, Task
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Grounded, Operator
+from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
 from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
 from tamp.system.deadline import Deadline, OutOfTime
@@ -26,7 +26,11 @@ SEARCH = "greedy"
 OTHERS = (("eager", "ff"), ("wastar", "blind"))
 """Searches and heuristics that go on where a plan does not hold when it is replayed."""
 
-OUTCOMES = {Reason.UNSOLVABLE: Outcome.INFEASIBLE, Reason.TIME: Outcome.TIMEOUT, Reason.LIMIT: Outcome.EXHAUSTED}
+OUTCOMES = {
+    Reason.UNSOLVABLE: Outcome.INFEASIBLE,
+    Reason.TIME: Outcome.TIMEOUT,
+    Reason.LIMIT: Outcome.EXHAUSTED,
+}
 
 
 @dataclass(frozen=True)
@@ -39,10 +43,12 @@ class SymbolicSolution:
         explanation: Why there is no plan, a line a cause.
         operators: How many operators the task has.
         facts: How many facts may change.
-        history: The plans on the way to this one and itself, where the first was not enough: seconds and cost.
+        history: The plans on the way to this one and itself, where the first was not enough:
+            seconds and cost.
         bound: What no plan costs less than, as far as a search with an admissible heuristic knows.
         seconds: Wall-clock time: "total", "instantiation", "search".
-        refuted: Plans that did not hold when they were replayed by the book: mistakes of the planner's, not returned.
+        refuted: Plans that did not hold when they were replayed by the book: mistakes of the
+            planner's, not returned.
     """
 
     problem: SymbolicProblem
@@ -63,22 +69,25 @@ class SymbolicSolution:
 
     @property
     def solved(self) -> bool:
-        """Whether there is a plan."""
+        """Tell that there is a plan."""
         return self.outcome is Outcome.SOLVED
 
     @property
     def cost(self) -> float:
-        """The sum of the actions' costs."""
+        """Sum the actions' costs."""
         return sum(operator.cost for operator in self.plan)
 
     @property
     def gap(self) -> float:
-        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        """Return the part of the cost that the lower bound leaves open: 0 when no plan is
+        cheaper.
+        """
         return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
 
 def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
-    """The names of a search and a heuristic that go together: A* asks for an admissible estimate.
+    """Choose the names of a search and a heuristic that go together: A* asks for an admissible
+    estimate.
 
     Raises:
         InputError: A name that is not known.
@@ -92,14 +101,20 @@ def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
 
 
 def solve_symbolic(
-    problem: SymbolicProblem, *, search: str | None = None, heuristic: str | None = None, max_time: float = 30.0
+    problem: SymbolicProblem,
+    *,
+    search: str | None = None,
+    heuristic: str | None = None,
+    max_time: float = 30.0,
 ) -> SymbolicSolution:
-    """Plan.
+    """Plan: instantiate the task, search, and have the plan replayed.
 
     Args:
         problem: From `load_symbolic`.
-        search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind" is optimal.
-        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A* "lmcut".
+        search: A name of `SEARCHES`, by default "greedy"; "astar" with "lmcut", "hmax" or "blind"
+            is optimal.
+        heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A*
+            "lmcut".
         max_time: Seconds.
 
     Raises:
@@ -111,17 +126,21 @@ def solve_symbolic(
         return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline))
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
-        return SymbolicSolution(problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()})
+        return SymbolicSolution(
+            problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()}
+        )
 
 
-def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline) -> SymbolicSolution:
+def _solve(
+    problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline
+) -> SymbolicSolution:
     started = time.perf_counter()
     task = problem.task
-    grounded = instantiate(task)
+    instantiated = instantiate(task)
     ready = time.perf_counter()
     refuted: list[str] = []
     for way in ((name, heuristic), *OTHERS):
-        found = search(grounded, search=way[0], heuristic=way[1], deadline=deadline)
+        found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline)
         reason = refutation(task, found.plan)
         if reason is None:
             name, heuristic = way
@@ -130,7 +149,9 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
     else:
         found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
     done = time.perf_counter()
-    outcome = Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
+    outcome = (
+        Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
+    )
     infeasible = outcome is Outcome.INFEASIBLE
     return SymbolicSolution(
         problem,
@@ -138,31 +159,40 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         name,
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
-        optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=tuple(dict.fromkeys(refuted)) + (_why(problem, grounded, deadline) if infeasible else ()),
+        optimal=found.plan is not None
+        and name == "astar"
+        and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
+        explanation=tuple(dict.fromkeys(refuted))
+        + (_why(problem, instantiated, deadline) if infeasible else ()),
         expanded=found.expanded,
         evaluated=found.evaluated,
-        operators=len(grounded.operators),
-        facts=len(grounded.reachable | grounded.initial),
+        operators=len(instantiated.operators),
+        facts=len(instantiated.reachable | instantiated.initial),
         seconds={"total": done - started, "instantiation": ready - started, "search": done - ready},
         refuted=len(refuted),
     )
 
 
 def refutation(task: Task, plan: Plan | None) -> str | None:
-    """What is wrong with a plan when it is replayed by the book, as a line for people; None where it holds."""
+    """Replay a plan by the book and word what is wrong with it, as a line for people; None where
+    it holds.
+    """
     if plan is None:
         return None
     reason = violation(task, [(operator.name, operator.arguments) for operator in plan.operators])
     return None if reason is None else f"{REFUTED}: {reason}"
 
 
-def _why(problem: SymbolicProblem, grounded: Grounded, deadline: Deadline) -> tuple[str, ...]:
+def _why(
+    problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Deadline
+) -> tuple[str, ...]:
     task = problem.task
-    facts = {*task.initial, *type_facts(task), *grounded.reachable, *grounded.initial}
+    facts = {*task.initial, *type_facts(task), *instantiated.reachable, *instantiated.initial}
     missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
 
-    def towards(goal: Formula) -> Grounded:
+    def towards(goal: Formula) -> InstantiatedTask:
         return instantiate(replace(task, goal=goal))
 
-    return explain_infeasible(StreamTask(task, (), {}), grounded, {}, missing, deadline, towards)
+    return explain_infeasible(
+        StreamTask(task, (), {}), instantiated, {}, missing, deadline, towards
+    )

@@ -150,7 +150,7 @@ class Adaptive(Run):
         learned |= self.bury(skeleton)
         recalled = self.recall(blamed(self.aside, self.experience) if skeleton.rounds < RECALL else None)
         if learned and not recalled:
-            self.optimism, self.grounded = self.imagined()
+            self.optimism, self.instantiated = self.imagined()
         return None
 
     def _looked(self) -> Result | None:
@@ -160,8 +160,8 @@ class Adaptive(Run):
         none. Else real values are looked at, a few; if these are all that there are, and plans with them fail in the
         states that they lead through, nothing is proven.
         """
-        goal = self.grounded.goal.positive
-        reached = goal <= self.grounded.reachable | self.grounded.initial
+        goal = self.instantiated.goal.positive
+        reached = goal <= self.instantiated.reachable | self.instantiated.initial
         if self.problem.by_value or not self.problem.streams or not (reached or distinguishes(self.task)):
             return None  # whoever has values equal that come from different calls looks more closely
         second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
@@ -181,7 +181,7 @@ class Adaptive(Run):
     def _wanders(self, rounds: int) -> bool:
         """Whether so many rounds went from plan to plan in a large task and drew little."""
         few = self.binder.units < LITTLE * rounds
-        return self.effort.searches >= rounds and few and len(self.grounded.operators) >= MANY
+        return self.effort.searches >= rounds and few and len(self.instantiated.operators) >= MANY
 
     def _stuck(self, patience: int) -> bool:
         """Whether even the cheapest plan rests on something that failed that often without a success."""

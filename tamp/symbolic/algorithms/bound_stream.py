@@ -230,7 +230,7 @@ class Streams:
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
         """The facts that a result makes true."""
         declaration = instance.stream.declaration
-        return ground(
+        return substitute(
             declaration.certified,
             (*declaration.inputs, *declaration.outputs),
             (*instance.inputs, *outputs),
@@ -274,7 +274,7 @@ STRANGERS = (Streams.draw.__code__,)
 """For an alarm: what calls the functions that anyone may have written."""
 
 
-def ground(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
+def substitute(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
     """The facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
     return tuple([(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms])

@@ -17,7 +17,7 @@ from tamp.symbolic.algorithms.result import Outcome, Progress, Result, StreamTas
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.symbolic.search.mutex import excluded
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.garbage import seldom_collecting
 
@@ -97,10 +97,10 @@ class Incremental(Run):
             return False
         optimism.assumed = self.assumed
         types = {**self.objects.types, **optimism.types}
-        grounded = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
-        if excluded(grounded, self.deadline) is None:
+        instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
+        if excluded(instantiated, self.deadline) is None:
             return False
-        self.optimism, self.grounded = optimism, grounded
+        self.optimism, self.instantiated = optimism, instantiated
         return True
 
     def promise(self, name: str) -> Fact | None:
@@ -111,7 +111,7 @@ class Incremental(Run):
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
         dry = 0
         while rounds is None or rounds > 0:
-            self.optimism, self.grounded = self.imagined()
+            self.optimism, self.instantiated = self.imagined()
             found = self.search()
             if self.deadline.passed:
                 raise OutOfTime
@@ -163,7 +163,7 @@ class Incremental(Run):
         """What was sampled so far."""
         return self.found
 
-    def imagined(self) -> tuple[Optimism, Grounded]:
+    def imagined(self) -> tuple[Optimism, InstantiatedTask]:
         """The task over real facts, only the fluent streams' outputs are placeholders."""
         started = time.perf_counter()
         fluent = [stream for stream in self.useful if stream.is_fluent]
@@ -171,6 +171,6 @@ class Incremental(Run):
         optimism.assumed = self.assumed
         facts = [*self.found, *optimism.makers]
         types = {**self.objects.types, **optimism.types}
-        grounded = self.instantiator.instantiate(facts, types, frozenset(self.refused))
+        instantiated = self.instantiator.instantiate(facts, types, frozenset(self.refused))
         self.effort.search_seconds += time.perf_counter() - started
-        return optimism, grounded
+        return optimism, instantiated

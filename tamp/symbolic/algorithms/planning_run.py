@@ -24,11 +24,11 @@ from tamp.symbolic.algorithms.explanation.explanation import explain_attempts, e
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
 from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
-from tamp.symbolic.algorithms.result import GroundAction, Outcome, Progress, Result, StreamTask
+from tamp.symbolic.algorithms.result import Outcome, PlanAction, Progress, Result, StreamTask
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.symbolic.search.mutex import excluded
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.replay import REFUTED
 from tamp.symbolic.search.search import Plan, Reason, search
 from tamp.symbolic.search.search import Result as Found
@@ -70,12 +70,12 @@ class Run(Imagination):
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
-        self.traced: dict[object, tuple[Grounded | None, object]] = {}
+        self.traced: dict[object, tuple[InstantiatedTask | None, object]] = {}
         self.latest: Skeleton | None = None
         self.doubtful = False
-        self._audited: Grounded | None = None
+        self._audited: InstantiatedTask | None = None
         self.prices: dict[Fact, float] = {}
-        self.searched = self.grounded
+        self.searched = self.instantiated
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
         """A plan of the optimistic task, priced by experience.
@@ -94,50 +94,50 @@ class Run(Imagination):
         self.effort.searches += 1
         if self.doubtful and self.excluded():
             return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
-        grounded, prices = with_nogoods(self.grounded, self.experience)
-        self.searched = grounded = elsewhere(grounded, self.experience)
+        instantiated, prices = with_nogoods(self.instantiated, self.experience)
+        self.searched = instantiated = elsewhere(instantiated, self.experience)
         prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
         self.prices = prices
         found = search(
-            grounded, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below,
+            instantiated, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below,
             audit=self.excluded,
         )  # fmt: skip
         self.effort.expanded += found.expanded
         if (
             found.reason is Reason.LIMIT and below == math.inf and not self.brief
         ):  # with many prices many plans look alike: then any plan will do
-            found = search(grounded, search="greedy", price=prices, deadline=self.deadline)
+            found = search(instantiated, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded
         return found
 
     def excluded(self) -> bool:
         """Whether it is proven that goals exclude each other in the optimistic task; false where that is not known."""
-        if self._audited is self.grounded:
+        if self._audited is self.instantiated:
             return False
-        self._audited = self.grounded
-        return excluded(self.grounded, self.deadline) is not None
+        self._audited = self.instantiated
+        return excluded(self.instantiated, self.deadline) is not None
 
     def lower_bound(self, limit: int) -> float:
         """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
         self.recall()
         started = time.perf_counter()
-        found = search(self.grounded, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
+        found = search(self.instantiated, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
         self.effort.search_seconds += time.perf_counter() - started
         return found.bound if self.optimism.complete else 0.0
 
     def _usual_cost(self) -> float:
         """The mean cost of the operators: prices are in units of it where actions cost more than one."""
-        operators = self.grounded.operators
+        operators = self.instantiated.operators
         return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
         """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
         operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
         traced, key = self.traced.get(operators, (None, None))
-        known = self.skeletons.get(key) if traced is self.grounded and not self.experience.exact else None
+        known = self.skeletons.get(key) if traced is self.instantiated and not self.experience.exact else None
         if known is None:
             steps, trace = to_steps(self.searched, plan, self.prices)
             key = (tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static)
@@ -146,7 +146,7 @@ class Run(Imagination):
                 maker, promise = self.optimism.maker, self.promise
                 known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given)
                 self.effort.skeletons = len(self.skeletons)
-            self.traced[operators] = (None if trace.open else self.grounded), key
+            self.traced[operators] = (None if trace.open else self.instantiated), key
         return known
 
     def is_open(self, skeleton: Skeleton) -> bool:
@@ -226,7 +226,7 @@ class Run(Imagination):
         """The bound plan."""
         lifted = {action.name: action for action in self.task.domain.actions}
         bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
-        actions = tuple(GroundAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
+        actions = tuple(PlanAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
         initial = self.problem.task.initial
         certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
         result = self.result(Outcome.SOLVED, ())
@@ -240,17 +240,23 @@ class Run(Imagination):
     def hopeless(self) -> Result:
         """The end of a run in which no plan is left: infeasible, unless a stream was given up before its end."""
         outcome = Outcome.EXHAUSTED if self.given_up else Outcome.INFEASIBLE
-        facts = {*self.known, *self.real, *self.optimism.makers, *self.grounded.reachable, *self.grounded.initial}
+        facts = {
+            *self.known,
+            *self.real,
+            *self.optimism.makers,
+            *self.instantiated.reachable,
+            *self.instantiated.initial,
+        }
         types = {**self.objects.types, **self.optimism.types}
         missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
         started = time.perf_counter()
-        reasons = explain_infeasible(self.problem, self.grounded, self.dead, missing, self.deadline, self._towards)
+        reasons = explain_infeasible(self.problem, self.instantiated, self.dead, missing, self.deadline, self._towards)
         if self.experience.exact:  # what failed in the states that plans lead through is the cause
             reasons = (*explain_failures(self.problem, self.streams, self.tallies(), True), *reasons)
         self.effort.explaining_seconds += time.perf_counter() - started
         return self.result(outcome, reasons)
 
-    def _towards(self, goal: Formula) -> Grounded:
+    def _towards(self, goal: Formula) -> InstantiatedTask:
         """The optimistic task with another goal."""
         facts = [*self.real, *self.sampled(), *self.optimism.makers]
         types = {**self.objects.types, **self.optimism.types}

@@ -46,7 +46,7 @@ class StreamTask:
 
 
 @dataclass(frozen=True)
-class GroundAction:
+class PlanAction:
     """An action of a plan: its name and the names of its arguments."""
 
     name: str
@@ -116,7 +116,7 @@ class Result:
 
     outcome: Outcome
     objects: Objects
-    actions: tuple[GroundAction, ...] = ()
+    actions: tuple[PlanAction, ...] = ()
     certified: tuple[Fact, ...] = ()
     statistics: dict[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: Effort = field(default_factory=Effort)

@@ -1,9 +1,10 @@
-"""Predicates that Python decides, in conditions that need them to be false.
+"""Complements of predicates that Python decides, for conditions that need them to be false.
 
-A `:predicate` of a streams file is true where its function says so, and what a test stream certifies is true where the
-test passes. Streams can only promise that something holds; so where a condition is helped by the predicate being false,
-it is rewritten over a complement, `not-P`, that a stream of its own promises. Where an effect has it in its condition,
-the action is given the precondition that one of the two is known.
+A `:predicate` of a streams file is true where its function says so, and what a test stream
+certifies is true where the test passes. Streams can only promise that something holds; so where a
+condition is helped by the predicate being false, it is rewritten over a complement, `not-P`, that a
+stream of its own promises. Where an effect has it in its condition, the action is given the
+precondition that one of the two is known.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from tamp.symbolic.pddl.structs import (
 
 
 def complement_name(predicate: str, domain: Domain) -> str:
-    """The name of a predicate's complement."""
+    """Name a predicate's complement."""
     name = f"not-{predicate}"
     while name in domain.predicates:
         name += "~"
@@ -38,7 +39,9 @@ def complement_name(predicate: str, domain: Domain) -> str:
 
 
 def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> dict[str, Stream]:
-    """The test streams that a condition asks to fail, by the predicate that each certifies alone."""
+    """Return the test streams that a condition asks to fail, by the predicate that each
+    certifies alone.
+    """
     asked = {atom.predicate for atom, sign in atoms_of_conditions(domain, goal) if not sign}
     makers: dict[str, list[Stream]] = {}
     for stream in streams:
@@ -56,77 +59,95 @@ def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> d
     }
 
 
-class _Twins(NamedTuple):
+class Complements(NamedTuple):
     """What is written instead where a predicate has to be false.
 
     Attributes:
         complements: Of decided predicates: what holds when the predicate does not.
-        copies: Of derived predicates needed both ways that rest on decided ones: what holds unless the complements
-            say that it does not.
+        copies: Of derived predicates needed both ways that rest on decided ones: what holds unless
+            the complements say that it does not.
     """
 
     complements: dict[str, str]
     copies: dict[str, str]
 
 
-def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) -> tuple[Domain, Formula]:
-    """Rewrite actions, rules and goal so that the decided predicates and their complements occur positively only.
+def with_complements(
+    domain: Domain, goal: Formula, decided: Collection[str]
+) -> tuple[Domain, Formula]:
+    """Rewrite actions, rules and goal so that the decided predicates and their complements occur
+    positively only.
 
-    In a rule, what helps depends on how the rule is used: `(blocked ?t)`, of which actions need the negation, is helped
-    by what makes it true being false. A derived predicate that is needed both ways gets a copy for the negations.
+    In a rule, what helps depends on how the rule is used: `(blocked ?t)`, of which actions need the
+    negation, is helped by what makes it true being false. A derived predicate that is needed both
+    ways gets a copy for the negations.
     """
-    names = {predicate: complement_name(predicate, domain) for predicate in decided if predicate in domain.predicates}
+    names = {
+        predicate: complement_name(predicate, domain)
+        for predicate in decided
+        if predicate in domain.predicates
+    }
     if not names:
         return domain, goal
     signs = _signs(domain, goal)
-    both = [predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2]
-    twins = _Twins(names, {predicate: complement_name(predicate, domain) for predicate in both})
+    both = [
+        predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2
+    ]
+    instead = Complements(
+        names, {predicate: complement_name(predicate, domain) for predicate in both}
+    )
     predicates = dict(domain.predicates)
-    for predicate, name in {**twins.complements, **twins.copies}.items():
+    for predicate, name in {**instead.complements, **instead.copies}.items():
         predicates[name] = Predicate(name, domain.predicates[predicate].parameters)
     rules: list[Derived] = []
     for rule in domain.derived:
         predicate = rule.head.predicate
         needed = signs.get(predicate, {True})
-        rules.append(replace(rule, body=_rewrite(rule.body, True, twins, True in needed)))
-        if predicate in twins.copies:
-            head = replace(rule.head, predicate=twins.copies[predicate])
-            rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, twins, False)))
-    actions = tuple(_rewritten(action, twins) for action in domain.actions)
+        rules.append(replace(rule, body=_rewrite(rule.body, True, instead, True in needed)))
+        if predicate in instead.copies:
+            head = replace(rule.head, predicate=instead.copies[predicate])
+            rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, instead, False)))
+    actions = tuple(_rewritten(action, instead) for action in domain.actions)
     changed = replace(domain, predicates=predicates, actions=actions, derived=tuple(rules))
-    return changed, _rewrite(goal, True, twins, True)
+    return changed, _rewrite(goal, True, instead, True)
 
 
-def _rewritten(action: Action, twins: _Twins) -> Action:
-    """The action over complements; whether an effect happens must be known where a decided predicate says so."""
-    known = [_rewrite(action.precondition, True, twins, True)]
+def _rewritten(action: Action, instead: Complements) -> Action:
+    """Rewrite the action over complements; whether an effect happens must be known where a
+    decided predicate says so.
+    """
+    known = [_rewrite(action.precondition, True, instead, True)]
     effects: list[Effect] = []
     for effect in action.effects:
-        happens = _rewrite(effect.condition, True, twins, True)
-        does_not = _rewrite(Not(effect.condition), True, twins, True)
+        happens = _rewrite(effect.condition, True, instead, True)
+        does_not = _rewrite(Not(effect.condition), True, instead, True)
         if happens != effect.condition or does_not != Not(effect.condition):
             decided = Or((happens, does_not))
             known.append(Forall(effect.parameters, decided) if effect.parameters else decided)
         effects.append(replace(effect, condition=happens))
-    return replace(action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects))
+    return replace(
+        action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects)
+    )
 
 
 def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
-    """The derived predicates that rest on decided ones, in any number of steps."""
+    """Return the derived predicates that rest on decided ones, in any number of steps."""
     found: dict[str, None] = {}
     more = True
     while more:
         more = False
         for rule in domain.derived:
             used = {atom.predicate for atom, _ in _atoms(rule.body, True)}
-            if rule.head.predicate not in found and any(one in decided or one in found for one in used):
+            if rule.head.predicate not in found and any(
+                one in decided or one in found for one in used
+            ):
                 found[rule.head.predicate] = None
                 more = True
     return list(found)
 
 
 def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
-    """For each derived predicate, whether it is needed to hold, not to hold, or both."""
+    """Tell for each derived predicate whether it is needed to hold, not to hold, or both."""
     derived = domain.derived_predicates
     signs: dict[str, set[bool]] = {}
     for atom, sign in atoms_of_conditions(domain, goal):
@@ -136,14 +157,20 @@ def _signs(domain: Domain, goal: Formula) -> dict[str, set[bool]]:
 
 
 def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of all conditions, and of rules as they are used, each with whether it helps by holding."""
+    """Generate the atoms of all conditions, and of rules as they are used, each with whether it
+    helps by holding.
+    """
     derived = domain.derived_predicates
     seen: set[tuple[str, bool]] = set()
     stack = [*_atoms(goal, True)]
     for action in domain.actions:
         stack += _atoms(action.precondition, True)
         for effect in action.effects:
-            stack += [(atom, sign) for atom, one in _atoms(effect.condition, True) for sign in (one, not one)]
+            stack += [
+                (atom, sign)
+                for atom, one in _atoms(effect.condition, True)
+                for sign in (one, not one)
+            ]
     while stack:
         atom, sign = stack.pop()
         yield atom, sign
@@ -155,30 +182,34 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
 
 
 def signed_atoms(formula: Formula, sign: bool = True) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of a formula that is needed to hold, or not to, each with whether it helps by holding."""
+    """Generate the atoms of a formula that is needed to hold, or not to, each with whether it
+    helps by holding.
+    """
     return _atoms(formula, sign)
 
 
-def _rewrite(formula: Formula, sign: bool, twins: _Twins, helps: bool) -> Formula:
-    """`helps`: whether the formula as a whole is needed to hold; `sign`: whether we are under no negation in it."""
+def _rewrite(formula: Formula, sign: bool, instead: Complements, helps: bool) -> Formula:
+    """Rewrite a formula. `helps`: whether the whole is needed to hold; `sign`: whether we are
+    under no negation in it.
+    """
     match formula:
         case Atom(predicate, terms, place):
             if sign is helps:
                 return formula
-            if predicate in twins.complements:
-                return Not(Atom(twins.complements[predicate], terms, place))
-            return Atom(twins.copies.get(predicate, predicate), terms, place)
+            if predicate in instead.complements:
+                return Not(Atom(instead.complements[predicate], terms, place))
+            return Atom(instead.copies.get(predicate, predicate), terms, place)
         case Not(body):
-            inner = _rewrite(body, not sign, twins, helps)
+            inner = _rewrite(body, not sign, instead, helps)
             return inner.body if isinstance(inner, Not) and inner != body else Not(inner)
         case And(parts):
-            return And(tuple(_rewrite(part, sign, twins, helps) for part in parts))
+            return And(tuple(_rewrite(part, sign, instead, helps) for part in parts))
         case Or(parts):
-            return Or(tuple(_rewrite(part, sign, twins, helps) for part in parts))
+            return Or(tuple(_rewrite(part, sign, instead, helps) for part in parts))
         case Exists(parameters, body):
-            return Exists(parameters, _rewrite(body, sign, twins, helps))
+            return Exists(parameters, _rewrite(body, sign, instead, helps))
         case Forall(parameters, body):
-            return Forall(parameters, _rewrite(body, sign, twins, helps))
+            return Forall(parameters, _rewrite(body, sign, instead, helps))
 
 
 def _atoms(formula: Formula, sign: bool) -> Iterator[tuple[Atom, bool]]:

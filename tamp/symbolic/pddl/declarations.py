@@ -8,24 +8,38 @@ from dataclasses import dataclass, replace
 from tamp.errors import closest
 from tamp.symbolic.pddl.features import lacking
 from tamp.symbolic.pddl.formulas import RESERVED
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, warning
+from tamp.symbolic.pddl.nodes import (
+    Group,
+    Node,
+    Symbol,
+    as_group,
+    as_name,
+    as_symbol,
+    error,
+    warning,
+)
 from tamp.symbolic.pddl.structs import Parameter, Predicate
 from tamp.symbolic.pddl.typed import known_types, placeholders, typed_list
 
 REQUIREMENTS = (
     ":strips", ":typing", ":negative-preconditions", ":disjunctive-preconditions", ":equality",
-    ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions", ":conditional-effects",
-    ":fluents", ":numeric-fluents", ":object-fluents", ":adl", ":durative-actions", ":duration-inequalities",
-    ":continuous-effects", ":derived-predicates", ":domain-axioms", ":timed-initial-literals", ":preferences",
-    ":constraints", ":action-costs", ":goal-utilities",
+    ":existential-preconditions", ":universal-preconditions", ":quantified-preconditions",
+    ":conditional-effects", ":fluents", ":numeric-fluents", ":object-fluents", ":adl",
+    ":durative-actions", ":duration-inequalities", ":continuous-effects", ":derived-predicates",
+    ":domain-axioms", ":timed-initial-literals", ":preferences", ":constraints",
+    ":action-costs", ":goal-utilities",
 )  # fmt: skip
 
 MAX_TYPE_DEPTH = 200
-"""Types above a type; an object is an instance of all of them, so a chain of thousands takes gigabytes."""
+"""Types above a type; an object is an instance of all of them, so a chain of thousands takes
+gigabytes.
+"""
 
 
 def check_requirements(nodes: Sequence[Node]) -> tuple[str, ...]:
-    """Warn of words that are no requirement of any PDDL. What is used is checked where it is used."""
+    """Warn of words that are no requirement of any PDDL. What is used is checked where it is
+    used.
+    """
     notes: list[str] = []
     for node in nodes:
         symbol = as_symbol(node, "a requirement such as :typing")
@@ -38,7 +52,9 @@ def check_requirements(nodes: Sequence[Node]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Types:
-    """The declared types: each one's parent, its further parents, and oddities that are no errors."""
+    """The declared types: each one's parent, its further parents, and oddities that are no
+    errors.
+    """
 
     parents: dict[str, str]
     more_parents: dict[str, tuple[str, ...]]
@@ -46,7 +62,9 @@ class Types:
 
 
 def parse_types(nodes: Sequence[Node]) -> Types:
-    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in competitions."""
+    """Read `:types`. A type may be listed twice, with a parent each, and a parent not at all, as in
+    competitions.
+    """
     entries = typed_list(nodes, "a type")
     parents: dict[str, tuple[str, ...]] = {}
     for entry in entries:
@@ -54,21 +72,34 @@ def parse_types(nodes: Sequence[Node]) -> Types:
         above = tuple(symbol.text for symbol in entry.types)
         parents[name] = tuple(dict.fromkeys((*parents.get(name, ()), *above)))
         if name == "object" and parents[name] not in ((), ("object",)):
-            raise error(entry.name, "'object' is the root of all types, it cannot stand below another one")
+            raise error(
+                entry.name, "'object' is the root of all types, it cannot stand below another one"
+            )
         if name != "object":
-            parents[name] = tuple(parent for parent in parents[name] if parent != name)  # - itself: says nothing
+            parents[name] = tuple(
+                parent for parent in parents[name] if parent != name
+            )  # - itself: says nothing
     parents.setdefault("object", ())
     notes: list[str] = []
     for symbol in (symbol for entry in entries for symbol in entry.types):
         if symbol.text not in parents:
             near = closest(symbol.text, sorted(parents.keys() - {"object"}))
             meant = f". Did you mean '{near}'?" if near else ""
-            notes.append(warning(symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"))
+            notes.append(
+                warning(
+                    symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"
+                )
+            )
             parents[as_name(symbol, "a type").text] = ()
     _check_depth({entry.name.text: entry.name for entry in entries}, parents)
-    full = {name: tuple(t for t in above if t != "object") or ("object",) for name, above in parents.items()}
+    full = {
+        name: tuple(t for t in above if t != "object") or ("object",)
+        for name, above in parents.items()
+    }
     first = {"object": "object", **{name: above[0] for name, above in full.items()}}
-    return Types(first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes))
+    return Types(
+        first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes)
+    )
 
 
 def parse_objects(
@@ -78,7 +109,8 @@ def parse_objects(
     notes: list[str],
     constants: Mapping[str, tuple[str, ...]] | None = None,
 ) -> dict[str, tuple[str, ...]]:
-    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of them.
+    """Read `:constants` or `:objects`: names with their types; one behind `(either ...)` has all of
+    them.
 
     Args:
         nodes: The typed list.
@@ -104,7 +136,9 @@ def parse_objects(
         if name.text in lines:
             message = f"{kind} '{name.written}' stands twice; first in line {lines[name.text]}"
         if set(own) != set(before):
-            raise error(name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}")
+            raise error(
+                name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}"
+            )
         notes.append(warning(name, message))
     return found
 
@@ -135,16 +169,25 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
             continue
         result = nodes[position] if position < len(nodes) else None
         if node.text != "-" or result is None:
-            raise error(node, f"expected a function such as (distance ?a ?b), found '{node.written}'")
+            raise error(
+                node, f"expected a function such as (distance ?a ?b), found '{node.written}'"
+            )
         symbol = as_symbol(result, "the type 'number'")
         if typed == len(groups):  # an empty list before a type
             position += 1
             continue
         typed = len(groups)
         if symbol.text in types:
-            raise error(symbol, lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"))
+            raise error(
+                symbol,
+                lacking(f"- {symbol.written}", "object fluents, functions have numbers as values"),
+            )
         if symbol.text != "number":
-            raise error(symbol, f"functions have numbers as values, found '{symbol.written}'", choices=("number",))
+            raise error(
+                symbol,
+                f"functions have numbers as values, found '{symbol.written}'",
+                choices=("number",),
+            )
         position += 1
     return _signatures(groups, types, "function")
 
@@ -164,17 +207,20 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
         before = found.setdefault(name.text, declared)
         if before is declared:
             continue
-        first = f"{what} '{name.written}' stands twice; first in line {before.place.line if before.place else 0}"
+        line = before.place.line if before.place else 0
+        first = f"{what} '{name.written}' stands twice; first in line {line}"
         if len(before.parameters) != len(declared.parameters):
             sizes = f"{len(before.parameters)} and {len(declared.parameters)}"
             raise error(name, f"{first}, with other arguments ({sizes})")
         notes.append(warning(name, first))
-        found[name.text] = replace(before, parameters=tuple(map(_either, before.parameters, declared.parameters)))
+        found[name.text] = replace(
+            before, parameters=tuple(map(_either, before.parameters, declared.parameters))
+        )
     return Signatures(found, tuple(notes))
 
 
 def _either(first: Parameter, second: Parameter) -> Parameter:
-    """A parameter that takes what either of two declarations says."""
+    """Join two declarations of a parameter: it takes what either of them says."""
     return replace(first, types=tuple(dict.fromkeys((*first.types, *second.types))))
 
 
@@ -192,7 +238,10 @@ def _check_depth(names: Mapping[str, Symbol], parents: Mapping[str, tuple[str, .
             if waiting is None:
                 heights[name] = 1 + max((heights[parent] for parent in above), default=0)
                 if heights[name] > MAX_TYPE_DEPTH:
-                    raise error(names[start], f"type '{names[start].written}' stands below {MAX_TYPE_DEPTH} others")
+                    raise error(
+                        names[start],
+                        f"type '{names[start].written}' stands below {MAX_TYPE_DEPTH} others",
+                    )
                 on_way.discard(way.pop())
             elif waiting in on_way:
                 cycle = way[way.index(waiting) :]

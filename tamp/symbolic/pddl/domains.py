@@ -23,7 +23,8 @@ from tamp.symbolic.pddl.structs import Action, And, Domain, Predicate
 from tamp.symbolic.pddl.typed import parameters
 
 SECTIONS = (
-    ":requirements", ":types", ":constants", ":predicates", ":functions", ":action", ":derived", ":axiom",
+    ":requirements", ":types", ":constants", ":predicates", ":functions",
+    ":action", ":derived", ":axiom",
 )  # fmt: skip
 ACTION_KEYWORDS = (":parameters", ":precondition", ":effect")
 
@@ -43,15 +44,19 @@ class Undeclared:
     computed: Mapping[str, Predicate] = field(default_factory=dict[str, Predicate])
 
 
-def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclared | None = None) -> Domain:
+def parse_domain(
+    text: str, file: str | Path | None = None, undeclared: Undeclared | None = None
+) -> Domain:
     """Read a PDDL domain.
 
-    Types, constants, predicates and functions are known everywhere, in whatever order the sections stand.
+    Types, constants, predicates and functions are known everywhere, in whatever order the sections
+    stand.
 
     Args:
         text: The domain.
         file: For messages: where the text comes from.
-        undeclared: What else may be used. When it is given, a derived predicate has as many arguments as its rules say.
+        undeclared: What else may be used. When it is given, a derived predicate has as many
+            arguments as its rules say.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -68,20 +73,32 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     notes += (*signatures.notes, *functional.notes)
     known = (types, predicates, functions)
     if undeclared is not None:
-        predicates |= {n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)}
-        functions |= {n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)}
+        predicates |= {
+            n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)
+        }
+        functions |= {
+            n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)
+        }
         for name, computed in undeclared.computed.items():
             declared_as = functions.get(name)
             if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
-                sizes = f"{len(declared_as.parameters)} arguments, computed of {len(computed.parameters)}"
-                notes.append(warning(declared_as.place or title.place, f"function '{name}' is declared with {sizes}"))
+                declares, computes = len(declared_as.parameters), len(computed.parameters)
+                sizes = f"{declares} arguments, computed of {computes}"
+                notes.append(
+                    warning(
+                        declared_as.place or title.place,
+                        f"function '{name}' is declared with {sizes}",
+                    )
+                )
             if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
                 functions[name] = computed
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
     # Domains written for PDDLStream increase the total cost without declaring it.
-    counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
+    counts_costs = TOTAL_COST in functions or any(
+        _mentions(section.group, "increase") for section in sections
+    )
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
@@ -89,7 +106,17 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
         redefined = dict(entry for rule in rules for entry in redefinition(rule, predicates))
         notes += [note for _, note in redefined.values()]
         predicates |= {name: predicate for name, (predicate, _) in redefined.items()}
-    names = Domain(title.text, types, constants, predicates, functions, (), (), file_name, declared.more_parents)
+    names = Domain(
+        title.text,
+        types,
+        constants,
+        predicates,
+        functions,
+        (),
+        (),
+        file_name,
+        declared.more_parents,
+    )
 
     derived_names = {rule_head(section, names) for section in rules}
     derived = tuple(parse_rule(section, names, notes) for section in rules)
@@ -100,7 +127,8 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
 
 
 def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]:
-    """The actions under names of their own: the same one written twice is one, another one of its name is renamed.
+    """Give the actions names of their own: the same one written twice is one, another one of its
+    name is renamed.
 
     Fast Downward keeps both under one name; a plan would not say which of them is meant.
     """
@@ -114,27 +142,40 @@ def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]
         while name in found:
             name, number = f"{action.name}~{number}", number + 1
         if name != action.name and action.place is not None:
-            notes.append(warning(action.place, f"another action '{action.name}': plans have it as '{name}'"))
+            notes.append(
+                warning(action.place, f"another action '{action.name}': plans have it as '{name}'")
+            )
         found[name] = replace(action, name=name)
     return tuple(found.values())
 
 
-def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bool, notes: list[str]) -> Action:
+def _action(
+    section: Section, names: Domain, derived: Set[str], counts_costs: bool, notes: list[str]
+) -> Action:
     if not section.items:
         raise error(section.group, "an action has no name")
     name = as_name(section.items[0], "an action's name")
     values = keyword_values(section.items[1:], f"action '{name.text}'", ACTION_KEYWORDS)
-    listed = as_group(values[":parameters"], "a list of parameters").items if ":parameters" in values else ()
+    listed = (
+        as_group(values[":parameters"], "a list of parameters").items
+        if ":parameters" in values
+        else ()
+    )
     written = parameters(listed, names.types)
     scope, bound = scope_of(names, notes=notes).with_variables(written)
-    precondition = parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    precondition = (
+        parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    )
     same = repeated(written, bound)
     precondition = And((precondition, *same)) if same else precondition
     effects = parse_effects(values[":effect"], scope, derived) if ":effect" in values else Effects()
-    # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every action counts one.
+    # PDDL: where costs are counted, an action that increases nothing is free; elsewhere every
+    # action counts one.
     cost = effects.cost if effects.cost is not None else (0.0 if counts_costs else 1.0)
     return Action(name.text, bound, precondition, tuple(effects.simple), cost, section.group.place)
 
 
 def _mentions(node: Node, word: str) -> bool:
-    return isinstance(node, Group) and (node.head == word or any(_mentions(item, word) for item in node.items))
+    return isinstance(node, Group) and (
+        node.head == word or any(_mentions(item, word) for item in node.items)
+    )

@@ -25,7 +25,9 @@ TOTAL_COST = "total-cost"
 
 @dataclass
 class Effects:
-    """What an action does: the simple effects, and its increases of the total cost, None when it has none."""
+    """What an action does: the simple effects, and its increases of the total cost, None when it
+    has none.
+    """
 
     simple: list[Effect] = field(default_factory=list[Effect])
     cost: float | Atom | None = None
@@ -79,7 +81,10 @@ def _collect(
             _collect(rest[1], scope, derived, effects, both, quantified)
         case "forall":
             _expect(group, 2, "a list of variables and an effect")
-            listed = parameters(as_group(rest[0], "a list of variables such as (?x - body)").items, scope.domain.types)
+            listed = parameters(
+                as_group(rest[0], "a list of variables such as (?x - body)").items,
+                scope.domain.types,
+            )
             inside, bound = scope.with_variables(listed)
             same = repeated(listed, bound)
             where = And((condition, *same)) if same else condition
@@ -89,7 +94,9 @@ def _collect(
                 raise error(head, "a cost inside 'when' or 'forall' is not supported")
             effects.cost = _added(effects.cost, _increase(group, rest, scope), head)
         case "decrease" | "assign" | "scale-up" | "scale-down":
-            raise error(head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)")
+            raise error(
+                head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)"
+            )
         case "probabilistic" | "oneof" if head.text not in scope.domain.predicates:
             raise error(head, unsupported(head.text))
         case "not":
@@ -102,7 +109,7 @@ def _collect(
 
 
 def _changed(node: Node, scope: Scope, derived: Set[str]) -> Atom:
-    """The atom that a simple effect adds or deletes."""
+    """Parse the atom that a simple effect adds or deletes."""
     group = as_group(node, "a fact such as (on ?a ?b)")
     if group.head in (*CONNECTIVES, *EFFECT_WORDS, "="):
         remedy = "What happens only sometimes is written (when CONDITION EFFECT)"
@@ -110,7 +117,11 @@ def _changed(node: Node, scope: Scope, derived: Set[str]) -> Atom:
     atom = parse_atom(group, scope)
     if atom.predicate in derived:
         remedy = "Its rules define it: change what they rest on"
-        raise error(group, f"an effect cannot change the derived predicate '{atom.predicate}'", remedy=remedy)
+        raise error(
+            group,
+            f"an effect cannot change the derived predicate '{atom.predicate}'",
+            remedy=remedy,
+        )
     if atom.predicate not in scope.domain.predicates:
         raise error(group, f"an effect cannot change the type '{atom.predicate}' of an object")
     return atom
@@ -120,7 +131,9 @@ def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
     _expect(group, 2, "(total-cost) and an amount")
     target = as_group(rest[0], "(total-cost)")
     if target.head != TOTAL_COST or len(target.items) != 1:
-        what = f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
+        what = (
+            f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
+        )
         raise error(target, what)
     amount = rest[1]
     if isinstance(amount, Symbol):
@@ -129,7 +142,11 @@ def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
             raise error(amount, f"an action's cost cannot be negative, found {amount.written}")
         return value
     if amount.head in ("+", "-", "*", "/"):
-        raise error(amount, f"arithmetic such as {show(amount)} is not supported", remedy="Name a number or a function")
+        raise error(
+            amount,
+            f"arithmetic such as {show(amount)} is not supported",
+            remedy="Name a number or a function",
+        )
     term = parse_function_term(amount, scope)
     if term.predicate == TOTAL_COST:
         raise error(amount, "the total cost cannot increase by itself")
@@ -147,4 +164,6 @@ def _added(cost: float | Atom | None, more: float | Atom, head: Symbol) -> float
 def _expect(group: Group, wanted: int, what: str) -> None:
     if len(group.items) - 1 != wanted:
         found = len(group.items) - 1
-        raise error(group, f"'{group.head}' takes {what}, found {found} part{'' if found == 1 else 's'}")
+        raise error(
+            group, f"'{group.head}' takes {what}, found {found} part{'' if found == 1 else 's'}"
+        )

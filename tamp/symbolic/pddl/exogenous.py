@@ -1,9 +1,10 @@
-"""Streams that wait for actions: a `:domain` that names what actions change, or what rules derive.
+"""Exogenous streams, those that wait for actions: a `:domain` that names what actions change, or
+what rules derive.
 
-Such a stream may be called once its domain has come true; what it certifies then holds. So the planner asks it for
-values as if that were so, and conditions read each fact that rests on it through a rule: the stream gave it, and all
-of its domain that actions change was true at some time (of what rules derive: is true now). PDDLStream calls such
-streams exogenous.
+Such a stream may be called once its domain has come true; what it certifies then holds. So the
+planner asks it for values as if that were so, and conditions read each fact that rests on it
+through a rule: the stream gave it, and all of its domain that actions change was true at some time
+(of what rules derive: is true now). PDDLStream calls such streams exogenous.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ from tamp.symbolic.pddl.structs import (
 
 
 @dataclass(frozen=True)
-class Waiting:
+class CompiledTask:
     """A task whose streams speak of what never changes.
 
     Attributes:
@@ -50,8 +51,11 @@ class Waiting:
     facts: frozenset[Fact]
 
 
-def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]) -> Waiting:
-    """Move what changes from the streams' domains into rules; nothing is changed where there is none.
+def compile_away(
+    domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]
+) -> CompiledTask:
+    """Move what changes from the streams' domains into rules; nothing is changed where there is
+    none.
 
     Raises:
         InputError: What rests on a waiting stream has to be false somewhere.
@@ -60,19 +64,30 @@ def without_waiting(domain: Domain, streams: StreamFile, goal: Formula, facts: f
     changing = domain.fluent_predicates | domain.derived_predicates
     resting = _resting(made, changing)
     if not resting:
-        return Waiting(domain, streams, goal, facts)
+        return CompiledTask(domain, streams, goal, facts)
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in resting:
-            what = f"'{atom.predicate}' has to be false here, and its stream waits for what actions change"
-            remedy = "Put what it waits for in the action's precondition instead of the stream's :domain"
-            raise InputError(what, remedy=remedy) if atom.place is None else error(atom.place, what, remedy=remedy)
-    awaited = {atom.predicate for stream in made for atom in stream.domain} & domain.fluent_predicates
+            what = (
+                f"'{atom.predicate}' has to be false here, "
+                "and its stream waits for what actions change"
+            )
+            remedy = (
+                "Put what it waits for in the action's precondition instead of the stream's :domain"
+            )
+            raise (
+                InputError(what, remedy=remedy)
+                if atom.place is None
+                else error(atom.place, what, remedy=remedy)
+            )
+    awaited = {
+        atom.predicate for stream in made for atom in stream.domain
+    } & domain.fluent_predicates
     rewriting = _Rewriting(domain, resting, sorted(awaited), facts)
     changed = {stream.name: rewriting.stream(stream) for stream in made}
     actions = tuple(rewriting.action(action) for action in domain.actions)
     derived = tuple(rewriting.rules)
     predicates = {**domain.predicates, **rewriting.predicates}
-    return Waiting(
+    return CompiledTask(
         replace(domain, predicates=predicates, actions=actions, derived=derived),
         replace(
             streams,
@@ -96,7 +111,11 @@ class _Rewriting:
     """
 
     def __init__(
-        self, domain: Domain, resting: Collection[str], awaited: Collection[str], facts: frozenset[Fact]
+        self,
+        domain: Domain,
+        resting: Collection[str],
+        awaited: Collection[str],
+        facts: frozenset[Fact],
     ) -> None:
         self._domain = domain
         self._changing = domain.fluent_predicates | domain.derived_predicates
@@ -111,33 +130,47 @@ class _Rewriting:
                 name = self._like(predicate, f"given-{predicate}")
                 self.started |= {(name, *fact[1:]) for fact in given}
                 terms = tuple(f"?x{i}" for i in range(len(domain.predicates[predicate].parameters)))
-                self.rules.append(_rule(Atom(self.now[predicate], terms), terms, (Atom(name, terms),)))
+                self.rules.append(
+                    _rule(Atom(self.now[predicate], terms), terms, (Atom(name, terms),))
+                )
 
     def stream(self, stream: Stream) -> Stream:
-        """One that does not wait, and rules for what it certifies."""
+        """Rewrite a stream into one that does not wait, and add the rules for what it certifies."""
         certified = [atom for atom in stream.certified if atom.predicate in self.now]
         if not certified:
             return stream
         terms = (*stream.inputs, *stream.outputs)
-        result = Atom(self._new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms)
+        result = Atom(
+            self._new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms
+        )
         waits = [self._awaited(atom) for atom in stream.domain]
         body = (result, *(atom for atom in waits if atom is not None))
-        self.rules += [_rule(replace(atom, predicate=self.now[atom.predicate]), terms, body) for atom in certified]
+        self.rules += [
+            _rule(replace(atom, predicate=self.now[atom.predicate]), terms, body)
+            for atom in certified
+        ]
         static = tuple(atom for atom in stream.domain if atom.predicate not in self._changing)
         return replace(stream, domain=static, certified=(*stream.certified, result))
 
     def action(self, action: Action) -> Action:
-        """The action over the rules; what it makes true is noted as having been true."""
-        effects = [replace(effect, condition=renamed(effect.condition, self.now)) for effect in action.effects]
+        """Rewrite the action over the rules; what it makes true is noted as having been true."""
+        effects = [
+            replace(effect, condition=renamed(effect.condition, self.now))
+            for effect in action.effects
+        ]
         noted = [
             replace(effect, atom=replace(effect.atom, predicate=self.was[effect.atom.predicate]))
             for effect in effects
             if effect.adds and effect.atom.predicate in self.was
         ]
-        return replace(action, precondition=renamed(action.precondition, self.now), effects=(*effects, *noted))
+        return replace(
+            action, precondition=renamed(action.precondition, self.now), effects=(*effects, *noted)
+        )
 
     def _awaited(self, atom: Atom) -> Atom | None:
-        """What a rule asks in the place of a stream's domain; nothing of what never changes."""
+        """Return what a rule asks in the place of a stream's domain; nothing of what never
+        changes.
+        """
         name = self.was.get(atom.predicate) or self.now.get(atom.predicate)
         if name is not None:
             return replace(atom, predicate=name)
@@ -154,7 +187,7 @@ class _Rewriting:
 
 
 def _resting(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
-    """What streams certify whose domain changes, or rests on such a stream."""
+    """Return what streams certify whose domain changes, or rests on such a stream."""
     found: dict[str, None] = {}
     before = -1
     while len(found) > before:
@@ -166,7 +199,9 @@ def _resting(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
 
 
 def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived:
-    """The head holds when there are such variables; it may have constants, and a variable twice."""
+    """Build a rule whose head holds when there are such variables; it may have constants, and a
+    variable twice.
+    """
     fresh = tuple(f"?x{i}" for i in range(len(head.terms)))
     plain = len(set(head.terms)) == len(head.terms) and set(head.terms) <= set(variables)
     terms = head.terms if plain else fresh
@@ -181,7 +216,7 @@ def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived
 
 
 def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
-    """The formula with some of its predicates under other names."""
+    """Rename some of a formula's predicates."""
     match formula:
         case Atom(predicate):
             return replace(formula, predicate=names.get(predicate, predicate))

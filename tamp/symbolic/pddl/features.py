@@ -1,4 +1,6 @@
-"""Features of the larger PDDL levels, and of languages beside it, that are refused: each by its name."""
+"""Features of the larger PDDL levels, and of languages beside it, that are refused: each by its
+name.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ FEATURES: dict[str, str] = {
     "at": "durative actions and timed literals",
     "over": "durative actions",
 }
-"""Keyword or connective to the feature it belongs to; words that a domain declares as its own mean what it says."""
+"""Keyword or connective to the feature it belongs to; words that a domain declares as its own mean
+what it says.
+"""
 
 
 def unsupported(word: str, written: str | None = None) -> str:
@@ -62,5 +66,5 @@ def lacking(written: str, feature: str) -> str:
 
 
 def sections(known: Iterable[str]) -> tuple[str, ...]:
-    """The keywords of features that are none of the known ones."""
+    """Return the keywords of features that are none of the known ones."""
     return tuple(word for word in FEATURES if word.startswith(":") and word not in known)

@@ -8,7 +8,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula,
 
 
 def to_text(item: Formula | Fact) -> str:
-    """The PDDL text on one line; parsing it gives the formula again."""
+    """Format as PDDL text on one line; parsing it gives the formula again."""
     match item:
         case Atom(predicate, terms):
             return _group(predicate, *terms)
@@ -27,7 +27,8 @@ def to_text(item: Formula | Fact) -> str:
 
 
 def _parameters(parameters: Sequence[Parameter]) -> str:
-    # An untyped variable before a typed one would take its type, so all types are written out, or none.
+    # An untyped variable before a typed one would take its type, so all types are written out, or
+    # none.
     if all(parameter.types == ("object",) for parameter in parameters):
         return _group(*(parameter.name for parameter in parameters))
     return _group(*(f"{parameter.name} - {_types(parameter.types)}" for parameter in parameters))

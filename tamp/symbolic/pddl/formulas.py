@@ -8,13 +8,26 @@ from math import isfinite
 
 from tamp.symbolic.pddl.features import FEATURES, lacking, unsupported
 from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_symbol, error, show, warning
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Forall, Formula, Not, Or, Parameter, Predicate
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+    Predicate,
+)
 from tamp.symbolic.pddl.typed import distinct, parameters
 
 CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
 UNSUPPORTED = ("<", ">", "<=", ">=", "preference")
 COMPOUND = frozenset(word for word in FEATURES if not word.startswith(":"))
-"""Words of features that are not supported, unless a predicate has the name: `(at truck depot)` is a fact."""
+"""Words of features that are not supported, unless a predicate has the name: `(at truck depot)` is
+a fact.
+"""
 EFFECT_WORDS = ("when", "increase", "decrease", "assign", "scale-up", "scale-down")
 RESERVED = frozenset((*CONNECTIVES, *EFFECT_WORDS, "=", "either", "define", *UNSUPPORTED))
 """Words that cannot name a predicate."""
@@ -27,12 +40,12 @@ class Scope:
     Attributes:
         domain: Types, predicates and functions.
         objects: Objects (and constants) with their types; an object has all of them.
-        variables: What each written variable stands for; one that hides an outer one is renamed, so that in a parsed
-            formula no name is bound twice.
-        notes: Collects oddities that are no errors, such as an object of a more general type than is declared, which
-            Fast Downward reads; None where that is an error.
-        any_type: Whether such an object may be of any type, as in Fast Downward: what a predicate declares is no more
-            than a comment to it.
+        variables: What each written variable stands for; one that hides an outer one is renamed, so
+            that in a parsed formula no name is bound twice.
+        notes: Collects oddities that are no errors, such as an object of a more general type than
+            is declared, which Fast Downward reads; None where that is an error.
+        any_type: Whether such an object may be of any type, as in Fast Downward: what a predicate
+            declares is no more than a comment to it.
     """
 
     domain: Domain
@@ -42,7 +55,9 @@ class Scope:
     any_type: bool = False
 
     def with_variables(self, more: Iterable[Parameter]) -> tuple[Scope, tuple[Parameter, ...]]:
-        """The scope inside a quantifier, and the quantifier's parameters under their final names."""
+        """Return the scope inside a quantifier, and the quantifier's parameters under their
+        final names.
+        """
         listed = tuple(more)
         renamed = distinct(listed, {parameter.name for parameter in self.variables.values()})
         inside = {old.name: new for old, new in zip(listed, renamed, strict=True)}
@@ -50,14 +65,18 @@ class Scope:
 
 
 def scope_of(
-    domain: Domain, objects: Mapping[str, tuple[str, ...]] | None = None, notes: list[str] | None = None
+    domain: Domain,
+    objects: Mapping[str, tuple[str, ...]] | None = None,
+    notes: list[str] | None = None,
 ) -> Scope:
-    """The scope outside of all quantifiers: the domain's constants and the given objects; `notes` as in `Scope`."""
+    """Return the scope outside of all quantifiers: the domain's constants and the given objects;
+    `notes` as in `Scope`.
+    """
     return Scope(domain, {**domain.constants, **(objects or {})}, {}, notes)
 
 
 def repeated(listed: Sequence[Parameter], bound: Sequence[Parameter]) -> tuple[Atom, ...]:
-    """What says that a variable written twice in one list is one: (= ?x ?x~2).
+    """State that a variable written twice in one list is one: (= ?x ?x~2).
 
     Args:
         listed: The variables as they were written.
@@ -88,7 +107,10 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
             return Or((Not(parse_formula(rest[0], scope)), parse_formula(rest[1], scope)))
         case "exists" | "forall":
             _count(group, head, 2, "a list of variables and a condition")
-            listed = parameters(as_group(rest[0], "a list of variables such as (?x - body)").items, scope.domain.types)
+            listed = parameters(
+                as_group(rest[0], "a list of variables such as (?x - body)").items,
+                scope.domain.types,
+            )
             inner, bound = scope.with_variables(listed)
             body, same = parse_formula(rest[1], inner), repeated(listed, bound)
             if head.text == "exists":
@@ -103,14 +125,19 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
 
 
 def parse_atom(node: Node, scope: Scope) -> Atom:
-    """Read `(predicate term ...)`; a type is also a predicate of one argument, and `=` one of two."""
+    """Read `(predicate term ...)`; a type is also a predicate of one argument, and `=` one of
+    two.
+    """
     group = as_group(node, "a fact such as (on ?a ?b)")
     head = _head(group, "a predicate")
     name, domain = head.text, scope.domain
     if name == "=":
         for item in group.items[1:]:
             if isinstance(item, Group) or _is_number(item):
-                raise error(item, lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"))
+                raise error(
+                    item,
+                    lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"),
+                )
         return _applied(group, Predicate("=", (Parameter("?a"), Parameter("?b"))), scope)
     if name in domain.predicates:
         return _applied(group, domain.predicates[name], scope)
@@ -122,7 +149,9 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
         raise error(head, f"unknown connective '{head.written}'", found=name, choices=CONNECTIVES)
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
-    words = dict.fromkeys((*domain.predicates, *(type_ for type_ in domain.types if type_ != "object")))
+    words = dict.fromkeys(
+        (*domain.predicates, *(type_ for type_ in domain.types if type_ != "object"))
+    )
     raise error(head, f"unknown predicate '{head.written}'", found=name, choices=words)
 
 
@@ -158,7 +187,8 @@ def _applied(group: Group, predicate: Predicate, scope: Scope) -> Atom:
         raise error(group, message, remedy=f"Its form is ({predicate.name}{names})")
     terms = zip(group.items[1:], predicate.parameters, strict=True)
     checked = tuple(
-        _term(as_symbol(node, "a variable or an object"), parameter.types, scope) for node, parameter in terms
+        _term(as_symbol(node, "a variable or an object"), parameter.types, scope)
+        for node, parameter in terms
     )
     return Atom(predicate.name, checked, group.place)
 
@@ -167,7 +197,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     if symbol.text.startswith("?"):
         if symbol.text not in scope.variables:
             choices = scope.variables
-            raise error(symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices)
+            raise error(
+                symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices
+            )
         return scope.variables[symbol.text].name
     name = _object(symbol, scope)
     if name is not None and scope.domain.fits(scope.objects[name], types):
@@ -175,7 +207,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     fitting = [other for other, own in scope.objects.items() if scope.domain.fits(own, types)]
     if name is None:
         choices = (*scope.variables, *(fitting or scope.objects))
-        message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
+        message = f"unknown object '{symbol.written}'" + (
+            "" if choices else "; there are no objects"
+        )
         raise error(symbol, message, found=symbol.written, choices=choices)
     own = " and ".join(scope.objects[name])
     general = _more_general(scope.objects[name], types, scope.domain)
@@ -189,7 +223,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
 
 
 def _more_general(own: Iterable[str], wanted: Iterable[str], domain: Domain) -> bool:
-    """Whether an object of these types may be one of the wanted ones that are below them."""
+    """Check that an object of these types may be one of the wanted ones that are below them."""
     return any(domain.is_a(want, one) for want in wanted for one in own)
 
 
@@ -201,7 +235,9 @@ def _is_number(node: Node) -> bool:
 
 
 def _object(symbol: Symbol, scope: Scope) -> str | None:
-    """The object's name as its owner writes it: a scene's names may have capitals, which PDDL ignores."""
+    """Return the object's name as its owner writes it: a scene's names may have capitals, which
+    PDDL ignores.
+    """
     if symbol.written in scope.objects:
         return symbol.written
     if symbol.text in scope.objects:
@@ -221,7 +257,11 @@ def _head(group: Group, what: str) -> Symbol:
 def _count(group: Group, head: Symbol, wanted: int, what: str) -> None:
     if len(group.items) - 1 != wanted:
         found = len(group.items) - 1
-        raise error(group, f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}")
+        raise error(
+            group,
+            f"'{head.text}' takes {what}, "
+            f"found {found} part{'' if found == 1 else 's'}: {show(group)}",
+        )
 
 
 def _article(noun: str) -> str:

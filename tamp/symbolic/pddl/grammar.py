@@ -1,19 +1,44 @@
-"""What may stand directly inside what in PDDL, as far as parentheses can be judged by it."""
+"""The grammar of PDDL's groups: the items that each may contain, as far as parentheses can be
+judged by it.
+"""
 
 from __future__ import annotations
 
-MOST_GROUPS = {"not": 1, "exists": 2, "forall": 2, "when": 2, "imply": 2, "increase": 2, "=": 2, ":derived": 2}
+MOST_GROUPS = {
+    "not": 1,
+    "exists": 2,
+    "forall": 2,
+    "when": 2,
+    "imply": 2,
+    "increase": 2,
+    "=": 2,
+    ":derived": 2,
+}
 """How many parenthesised parts these take."""
 ONLY_GROUPS = frozenset(
-    ("and", "or", "not", "exists", "forall", "when", "imply", ":derived", ":predicates", ":init", ":goal")
+    (
+        "and",
+        "or",
+        "not",
+        "exists",
+        "forall",
+        "when",
+        "imply",
+        ":derived",
+        ":predicates",
+        ":init",
+        ":goal",
+    )
 )
-MANY_GROUPS = frozenset(("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric"))
+MANY_GROUPS = frozenset(
+    ("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric")
+)
 KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 """Sections with a name and `:keyword value` pairs."""
 
 
-def may_hold(head: str, groups: int, item: str, item_head: str, previous: str) -> bool:
-    """Whether an item may stand inside a group.
+def may_contain(head: str, groups: int, item: str, item_head: str, previous: str) -> bool:
+    """Check that an item may stand inside a group.
 
     Args:
         head: The group's first word; "(" when it begins with a group.
@@ -42,5 +67,6 @@ def may_hold(head: str, groups: int, item: str, item_head: str, previous: str) -
         return groups < MOST_GROUPS[head]
     if head in KEYWORDED:
         return previous.startswith(":") and previous != head
-    # The rest are facts, lists of variables and lists of names: they hold words, and types such as (either a b).
+    # The rest are facts, lists of variables and lists of names: they hold words, and types such as
+    # (either a b).
     return head in MANY_GROUPS or item_head == "either"

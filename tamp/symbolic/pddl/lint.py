@@ -1,17 +1,33 @@
-"""What is no error in a domain, its streams and a goal, but probably not what was meant."""
+"""Lint of a domain, its streams and a goal: what is no error, but probably not what was meant."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
 from tamp.symbolic.pddl.nodes import warning
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Place, StreamFile
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Fact,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Place,
+    StreamFile,
+)
 
 
 def lint(
-    domain: Domain, streams: StreamFile | None = None, goal: Formula | None = None, initial: Collection[Fact] = ()
+    domain: Domain,
+    streams: StreamFile | None = None,
+    goal: Formula | None = None,
+    initial: Collection[Fact] = (),
 ) -> tuple[str, ...]:
-    """Warnings, each with file, line and column, in the order of their places after the parser's own.
+    """Collect warnings, each with file, line and column, in the order of their places after the
+    parser's own.
 
     Args:
         domain: Parsed.
@@ -21,7 +37,9 @@ def lint(
         initial: The facts of the problem's initial state.
     """
     found: list[tuple[Place, str]] = []
-    asked = {atom.predicate for atom in _conditions(domain)} | {atom.predicate for atom in _atoms(goal)}
+    asked = {atom.predicate for atom in _conditions(domain)} | {
+        atom.predicate for atom in _atoms(goal)
+    }
     found += _unused_predicates(domain, streams, asked)
     if streams is not None:
         found += _unused_streams(domain, streams, asked, goal is not None)
@@ -30,18 +48,24 @@ def lint(
     if goal is not None:
         found += _unachievable(domain, streams, goal, initial)
     found.sort(key=lambda row: (row[0].file or "", row[0].line, row[0].column, row[1]))
-    return tuple(dict.fromkeys((*domain.notes, *(warning(place, message) for place, message in found))))
+    return tuple(
+        dict.fromkeys((*domain.notes, *(warning(place, message) for place, message in found)))
+    )
 
 
 def _unused_predicates(
     domain: Domain, streams: StreamFile | None, asked: Collection[str]
 ) -> Iterator[tuple[Place, str]]:
-    """Predicates that stand nowhere but in their declaration, or that are made true and never asked for."""
+    """Find predicates that stand nowhere but in their declaration, or that are made true and
+    never asked for.
+    """
     made = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     made |= domain.derived_predicates
     shown: set[str] = set()
     for stream in (*streams.streams, *streams.rules) if streams else ():
-        shown |= {atom.predicate for atom in (*stream.domain, *stream.certified)} | set(stream.fluents)
+        shown |= {atom.predicate for atom in (*stream.domain, *stream.certified)} | set(
+            stream.fluents
+        )
     for function in streams.functions if streams else ():
         shown |= {atom.predicate for atom in function.domain}
     for predicate in domain.predicates.values():
@@ -54,7 +78,7 @@ def _unused_predicates(
 def _unused_streams(
     domain: Domain, streams: StreamFile, asked: Collection[str], whole: bool
 ) -> Iterator[tuple[Place, str]]:
-    """Streams of whose facts no action, rule, goal or used stream asks for one."""
+    """Find streams of whose facts no action, rule, goal or used stream asks for one."""
     needed = set(asked)
     if not whole:  # a goal may ask for any static predicate
         return
@@ -70,12 +94,14 @@ def _unused_streams(
                 grows = True
     for stream in waiting:
         if stream.place is not None and stream not in streams.rules:
-            facts = " or ".join(dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified))
+            facts = " or ".join(
+                dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified)
+            )
             yield stream.place, f"stream '{stream.name}' is never used: nothing asks for {facts}"
 
 
 def _unused_functions(domain: Domain, streams: StreamFile) -> Iterator[tuple[Place, str]]:
-    """Functions that no action's cost names."""
+    """Find functions that no action's cost names."""
     used = {action.cost.predicate for action in domain.actions if isinstance(action.cost, Atom)}
     for function in streams.functions:
         if function.name not in used and function.place is not None:
@@ -87,28 +113,44 @@ def _uncertified(streams: StreamFile) -> Iterator[tuple[Place, str]]:
         certified = {term for atom in stream.certified for term in atom.terms}
         for output in stream.outputs:
             if output not in certified and stream.place is not None:
-                what = f"output {output} of stream '{stream.name}' is never certified: no action can use it"
-                yield stream.place, what
+                what = f"output {output} of stream '{stream.name}' is never certified"
+                yield stream.place, f"{what}: no action can use it"
 
 
 def _unachievable(
     domain: Domain, streams: StreamFile | None, goal: Formula, initial: Collection[Fact]
 ) -> Iterator[tuple[Place, str]]:
-    """Goal atoms of predicates that nothing makes true, and that do not hold at the start either."""
-    makers = {effect.atom.predicate for action in domain.actions for effect in action.effects if effect.adds}
+    """Find goal atoms of predicates that nothing makes true, and that do not hold at the start
+    either.
+    """
+    makers = {
+        effect.atom.predicate
+        for action in domain.actions
+        for effect in action.effects
+        if effect.adds
+    }
     makers |= domain.derived_predicates | {"="}
     for stream in (*streams.streams, *streams.rules) if streams else ():
         makers |= {atom.predicate for atom in stream.certified}
     given = {fact[0] for fact in initial}
     for atom in _atoms(goal, positive_only=True):
-        if atom.predicate in makers or (atom.predicate in domain.types and atom.predicate not in domain.predicates):
+        if atom.predicate in makers or (
+            atom.predicate in domain.types and atom.predicate not in domain.predicates
+        ):
             continue
-        ground = not any(term.startswith("?") for term in atom.terms)
-        if (atom.predicate, *atom.terms) in initial if ground else atom.predicate in given:
+        without_variables = not any(term.startswith("?") for term in atom.terms)
+        if (
+            (atom.predicate, *atom.terms) in initial
+            if without_variables
+            else atom.predicate in given
+        ):
             continue
         if atom.place is not None:
             text = " ".join((atom.predicate, *atom.terms))
-            yield atom.place, f"goal ({text}): no action, rule or stream makes '{atom.predicate}' true"
+            yield (
+                atom.place,
+                f"goal ({text}): no action, rule or stream makes '{atom.predicate}' true",
+            )
 
 
 def _conditions(domain: Domain) -> Iterator[Atom]:
@@ -120,7 +162,9 @@ def _conditions(domain: Domain) -> Iterator[Atom]:
         yield from _atoms(rule.body)
 
 
-def _atoms(formula: Formula | None, *, positive_only: bool = False, sign: bool = True) -> Iterator[Atom]:
+def _atoms(
+    formula: Formula | None, *, positive_only: bool = False, sign: bool = True
+) -> Iterator[Atom]:
     parts: Iterable[Formula] = ()
     match formula:
         case None:

@@ -27,7 +27,7 @@ class Group:
 
     @property
     def head(self) -> str | None:
-        """The text of its first item when that is a symbol."""
+        """Return the text of its first item when that is a symbol."""
         first = self.items[0] if self.items else None
         return first.text if isinstance(first, Symbol) else None
 
@@ -36,22 +36,33 @@ Node = Symbol | Group
 
 
 def error(
-    where: Node | Place, message: str, *, found: str | None = None, choices: Iterable[str] = (), remedy: str = ""
+    where: Node | Place,
+    message: str,
+    *,
+    found: str | None = None,
+    choices: Iterable[str] = (),
+    remedy: str = "",
 ) -> InputError:
-    """An InputError at a node's place."""
+    """Make an InputError at a node's place."""
     place = where if isinstance(where, Place) else where.place
     return InputError(
-        message, file=place.file, line=place.line, column=place.column, found=found, choices=choices, remedy=remedy
+        message,
+        file=place.file,
+        line=place.line,
+        column=place.column,
+        found=found,
+        choices=choices,
+        remedy=remedy,
     )
 
 
 def warning(where: Node | Place, message: str) -> str:
-    """A message at a node's place, for what is odd but no error."""
+    """Word a warning at a node's place, for what is odd but no error."""
     return str(error(where, message))
 
 
 def show(node: Node) -> str:
-    """The node in a few characters, for messages."""
+    """Show the node in a few characters, for messages."""
     if isinstance(node, Symbol):
         return f"'{node.written}'"
     first = node.items[0] if node.items else None
@@ -61,14 +72,14 @@ def show(node: Node) -> str:
 
 
 def as_symbol(node: Node, what: str) -> Symbol:
-    """The node as a symbol; `what` says what was expected: "a type"."""
+    """Return the node as a symbol; `what` says what was expected: "a type"."""
     if isinstance(node, Group):
         raise error(node, f"expected {what}, found {show(node)}")
     return node
 
 
 def as_name(node: Node, what: str) -> Symbol:
-    """The node as a symbol that names something: no variable, keyword or dash."""
+    """Return the node as a symbol that names something: no variable, keyword or dash."""
     symbol = as_symbol(node, what)
     if symbol.text[0] in "?:" or symbol.text == "-":
         raise error(symbol, f"expected {what}, found '{symbol.written}'")
@@ -76,7 +87,7 @@ def as_name(node: Node, what: str) -> Symbol:
 
 
 def as_variable(node: Node) -> Symbol:
-    """The node as a variable, such as ?x."""
+    """Return the node as a variable, such as ?x."""
     symbol = as_symbol(node, "a variable such as ?x")
     if symbol.text[0] != "?" or len(symbol.text) == 1:
         raise error(symbol, f"expected a variable such as ?x, found '{symbol.written}'")
@@ -84,7 +95,9 @@ def as_variable(node: Node) -> Symbol:
 
 
 def as_group(node: Node, what: str) -> Group:
-    """The node as a parenthesised list; `what` says what was expected: "a condition such as (on ?a ?b)"."""
+    """Return the node as a parenthesised list; `what` says what was expected: "a condition such
+    as (on ?a ?b)".
+    """
     if isinstance(node, Symbol):
         raise error(node, f"expected {what}, found '{node.written}'")
     return node

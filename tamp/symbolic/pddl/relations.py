@@ -1,7 +1,9 @@
-"""What the relations of a streams file are about: which certified facts say that one holds, and of what it is asked.
+"""The relations of a streams file: which certified facts say that one holds, and of what it is
+asked.
 
-By convention a relation R has the streams sample-R, which proposes, and test-R, which judges. What test-R certifies
-says that R holds; where there is no such stream, it is what sample-R alone certifies.
+By convention a relation R has the streams sample-R, which proposes, and test-R, which judges. What
+test-R certifies says that R holds; where there is no such stream, it is what sample-R alone
+certifies.
 """
 
 from __future__ import annotations
@@ -30,7 +32,8 @@ class Relation:
     Attributes:
         name: R.
         facts: What says that it holds, over variables: (stood ?o ?p ?s).
-        arguments: The variables that stand for names, in the order in which a classifier is asked of them.
+        arguments: The variables that stand for names, in the order in which a classifier is asked
+            of them.
         poses: Each variable that stands for a pose, to the variable of the body that has it.
         stream: What certifies the facts.
     """
@@ -43,34 +46,44 @@ class Relation:
 
     @property
     def predicates(self) -> frozenset[str]:
-        """Of the facts."""
+        """Return the predicates of the facts."""
         return frozenset(atom.predicate for atom in self.facts)
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """The arguments whose poses it depends on."""
+        """Return the arguments whose poses it depends on."""
         return tuple(variable for variable in self.arguments if variable in self.poses.values())
 
-    def ground(self, names: Mapping[str, str], at: Mapping[str, str]) -> tuple[Fact, ...]:
-        """The facts of arguments, by their variables, whose bodies are at poses, by the bodies' names."""
+    def substitute(self, names: Mapping[str, str], at: Mapping[str, str]) -> tuple[Fact, ...]:
+        """Substitute names for arguments' variables, and poses by the bodies' names, in the
+        facts.
+        """
         terms = {**names, **{pose: at[names[body]] for pose, body in self.poses.items()}}
-        return tuple((atom.predicate, *(terms.get(term, term) for term in atom.terms)) for atom in self.facts)
+        return tuple(
+            (atom.predicate, *(terms.get(term, term) for term in atom.terms)) for atom in self.facts
+        )
 
 
 def relation_names(streams: StreamFile) -> tuple[str, ...]:
-    """Every R of which there is a stream sample-R or test-R."""
+    """Return every R of which there is a stream sample-R or test-R."""
     split = [stream.name.partition("-") for stream in streams.streams]
-    return tuple(dict.fromkeys(name for verb, _, name in split if verb in ("sample", "test") and name))
+    return tuple(
+        dict.fromkeys(name for verb, _, name in split if verb in ("sample", "test") and name)
+    )
 
 
 def relation_of(streams: StreamFile, domain: Domain, name: str) -> Relation | None:
-    """The relation of a name; None where no fact says by its terms alone, poses and names, that it holds."""
+    """Return the relation of a name; None where no fact says by its terms alone, poses and
+    names, that it holds.
+    """
     by_name = {stream.name: stream for stream in streams.streams}
     test, sample = by_name.get(f"test-{name}"), by_name.get(f"sample-{name}")
     stream = test or sample
     if stream is None or (test is not None and test.outputs):
         return None
-    others = {atom.predicate for one in streams.streams if one is not stream for atom in one.certified}
+    others = {
+        atom.predicate for one in streams.streams if one is not stream for atom in one.certified
+    }
     facts = stream.certified
     if test is None:
         facts = tuple(atom for atom in facts if atom.predicate not in others | {POSE})
@@ -95,13 +108,15 @@ def instances(
     placed: Collection[str],
     named: Collection[str],
 ) -> Iterator[dict[str, str]]:
-    """What a relation may be asked of: its arguments' variables to names, a body never together with itself.
+    """Generate what a relation may be asked of: its arguments' variables to names, a body never
+    together with itself.
 
     Args:
         relation: The relation.
         domain: Its domain.
         objects: Types by name.
-        facts: What is known of objects: (movable mug), where the domain has predicates in the place of types.
+        facts: What is known of objects: (movable mug), where the domain has predicates in the place
+            of types.
         placed: Bodies that have a pose.
         named: Bodies and places of the scene.
     """
@@ -124,21 +139,28 @@ def instances(
 
 
 def needed_false(domain: Domain, goal: Formula, predicates: Collection[str]) -> Atom | None:
-    """An atom of a condition that is helped by one of the predicates being false; None where there is none.
+    """Find an atom of a condition that is helped by one of the predicates being false; None where
+    there is none.
 
-    It is the condition's own: (upright tea table) where rules lead from `upright` to the predicate. Whether an effect
-    happens has to be known both ways.
+    It is the condition's own: (upright tea table) where rules lead from `upright` to the predicate.
+    Whether an effect happens has to be known both ways.
     """
     roots = [*signed_atoms(goal)]
     for action in domain.actions:
         roots += signed_atoms(action.precondition)
         for effect in action.effects:
-            roots += [(atom, sign) for atom, one in signed_atoms(effect.condition) for sign in (one, not one)]
+            roots += [
+                (atom, sign)
+                for atom, one in signed_atoms(effect.condition)
+                for sign in (one, not one)
+            ]
     return next((atom for atom, sign in roots if _leads(atom, sign, domain, predicates)), None)
 
 
 def _leads(atom: Atom, sign: bool, domain: Domain, predicates: Collection[str]) -> bool:
-    """Whether an atom that helps by holding, or by not holding, rests on one of the predicates being false."""
+    """Check that an atom that helps by holding, or by not holding, rests on one of the
+    predicates being false.
+    """
     stack, seen = [(atom.predicate, sign)], set[tuple[str, bool]]()
     while stack:
         predicate, helps = stack.pop()
@@ -147,30 +169,46 @@ def _leads(atom: Atom, sign: bool, domain: Domain, predicates: Collection[str]) 
         if (predicate, helps) not in seen:
             seen.add((predicate, helps))
             bodies = (rule.body for rule in domain.derived if rule.head.predicate == predicate)
-            stack += [(one.predicate, way) for body in bodies for one, way in signed_atoms(body, helps)]
+            stack += [
+                (one.predicate, way) for body in bodies for one, way in signed_atoms(body, helps)
+            ]
     return False
 
 
 def failing(relation: Relation, domain: Domain) -> Stream:
-    """The declaration of a stream that certifies that a relation does not hold, for poses of any origin."""
+    """Declare a stream that certifies that a relation does not hold, for poses of any origin."""
     conditions = [Atom(POSE, (body, pose)) for pose, body in relation.poses.items()]
     for variable in relation.arguments:
         types, kinds = _wanted(relation.stream, relation.facts, domain, variable)
-        conditions += [Atom(one, (variable,)) for one in (*(one[0] for one in types if len(one) == 1), *kinds)]
-    certified = tuple(Atom(complement_name(atom.predicate, domain), atom.terms) for atom in relation.facts)
+        conditions += [
+            Atom(one, (variable,)) for one in (*(one[0] for one in types if len(one) == 1), *kinds)
+        ]
+    certified = tuple(
+        Atom(complement_name(atom.predicate, domain), atom.terms) for atom in relation.facts
+    )
     inputs = tuple(_in_order(relation))
-    return Stream(f"test-not-{relation.name}", inputs, tuple(conditions), (), certified, (), relation.stream.place)
+    return Stream(
+        f"test-not-{relation.name}",
+        inputs,
+        tuple(conditions),
+        (),
+        certified,
+        (),
+        relation.stream.place,
+    )
 
 
 def _in_order(relation: Relation) -> Iterator[str]:
-    """The variables, a pose after its body."""
+    """Generate the variables, a pose after its body."""
     for variable in relation.arguments:
         yield variable
         yield from (pose for pose, body in relation.poses.items() if body == variable)
 
 
 def _roles(stream: Stream, poses: Collection[str]) -> tuple[tuple[str, ...], dict[str, str]]:
-    """The variables that stand for names, in order, and those for poses: each is that of the body before it."""
+    """Tell the variables that stand for names, in order, from those for poses: each is that of
+    the body before it.
+    """
     names: list[str] = []
     bodies: dict[str, str] = {}
     for variable in stream.inputs:
@@ -183,13 +221,25 @@ def _roles(stream: Stream, poses: Collection[str]) -> tuple[tuple[str, ...], dic
 
 
 def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> set[str]:
-    """The variables of a stream that stand for poses, by what the domain declares or by what is sampled."""
+    """Find the variables of a stream that stand for poses, by what the domain declares or by
+    what is sampled.
+    """
     positions = {*POSITIONS}
     for one in domain.predicates.values():
-        positions |= {(one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types}
+        positions |= {
+            (one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types
+        }
     if sample is not None:
-        atoms = [(atom.predicate, at, term) for atom in sample.certified for at, term in enumerate(atom.terms)]
-        positions |= {(one, at) for one, at, term in atoms if term in sample.outputs and _may_be_pose(domain, one, at)}
+        atoms = [
+            (atom.predicate, at, term)
+            for atom in sample.certified
+            for at, term in enumerate(atom.terms)
+        ]
+        positions |= {
+            (one, at)
+            for one, at, term in atoms
+            if term in sample.outputs and _may_be_pose(domain, one, at)
+        }
     atoms = [(atom.predicate, at, term) for atom in (*stream.domain, *stream.certified)
              for at, term in enumerate(atom.terms)]  # fmt: skip
     return {term for predicate, at, term in atoms if (predicate, at) in positions}
@@ -197,13 +247,17 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
 
 def _may_be_pose(domain: Domain, predicate: str, at: int) -> bool:
     declared = domain.predicates.get(predicate)
-    return declared is not None and any(one in ("object", POSE) for one in declared.parameters[at].types)
+    return declared is not None and any(
+        one in ("object", POSE) for one in declared.parameters[at].types
+    )
 
 
 def _wanted(
     stream: Stream, facts: Collection[Atom], domain: Domain, variable: str
 ) -> tuple[list[tuple[str, ...]], list[str]]:
-    """What an argument has to be: types, of each tuple one; and kinds that the domain has as predicates."""
+    """Return what an argument has to be: types, of each tuple one; and kinds that the domain has
+    as predicates.
+    """
     types: dict[tuple[str, ...], None] = {}
     kinds: dict[str, None] = {}
     for atom in (*stream.domain, *facts):
@@ -214,5 +268,9 @@ def _wanted(
             kinds[atom.predicate] = None
         else:
             pairs = zip(atom.terms, declared.parameters, strict=True)
-            types |= {one.types: None for term, one in pairs if term == variable and "object" not in one.types}
+            types |= {
+                one.types: None
+                for term, one in pairs
+                if term == variable and "object" not in one.types
+            }
     return list(types), list(kinds)

@@ -1,4 +1,6 @@
-"""The frame of every PDDL file: `(define (domain NAME) (:section ...) ...)`, and `:keyword value` pairs inside."""
+"""The frame of every PDDL file: `(define (domain NAME) (:section ...) ...)`, and `:keyword value`
+pairs inside.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +22,12 @@ class Section:
     group: Group
 
 
-def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path | None) -> tuple[Symbol, list[Section]]:
-    """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords checked."""
+def read_sections(
+    text: str, kind: str, known: Sequence[str], file: str | Path | None
+) -> tuple[Symbol, list[Section]]:
+    """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords
+    checked.
+    """
     frame = f"(define ({kind} NAME) ...)"
     form = as_group(read_one(text, frame, file), frame)
     if form.head != "define":
@@ -32,12 +38,16 @@ def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path |
     if title.head != kind:
         raise error(title, f"expected ({kind} NAME), found {show(title)}")
     if len(title.items) != 2:
-        raise error(title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names")
-    return as_name(title.items[1], "a name"), [_section(item, kind, known) for item in form.items[2:]]
+        raise error(
+            title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names"
+        )
+    return as_name(title.items[1], "a name"), [
+        _section(item, kind, known) for item in form.items[2:]
+    ]
 
 
 def single(sections: Sequence[Section], keyword: str) -> Section | None:
-    """The only section of that keyword, or None."""
+    """Return the only section of that keyword, or None."""
     found = [section for section in sections if section.keyword.text == keyword]
     if len(found) > 1:
         first = found[0].keyword.place.line
@@ -46,7 +56,7 @@ def single(sections: Sequence[Section], keyword: str) -> Section | None:
 
 
 def items_of(sections: Sequence[Section], keyword: str) -> tuple[Node, ...]:
-    """What stands in the only section of that keyword; nothing without one."""
+    """Return what stands in the only section of that keyword; nothing without one."""
     section = single(sections, keyword)
     return section.items if section else ()
 
@@ -60,7 +70,12 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
         if keyword.text not in known and keyword.text in FEATURES:
             raise error(keyword, unsupported(keyword.text, keyword.written))
         if keyword.text not in known:
-            raise error(keyword, f"unknown keyword '{keyword.written}' of {owner}", found=keyword.text, choices=known)
+            raise error(
+                keyword,
+                f"unknown keyword '{keyword.written}' of {owner}",
+                found=keyword.text,
+                choices=known,
+            )
         if keyword.text in values:
             raise error(keyword, f"keyword '{keyword.text}' of {owner} stands twice")
         value = nodes[position + 1] if position + 1 < len(nodes) else None

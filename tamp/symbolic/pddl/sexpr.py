@@ -15,13 +15,17 @@ MAX_DEPTH = 100
 """Deeper nesting is refused, so that no later recursion over the tree can overflow."""
 
 MAX_WORD = 1000
-"""Characters; longer words are refused: none has a meaning, and numbers of thousands of digits take their time."""
+"""Characters; longer words are refused: none has a meaning, and numbers of thousands of digits take
+their time.
+"""
 
 MAX_TOKENS = 1_000_000
 """Words and parentheses of a text; more would need gigabytes."""
 
 MANY = 200_000
-"""Words from which on a text is not searched for its wrong parenthesis: the place where it was noticed is named."""
+"""Words from which on a text is not searched for its wrong parenthesis: the place where it was
+noticed is named.
+"""
 
 _WORD = re.compile(r"[()]|\?[^\s()?;]*|[^\s()?;]+")
 """A variable begins a word of its own: Fast Downward reads `(aircraft?a)` as `(aircraft ?a)`."""
@@ -51,20 +55,30 @@ def read(
     for count, (word, line, column) in enumerate(words):
         items = stack[-1][1] if stack else forms
         if count >= MAX_TOKENS:
-            raise error(Place(name, line, column), f"more than {MAX_TOKENS:,} words and parentheses")
+            raise error(
+                Place(name, line, column), f"more than {MAX_TOKENS:,} words and parentheses"
+            )
         if word == "(":
             if len(stack) >= MAX_DEPTH:
-                raise error(Place(name, line, column), f"nested more than {MAX_DEPTH} parentheses deep")
+                raise error(
+                    Place(name, line, column), f"nested more than {MAX_DEPTH} parentheses deep"
+                )
             stack.append((Place(name, line, column), []))
         elif word == ")":
             if not stack:
-                culprit = surplus(_tokens(text, name, line_offset, column_offset)).place if count < MANY else None
+                culprit = (
+                    surplus(_tokens(text, name, line_offset, column_offset)).place
+                    if count < MANY
+                    else None
+                )
                 where = culprit or Place(name, line, column)
                 raise error(where, "this ')' closes nothing: there is one too many")
             place, inner = stack.pop()
             (stack[-1][1] if stack else forms).append(Group(tuple(inner), place))
         else:
-            items.append(Symbol(lower.setdefault(word, word.lower()), word, Place(name, line, column)))
+            items.append(
+                Symbol(lower.setdefault(word, word.lower()), word, Place(name, line, column))
+            )
     if stack:
         tokens = _tokens(text, name, line_offset, column_offset)
         culprit = left_open(tokens).place if len(tokens) < MANY else stack[-1][0]
@@ -73,9 +87,16 @@ def read(
 
 
 def read_one(
-    text: str, what: str, file: str | Path | None = None, *, line_offset: int = 0, column_offset: int = 0
+    text: str,
+    what: str,
+    file: str | Path | None = None,
+    *,
+    line_offset: int = 0,
+    column_offset: int = 0,
 ) -> Node:
-    """Read a text that holds exactly one s-expression; `what` says which: "(define (domain NAME) ...)"."""
+    """Read a text that holds exactly one s-expression; `what` says which: "(define (domain NAME)
+    ...)".
+    """
     forms = read(text, file, line_offset=line_offset, column_offset=column_offset)
     if not forms:
         start = Place(None if file is None else str(file), 1 + line_offset, 1 + column_offset)
@@ -87,7 +108,9 @@ def read_one(
 
 
 def _tokens(text: str, file: str | None, line_offset: int, column_offset: int) -> list[Token]:
-    """The first MANY words with what their indentation says, for a text whose parentheses do not match."""
+    """Return the first MANY words with what their indentation says, for a text whose parentheses
+    do not match.
+    """
     tokens: list[Token] = []
     last, indent = 0, 0
     for word, line, column in islice(_words(text, file, line_offset, column_offset), MANY):
@@ -97,8 +120,10 @@ def _tokens(text: str, file: str | None, line_offset: int, column_offset: int) -
     return tokens
 
 
-def _words(text: str, file: str | None, line_offset: int, column_offset: int) -> Iterator[tuple[str, int, int]]:
-    """Each word and parenthesis with its line and column."""
+def _words(
+    text: str, file: str | None, line_offset: int, column_offset: int
+) -> Iterator[tuple[str, int, int]]:
+    """Generate each word and parenthesis with its line and column."""
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     known: dict[str, str] = {}
     for number, line in enumerate(lines, start=1 + line_offset):

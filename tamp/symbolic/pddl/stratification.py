@@ -1,4 +1,4 @@
-"""The order in which derived predicates can be evaluated."""
+"""Stratification: the order in which derived predicates can be evaluated."""
 
 from __future__ import annotations
 
@@ -9,16 +9,21 @@ from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formu
 
 
 def strata(rules: Sequence[Derived]) -> dict[str, int]:
-    """The stratum of every derived predicate, counted from 0.
+    """Compute the stratum of every derived predicate, counted from 0.
 
-    A predicate stands no lower than those it rests on, and above those whose negation it rests on: with the strata
-    below complete, what is not derived is false (Thiébaux, Hoffmann, Nebel: In Defense of PDDL Axioms, 2005).
+    A predicate stands no lower than those it rests on, and above those whose negation it rests on:
+    with the strata below complete, what is not derived is false (Thiébaux, Hoffmann, Nebel: In
+    Defense of PDDL Axioms, 2005).
 
     Raises:
         InputError: When a predicate rests on its own negation, at that negation.
     """
     levels = {rule.head.predicate: 0 for rule in rules}
-    uses = [(rule.head.predicate, atom, positive) for rule in rules for atom, positive in _uses(rule.body, True)]
+    uses = [
+        (rule.head.predicate, atom, positive)
+        for rule in rules
+        for atom, positive in _uses(rule.body, True)
+    ]
     uses = [use for use in uses if use[1].predicate in levels]
     # Levels only rise; one that exceeds the number of predicates rises for ever.
     changed = True
@@ -35,7 +40,7 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
 
 
 def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
-    """The error at the first negation that lies on a cycle."""
+    """Make the error at the first negation that lies on a cycle."""
     for head, atom, positive in uses:
         way = None if positive else _way(atom.predicate, head, uses)
         if way:
@@ -46,7 +51,7 @@ def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
 
 
 def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple[str, ...] | None:
-    """Predicates from `start` to `goal`, each resting on the next."""
+    """Find predicates from `start` to `goal`, each resting on the next."""
     ways: list[tuple[str, ...]] = [(start,)]
     seen = {start}
     while ways:
@@ -61,7 +66,9 @@ def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple
 
 
 def _uses(formula: Formula, positive: bool) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of a formula, and whether each stands under an even number of negations."""
+    """Generate the atoms of a formula, and whether each stands under an even number of
+    negations.
+    """
     match formula:
         case Atom():
             yield formula, positive

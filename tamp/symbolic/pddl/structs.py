@@ -88,7 +88,9 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """A lifted action. `cost` is a number, or a function term whose value is a fact's cost (":function" streams)."""
+    """A lifted action. `cost` is a number, or a function term whose value is a fact's cost
+    (":function" streams).
+    """
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -100,7 +102,9 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class Derived:
-    """A derived predicate's rule: head(parameters) holds when the body does. A head may have several rules."""
+    """A derived predicate's rule: head(parameters) holds when the body does. A head may have
+    several rules.
+    """
 
     head: Atom
     parameters: tuple[Parameter, ...]
@@ -119,10 +123,11 @@ class Predicate:
 
 @dataclass(frozen=True)
 class Domain:
-    """A parsed domain. `types` maps each type to its parent; "object" is the root and its own parent.
+    """A parsed domain. `types` maps each type to its parent; "object" is the root and its own
+    parent.
 
-    A type declared below `(either a b)` or twice has further parents, in `more_parents`; so ask `is_a`. `notes` are
-    oddities that are no errors, each with its place.
+    A type declared below `(either a b)` or twice has further parents, in `more_parents`; so ask
+    `is_a`. `notes` are oddities that are no errors, each with its place.
     """
 
     name: str
@@ -137,7 +142,7 @@ class Domain:
     notes: tuple[str, ...] = ()
 
     def is_a(self, type_: str, ancestor: str) -> bool:
-        """Whether `type_` is `ancestor` or below it."""
+        """Check that `type_` is `ancestor` or below it."""
         waiting, seen = [type_], {type_}
         while waiting:
             one = waiting.pop()
@@ -149,26 +154,31 @@ class Domain:
         return False
 
     def fits(self, types: tuple[str, ...], wanted: tuple[str, ...]) -> bool:
-        """Whether an object of all these types may stand where one of the `wanted` types is asked for."""
+        """Check that an object of all these types may stand where one of the `wanted` types is
+        asked for.
+        """
         return "object" in wanted or any(self.is_a(own, want) for own in types for want in wanted)
 
     @property
     def fluent_predicates(self) -> frozenset[str]:
-        """Names of the predicates that some action changes."""
-        return frozenset(effect.atom.predicate for action in self.actions for effect in action.effects)
+        """Name the predicates that some action changes."""
+        return frozenset(
+            effect.atom.predicate for action in self.actions for effect in action.effects
+        )
 
     @property
     def derived_predicates(self) -> frozenset[str]:
-        """Names of the predicates that rules define."""
+        """Name the predicates that rules define."""
         return frozenset(rule.head.predicate for rule in self.derived)
 
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """A stream's declaration: given inputs for which `domain` holds, its function yields outputs for which
-    `certified` holds.
+    """A stream's declaration: given inputs for which `domain` holds, its function yields outputs
+    for which `certified` holds.
 
-    Without outputs it is a test. `fluents` names the predicates whose facts in the current state its function is shown.
+    Without outputs it is a test. `fluents` names the predicates whose facts in the current state
+    its function is shown.
     """
 
     name: str
@@ -215,7 +225,8 @@ class StreamFile:
 
 @dataclass(frozen=True)
 class Task:
-    """A symbolic problem: objects with their types, initial facts, goal, and costs of function facts.
+    """A symbolic problem: objects with their types, initial facts, goal, and costs of function
+    facts.
 
     `notes` are oddities of its file that are no errors, each with its place.
     """

@@ -9,8 +9,24 @@ from pathlib import Path
 from tamp.symbolic.pddl.declarations import check_requirements, parse_objects
 from tamp.symbolic.pddl.effects import TOTAL_COST, parse_number
 from tamp.symbolic.pddl.features import FEATURES, lacking, unsupported
-from tamp.symbolic.pddl.formulas import Scope, parse_atom, parse_formula, parse_function_term, scope_of
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, as_group, as_name, as_symbol, error, show, warning
+from tamp.symbolic.pddl.formulas import (
+    Scope,
+    parse_atom,
+    parse_formula,
+    parse_function_term,
+    scope_of,
+)
+from tamp.symbolic.pddl.nodes import (
+    Group,
+    Node,
+    Symbol,
+    as_group,
+    as_name,
+    as_symbol,
+    error,
+    show,
+    warning,
+)
 from tamp.symbolic.pddl.sections import Section, items_of, read_sections, single
 from tamp.symbolic.pddl.sexpr import read, read_one
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, Task
@@ -40,7 +56,11 @@ def parse_goal(
         InputError: With file, line and column of what is wrong.
     """
     node = read_one(
-        text, "one condition, (and ...) for several", file, line_offset=line_offset, column_offset=column_offset
+        text,
+        "one condition, (and ...) for several",
+        file,
+        line_offset=line_offset,
+        column_offset=column_offset,
     )
     return parse_formula(node, scope_of(domain, objects))
 
@@ -53,17 +73,24 @@ def parse_facts(
     line_offset: int = 0,
     column_offset: int = 0,
 ) -> frozenset[Fact]:
-    """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of `parse_goal`."""
+    """Read initial facts, "(hand-empty) (at-pose mug p0)"; the arguments are those of
+    `parse_goal`.
+    """
     scope = scope_of(domain, objects)
     texts = (text,) if isinstance(text, str) else text
-    nodes = [n for t in texts for n in read(t, file, line_offset=line_offset, column_offset=column_offset)]
+    nodes = [
+        n
+        for t in texts
+        for n in read(t, file, line_offset=line_offset, column_offset=column_offset)
+    ]
     return frozenset(_fact(node, scope) for node in nodes)
 
 
 def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Task:
     """Read a plain PDDL problem file.
 
-    Costs count where it has a `:metric`; without one every action counts one, whatever the domain says.
+    Costs count where it has a `:metric`; without one every action counts one, whatever the domain
+    says.
 
     Raises:
         InputError: With file, line and column of what is wrong.
@@ -71,7 +98,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     name, sections = read_sections(text, "problem", SECTIONS, file)
     notes = [*check_requirements(items_of(sections, ":requirements"))]
     notes += _check_domain(single(sections, ":domain"), domain)
-    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants)
+    objects = parse_objects(
+        items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants
+    )
     scope = replace(scope_of(domain, objects, notes), any_type=True)
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
@@ -81,7 +110,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
             term, value = _cost(node, scope)
             if costs.setdefault(term, value) != value:
                 shown = " ".join(term)
-                raise error(node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}")
+                raise error(
+                    node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}"
+                )
         elif isinstance(node, Group) and node.head == "not":
             denied[_negative(node, scope)] = node
         else:
@@ -95,7 +126,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     metric = single(sections, ":metric")
     _check_metric(metric)
     if metric is None and any(action.cost != 1.0 for action in domain.actions):
-        domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
+        domain = replace(
+            domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions)
+        )
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
         notes.append(warning(name, what))
     formula = parse_formula(goal.items[0], scope)
@@ -110,14 +143,21 @@ def _fact(node: Node, scope: Scope) -> Fact:
         raise error(group, lacking("(at TIME FACT)", "timed initial literals"))
     atom = parse_atom(group, scope)
     if atom.predicate not in scope.domain.predicates:
-        raise error(group, f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact")
+        raise error(
+            group,
+            f"'{atom.predicate}' is a type; "
+            "it is given where the object is declared, not as a fact",
+        )
     if atom.predicate in scope.domain.derived_predicates:
-        raise error(group, f"'{atom.predicate}' is derived: its rules say where it holds, it cannot be a fact")
+        raise error(
+            group,
+            f"'{atom.predicate}' is derived: its rules say where it holds, it cannot be a fact",
+        )
     return (atom.predicate, *atom.terms)
 
 
 def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
-    """`(= (distance a b) 3)`."""
+    """Parse `(= (distance a b) 3)`."""
     if len(node.items) != 3:
         raise error(node, "expected (= (FUNCTION object ...) NUMBER)")
     term = parse_function_term(node.items[1], scope)
@@ -131,26 +171,34 @@ def _cost(node: Group, scope: Scope) -> tuple[Fact, float]:
 
 
 def _negative(node: Group, scope: Scope) -> Fact:
-    """`(not FACT)` in :init says what is so anyhow: the fact."""
+    """Parse `(not FACT)` in :init, which says what is so anyhow: the fact."""
     if len(node.items) != 2:
         raise error(node, "'not' takes one fact")
     return _fact(node.items[1], scope)
 
 
 def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
-    """A note when the problem names another domain: collections of problems do, where a domain has variants."""
+    """Note when the problem names another domain: collections of problems do, where a domain has
+    variants.
+    """
     if section is None:
         return ()
     if len(section.items) != 1:
         raise error(section.group, "a problem has one (:domain NAME)")
     name = as_name(section.items[0], "the domain's name")
     if name.text != domain.name:
-        return (warning(name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"),)
+        return (
+            warning(
+                name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"
+            ),
+        )
     return ()
 
 
 def _check_metric(section: Section | None) -> None:
-    """Only `(:metric minimize (total-cost))` is known, with total-cost also without parentheses."""
+    """Check the metric: only `(:metric minimize (total-cost))` is known, with total-cost also
+    without parentheses.
+    """
     if section is None:
         return
     direction, *rest = section.items or (section.group,)
@@ -169,4 +217,8 @@ def _check_metric(section: Section | None) -> None:
 
 
 def _words(node: Node) -> set[str]:
-    return {node.text} if isinstance(node, Symbol) else {word for item in node.items for word in _words(item)}
+    return (
+        {node.text}
+        if isinstance(node, Symbol)
+        else {word for item in node.items for word in _words(item)}
+    )

@@ -1,7 +1,7 @@
 """Typed lists: `?a ?b - body ?c - (either pose grasp)`.
 
-As Fast Downward reads them: no names before a type are an empty list, and where names are mere placeholders, in
-declarations, one may stand twice.
+As Fast Downward reads them: no names before a type are an empty list, and where names are mere
+placeholders, in declarations, one may stand twice.
 """
 
 from __future__ import annotations
@@ -46,16 +46,21 @@ def parameters(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Paramet
     entries = typed_list(nodes, "a variable such as ?x")
     for entry in entries:
         as_variable(entry.name)
-    return tuple(Parameter(entry.name.text, known_types(entry.types, types) or ("object",)) for entry in entries)
+    return tuple(
+        Parameter(entry.name.text, known_types(entry.types, types) or ("object",))
+        for entry in entries
+    )
 
 
 def placeholders(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Parameter, ...]:
-    """Read the parameters of a declaration, whose names mean nothing: one that stands twice is two parameters."""
+    """Read the parameters of a declaration, whose names mean nothing: one that stands twice is two
+    parameters.
+    """
     return distinct(parameters(nodes, types))
 
 
 def distinct(listed: Sequence[Parameter], taken: Collection[str] = ()) -> tuple[Parameter, ...]:
-    """The parameters with a number behind each name that is taken or has stood before: ?x ?x~2 ?x~3."""
+    """Put a number behind each parameter's name that is taken or has stood before: ?x ?x~2 ?x~3."""
     used, numbers = set(taken), dict[str, int]()
     result: list[Parameter] = []
     for parameter in listed:
@@ -69,11 +74,13 @@ def distinct(listed: Sequence[Parameter], taken: Collection[str] = ()) -> tuple[
 
 
 def known_types(written: Iterable[Symbol], types: Mapping[str, str]) -> tuple[str, ...]:
-    """The types' names, each checked to be declared."""
+    """Return the types' names, each checked to be declared."""
     written = tuple(written)
     for symbol in written:
         if symbol.text not in types:
-            raise error(symbol, f"unknown type '{symbol.written}'", found=symbol.text, choices=types)
+            raise error(
+                symbol, f"unknown type '{symbol.written}'", found=symbol.text, choices=types
+            )
     return tuple(dict.fromkeys(symbol.text for symbol in written))
 
 
@@ -82,7 +89,10 @@ def refuse_duplicates(names: Iterable[Symbol], what: str) -> None:
     seen: dict[str, Symbol] = {}
     for name in names:
         if name.text in seen:
-            raise error(name, f"{what} '{name.written}' stands twice; first in line {seen[name.text].place.line}")
+            raise error(
+                name,
+                f"{what} '{name.written}' stands twice; first in line {seen[name.text].place.line}",
+            )
         seen[name.text] = name
 
 

@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from heapq import heappop, heappush
 
-from tamp.symbolic.search.expansion import Expansion, Plan
+from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.successors import State
 
 
-def astar(search: Expansion) -> Plan | None:
-    """A* with reopening; ties are broken for the lower estimate, then for the younger state.
+def astar(search: SearchSpace) -> Plan | None:
+    """Run A* with reopening; break ties for the lower estimate, then for the younger state.
 
-    A state is evaluated when it is taken from the queue for the first time; until then its parent's estimate less the
-    operator's cost stands for it, which is as admissible. Several heuristics count with their maximum.
+    A state is evaluated when it is taken from the queue for the first time; until then its parent's
+    estimate less the operator's cost stands for it, which is as admissible. Several heuristics
+    count with their maximum.
     """
     s = search.successors
     estimates: dict[State, float] = {}
-    queue: list[tuple[float, float, int, float, State, State]] = [(0.0, 0.0, 0, 0.0, s.initial, s.initial)]
+    queue: list[tuple[float, float, int, float, State, State]] = [
+        (0.0, 0.0, 0, 0.0, s.initial, s.initial)
+    ]
     number = 0
     while queue:
         f, guess, _, cost, state, parent = heappop(queue)
@@ -59,8 +62,9 @@ def astar(search: Expansion) -> Plan | None:
     return None
 
 
-def best_first(search: Expansion) -> Plan | None:
-    """Greedy best-first search: costs do not count, the state of the lowest estimate is next, then the younger one.
+def best_first(search: SearchSpace) -> Plan | None:
+    """Run greedy best-first search: costs do not count, the state of the lowest estimate is next,
+    then the younger one.
 
     States are evaluated as they are generated. Several heuristics count with their sum.
     """

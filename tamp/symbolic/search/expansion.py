@@ -1,4 +1,4 @@
-"""What all searches share: the cheapest known way to each state, counts and limits."""
+"""The search space: the cheapest known way to each state, counts of expansions, limits."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from enum import Enum
 
 from tamp.symbolic.search.heuristics.registry import Estimate, Heuristic
 from tamp.symbolic.search.operators import Operator
-from tamp.symbolic.search.plan_shortening import shorten
+from tamp.symbolic.search.plan_shortening import eliminate_actions
 from tamp.symbolic.search.successors import State, Successors
 from tamp.system.deadline import Deadline
 
@@ -22,27 +22,31 @@ class Reason(Enum):
     TIME = "the time is up"
 
 
-AUDIT = 500
-"""States after which a search asks whether pairs of facts prove that there is no plan: most plans are found before."""
+AUDIT_AFTER_STATES = 500
+"""States after which a search asks whether pairs of facts prove that there is no plan: most plans
+are found before.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Operators that lead from the initial state to the goal, and what they cost with all prices."""
+    """Operators that lead from the initial state to the goal, and what they cost with all
+    prices.
+    """
 
     operators: tuple[Operator, ...]
     cost: float
 
 
-class Stop(Exception):
+class SearchLimitReached(Exception):
     """Ends a search before it has come to an end by itself."""
 
     def __init__(self, reason: Reason) -> None:
         self.reason = reason
 
 
-class Expansion:
-    """A search under way.
+class SearchSpace:
+    """A search under way: its closed states with their parents, its counts and its limits.
 
     Attributes:
         best: The cost of the cheapest known way to each state.
@@ -74,23 +78,27 @@ class Expansion:
     def count(self) -> None:
         """Count an expansion; stop at a limit."""
         if self.limit is not None and self.expanded >= self.limit:
-            raise Stop(Reason.LIMIT)
+            raise SearchLimitReached(Reason.LIMIT)
         if self.deadline is not None and self.deadline.passed:
-            raise Stop(Reason.TIME)
+            raise SearchLimitReached(Reason.TIME)
         self.expanded += 1
-        if self.expanded == AUDIT and self.audit is not None and self.audit():
-            raise Stop(Reason.UNSOLVABLE)
+        if self.expanded == AUDIT_AFTER_STATES and self.audit is not None and self.audit():
+            raise SearchLimitReached(Reason.UNSOLVABLE)
 
     def estimate(self, closed: State, parent: State | None) -> tuple[Estimate, ...]:
-        """What the heuristics say of a state, `parent` being the state before it, both with derived facts."""
+        """Evaluate a state by all heuristics; `parent` is the state before it, both with derived
+        facts.
+        """
         self.evaluated += 1
         return tuple(heuristic(closed, parent) for heuristic in self.heuristics)
 
     def plan(self, state: State) -> Plan:
-        """The plan to a state along the parents, without what it does not need."""
+        """Extract the plan to a state along the parents, then eliminate the actions that it does
+        not need.
+        """
         numbers: list[int] = []
         while state in self.parents:
             state, operator = self.parents[state]
             numbers.append(operator)
-        numbers, cost = shorten(self.successors, numbers[::-1])
+        numbers, cost = eliminate_actions(self.successors, numbers[::-1])
         return Plan(tuple(self.successors.operators[number] for number in numbers), cost)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.operators import Axiom, Grounded
+from tamp.symbolic.search.operators import Axiom, InstantiatedTask
 
 ALTERNATIVES = 512
 """Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
@@ -26,14 +26,14 @@ class Part:
     ways: tuple[Way, ...]
 
 
-def goal_parts(grounded: Grounded) -> list[Part]:
+def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
     """The goal's conjuncts, universal ones taken apart, each with its ways to hold."""
-    rules = _by_head(grounded.axioms)
-    literals = [(fact, True) for fact in sorted(grounded.goal.positive)]
-    literals += [(fact, False) for fact in sorted(grounded.goal.negative)]
+    rules = _by_head(instantiated.axioms)
+    literals = [(fact, True) for fact in sorted(instantiated.goal.positive)]
+    literals += [(fact, False) for fact in sorted(instantiated.goal.negative)]
     opened: dict[Literal, None] = {}
     for literal in literals:
-        for part in _opened(literal, rules, grounded.meanings.keys(), ()):
+        for part in _opened(literal, rules, instantiated.meanings.keys(), ()):
             opened[part] = None
     return [Part(literal, tuple(_ways(literal, rules, frozenset()))) for literal in opened]
 

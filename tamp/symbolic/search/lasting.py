@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row
-from tamp.symbolic.search.instantiation.lazy_guards import Blocking, LazyGuards
-from tamp.symbolic.search.operators import Axiom, Grounded, Guard, Operator
+from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards, LazyGuards
+from tamp.symbolic.search.operators import Axiom, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True)
@@ -28,14 +28,14 @@ class Lasting:
     causes: dict[Fact, frozenset[Fact]]
 
 
-def lasting(grounded: Grounded) -> Lasting:
+def lasting(instantiated: InstantiatedTask) -> Lasting:
     """A fixpoint: what is never deleted forbids operators, without which more is never deleted."""
-    alive = list(grounded.operators)
+    alive = list(instantiated.operators)
     forbidden: list[tuple[Operator, frozenset[Fact]]] = []
-    rules = [axiom for axiom in grounded.axioms if not axiom.negative]
-    refused: dict[Blocking, dict[Row, list[Guard]]] = {}
+    rules = [axiom for axiom in instantiated.axioms if not axiom.negative]
+    refused: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
     while True:
-        facts = set(grounded.initial - _deleted(alive))
+        facts = set(instantiated.initial - _deleted(alive))
         causes = _derive(facts, rules)
         kept: list[Operator] = []
         for operator in alive:
@@ -51,13 +51,13 @@ def lasting(grounded: Grounded) -> Lasting:
         alive = kept
 
 
-def forbidden_by(grounded: Grounded, facts: frozenset[Fact]) -> list[tuple[Operator, frozenset[Fact]]]:
+def forbidden_by(instantiated: InstantiatedTask, facts: frozenset[Fact]) -> list[tuple[Operator, frozenset[Fact]]]:
     """The operators that a state forbids whatever streams give, each with the facts that it wants not to hold."""
     state = set(facts)
-    _derive(state, [axiom for axiom in grounded.axioms if not axiom.negative])
-    refused: dict[Blocking, dict[Row, list[Guard]]] = {}
+    _derive(state, [axiom for axiom in instantiated.axioms if not axiom.negative])
+    refused: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
     found: list[tuple[Operator, frozenset[Fact]]] = []
-    for operator in grounded.operators:
+    for operator in instantiated.operators:
         against = set(operator.negative & state)
         for guard in _final(operator, refused):
             against |= guard.facts if guard.facts <= state else set()
@@ -66,18 +66,18 @@ def forbidden_by(grounded: Grounded, facts: frozenset[Fact]) -> list[tuple[Opera
     return found
 
 
-def _final(operator: Operator, refused: dict[Blocking, dict[Row, list[Guard]]]) -> Iterator[Guard]:
+def _final(operator: Operator, refused: dict[DerivedGuards, dict[Row, list[Guard]]]) -> Iterator[Guard]:
     """The guards of an operator that nothing lifts; those that only a price would ask for are not made."""
     guards = operator.guards
     if isinstance(guards, LazyGuards):
-        for blocking, row in guards.blocked:
-            if blocking not in refused:
-                rows = refused[blocking] = dict[Row, list[Guard]]()
-                for one, guard in blocking.refused():
+        for source, row in guards.blocked:
+            if source not in refused:
+                rows = refused[source] = dict[Row, list[Guard]]()
+                for one, guard in source.refused():
                     rows.setdefault(one, []).append(guard)
-            yield from refused[blocking].get(row, ())
+            yield from refused[source].get(row, ())
         guards = guards.made
-    yield from (guard for guard in guards if guard.lifted_by is None)
+    yield from (guard for guard in guards if guard.waived_by is None)
 
 
 def _deleted(operators: Iterable[Operator]) -> set[Fact]:

@@ -1,131 +1,134 @@
-"""Lazy weighted A* and greedy search with preferred operators."""
+"""Lazy weighted A* and greedy search with preferred operators and deferred evaluation."""
 
 from __future__ import annotations
 
 import math
-from heapq import heappop, heappush
 
-from tamp.symbolic.search.expansion import Expansion, Plan
+from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.heuristics.registry import Estimate
+from tamp.symbolic.search.open_lists import GOAL_ENTRY, Expanded, OpenLists
 from tamp.symbolic.search.successors import State, Successors
 
-BOOST = 1000
-"""How much longer preferred operators are preferred after progress (Richter and Helmert 2009)."""
 
-END = -2
-"""Stands for an operator where a goal state waits for its price to be the lowest."""
+def lazy(search: SearchSpace, weight: float) -> Plan | None:
+    """Search with deferred evaluation: a state is evaluated when it is expanded, not when found.
 
-_Entry = tuple[float, int, float, State, State | None, int]
-"""Priority, number among equals, cost, state, the state before, the operator."""
-
-
-def lazy(search: Expansion, weight: float) -> Plan | None:
-    """Lazy search: a state is evaluated when it is expanded, until then its parent's estimate stands for it.
-
-    Each heuristic has two queues, the second for successors by preferred operators; all take turns, after progress
-    those of the preferred get more. `weight` infinite is greedy search: costs do not count. A goal state whose goal
-    rests on priced facts waits until nothing that is cheaper than it is left in a queue.
+    Until then its parent's estimate stands for it. `weight` infinite is greedy search: costs do not
+    count. A goal state whose goal rests on priced facts waits until nothing that is cheaper than it
+    is left in an open list.
     """
-    s = search.successors
-    greedy = weight == math.inf
-    kinds = range(len(search.heuristics))
-    usual: list[list[_Entry]] = [[(0.0, 0, 0.0, s.initial, None, -1)] for _ in kinds]
-    preferred: list[list[_Entry]] = [[] for _ in kinds]
-    turns, turns_preferred = [0 for _ in kinds], [0 for _ in kinds]
-    estimates: dict[State, tuple[float, ...]] = {}
-    found: dict[State, tuple[Estimate, ...]] = {}
-    done: dict[State, float] = {}
-    lowest = [math.inf for _ in kinds]
-    number = 0
-    goal_price = GoalPrice(s)
-    least, end = math.inf, None
-    spent = {s.initial: 0.0}  # what the operators on the way have cost, prices aside
-    while any(usual) or any(preferred):
-        k = min((k for k in kinds if usual[k]), key=turns.__getitem__, default=None)
-        p = min((k for k in kinds if preferred[k]), key=turns_preferred.__getitem__, default=None)
-        if p is not None and not greedy and usual[p] and preferred[p][0][0] > 2.0 * usual[p][0][0]:
-            p = None  # preferred, but by far too dear: a price was learned
-        if p is not None and (k is None or turns_preferred[p] <= turns[k]):
-            turns_preferred[p] += 1
-            queue = preferred[p]
-        elif k is not None:
-            turns[k] += 1
-            queue = usual[k]
-        else:
-            break
-        _, _, cost, state, parent, operator = heappop(queue)
-        if state == end and operator == END:
+    run = _LazySearch(search, weight)
+    while (entry := run.open.pop()) is not None:
+        _, _, cost, state, parent, operator = entry
+        if run.is_goal(state, operator):
             return search.plan(state)
-        if state in done and (greedy or cost >= done[state]):
+        if run.is_closed(state, cost):
             continue
-        done[state] = cost
-        search.best[state] = cost
-        if parent is not None:
-            search.parents[state] = (parent, operator)
-            spent[state] = spent[parent] + s.operators[operator].cost
-        closed = s.closure(state)
-        if s.holds_goal(closed):
-            price = goal_price(state)
-            if price == 0.0:
+
+        closed = run.close(state, cost, parent, operator)
+        if search.successors.holds_goal(closed):
+            if run.take_goal(state, cost):
                 return search.plan(state)
-            if cost + price < least:  # what the goal rests on here has a price: there may be a cheaper end
-                least, end = cost + price, state
-                number += 1
-                for some in (usual[0], preferred[0]) if preferred[0] else (usual[0],):
-                    heappush(some, (price if greedy else least, number, least, state, None, END))
             continue
-        values = estimates.get(state)
-        if values is None:
-            found[state] = search.estimate(closed, None if parent is None else s.closure(parent))
-            values = estimates[state] = tuple(estimate.value for estimate in found[state])
-        if math.inf in values:
-            continue
+
+        node = run.evaluate(state, closed, cost, parent)
+        if math.inf not in node.values:
+            run.expand(node, closed)
+    return None
+
+
+class _LazySearch:
+    """A lazy search under way: its open lists, its closed states and what was estimated of them."""
+
+    def __init__(self, search: SearchSpace, weight: float) -> None:
+        self._search = search
+        self._successors = s = search.successors
+        self._greedy = weight == math.inf
+        self.open = OpenLists(s.initial, len(search.heuristics), weight)
+        self._goal_price = GoalPrice(s)
+        self._goal: State | None = None
+        self._goal_cost = math.inf
+        self._closed: dict[State, float] = {}
+        self._spent = {s.initial: 0.0}  # what the operators on the way have cost, prices aside
+        self._estimates: dict[State, tuple[Estimate, ...]] = {}
+
+    def is_goal(self, state: State, operator: int) -> bool:
+        """Check that an entry is the cheapest goal state, whose turn has come."""
+        return operator == GOAL_ENTRY and state == self._goal
+
+    def is_closed(self, state: State, cost: float) -> bool:
+        """Check that a state was closed at no higher cost; greedy search reopens none."""
+        known = self._closed.get(state)
+        return known is not None and (self._greedy or cost >= known)
+
+    def close(self, state: State, cost: float, parent: State | None, operator: int) -> State:
+        """Close a state: note the way to it; return it with its derived facts."""
+        self._closed[state] = cost
+        self._search.best[state] = cost
+        if parent is not None:
+            self._search.parents[state] = (parent, operator)
+            spent = self._spent[parent] + self._successors.operators[operator].cost
+            self._spent[state] = spent
+        return self._successors.closure(state)
+
+    def take_goal(self, state: State, cost: float) -> bool:
+        """Take a goal state at once where its goal is free; else have it wait for a cheaper one."""
+        price = self._goal_price(state)
+        if price == 0.0:
+            return True
+        if cost + price < self._goal_cost:
+            self._goal, self._goal_cost = state, cost + price
+            self.open.push_goal(state, self._goal_cost, price)
+        return False
+
+    def evaluate(self, state: State, closed: State, cost: float, parent: State | None) -> Expanded:
+        """Evaluate a state, once."""
+        estimates = self._estimates.get(state)
+        if estimates is None:
+            before = None if parent is None else self._successors.closure(parent)
+            estimates = self._estimates[state] = self._search.estimate(closed, before)
+        return Expanded(state, cost, estimates, tuple(one.value for one in estimates))
+
+    def expand(self, node: Expanded, closed: State) -> None:
+        """Expand a state: push its successors, those by preferred operators first."""
+        search, s, greedy = self._search, self._successors, self._greedy
+        state, cost = node.state, node.cost
         search.count()
-        for kind, value in enumerate(values):
-            if value < lowest[kind]:
-                lowest[kind] = value
-                for other in kinds:
-                    turns_preferred[other] -= BOOST
+        self.open.boost(node.values)
         applicable = s.applicable(closed)
-        helpful = _helpful(s, state, closed, applicable, found[state])
+        helpful = _helpful(s, state, closed, applicable, node.estimates)
+        spent, first = self._spent[state], search.expanded * len(s.operators)
+
         for rank, operator in enumerate((*helpful, *applicable)):
-            if rank >= len(helpful) and operator in helpful:
+            preferred = rank < len(helpful)
+            if not preferred and operator in helpful:
                 continue
-            if spent[state] + s.operators[operator].cost >= search.below:
+            if spent + s.operators[operator].cost >= search.below:
                 continue
-            after = s.apply(operator, state, closed)
-            known = done.get(after)
-            if known is not None and (greedy or cost + s.cost[operator] >= known):
+
+            after, step = s.apply(operator, state, closed), s.cost[operator]
+            known = self._closed.get(after)
+            if known is not None and (greedy or cost + step >= known):
                 continue
             reached = cost + s.step_cost(operator, state)
             if reached == math.inf or (known is not None and reached >= known):
                 continue
-            number += 1
-            # Among equals: greedy search goes on from the state just expanded, weighted A* takes the older.
-            order = number if not greedy else rank - search.expanded * len(s.operators)
-            step = s.cost[operator]
-            dearer = reached - cost - step
-            for kind, h in enumerate(values):
-                extra = dearer and dearer - _paid(found[state][kind], operator)
-                key = h + extra if greedy else cost + step + extra + weight * h
-                heappush(usual[kind], (key, order, reached, after, state, operator))
-                if rank < len(helpful) and extra <= step:
-                    # Rank decides among preferred siblings, not cost. One that guards make dear waits elsewhere.
-                    key = h if greedy else cost + weight * h
-                    heappush(preferred[kind], (key, order, reached, after, state, operator))
-    return None
 
-
-def _paid(estimate: Estimate, operator: int) -> float:
-    """The prices of the operator's guards that the parent's estimate contains: they shall not count twice."""
-    return estimate.paid(operator) if estimate.paid is not None and operator in estimate.plan else 0.0
+            # Among equals greedy search goes on from the state just expanded, weighted A* takes
+            # the older.
+            order = rank - first if greedy else None
+            self.open.push(node, operator, after, reached, step, order, preferred)
 
 
 def _helpful(
-    s: Successors, state: State, closed: State, applicable: list[int], estimates: tuple[Estimate, ...]
+    s: Successors,
+    state: State,
+    closed: State,
+    applicable: list[int],
+    estimates: tuple[Estimate, ...],
 ) -> dict[int, None]:
-    """The applicable operators that the heuristics prefer, the best first."""
+    """Return the preferred operators, the applicable ones of the relaxed plans, the best first."""
     helpful: dict[int, None] = {}
     for estimate in estimates:
         if estimate.plan:
@@ -136,10 +139,11 @@ def _helpful(
 def _preferred(
     s: Successors, state: State, closed: State, applicable: list[int], plan: tuple[int, ...]
 ) -> dict[int, None]:
-    """The applicable operators of a relaxed plan, those first that go well with the others.
+    """Return the applicable operators of a relaxed plan, those first that go well with the others.
 
-    Best are those after which the fewest of the plan's operators are no longer applicable, then those after which the
-    most become applicable. Without this, a search would drive from body to body while all orders look equally good.
+    Best are those after which the fewest of the plan's operators are no longer applicable, then
+    those after which the most become applicable. Without this, a search would drive from body to
+    body while all orders look equally good.
     """
     now = set(applicable)
     before, absent = s.before, s.absent
@@ -148,6 +152,7 @@ def _preferred(
         if operator not in now:
             continue
         after = s.apply(operator, state, closed) | closed & s.derived_mask
+
         lost = gained = 0
         for other in plan:
             if other != operator:
@@ -157,5 +162,6 @@ def _preferred(
                 else:
                     gained += possible
         ranked.append((lost, -gained, operator))
+
     ranked.sort()
     return dict.fromkeys(operator for _, _, operator in ranked)

@@ -13,7 +13,7 @@ from itertools import combinations
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.goal_ways import Literal, Part, goal_parts
 from tamp.symbolic.search.lasting import lasting
-from tamp.symbolic.search.operators import Grounded, Operator
+from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.system.deadline import Deadline
 
 STEPS = 20_000
@@ -27,16 +27,16 @@ class Undecided(Exception):
     """The task is too large, or the time is up: nothing is known."""
 
 
-def excluded(grounded: Grounded, deadline: Deadline) -> tuple[Literal, ...] | None:
+def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Literal, ...] | None:
     """The fewest parts of the goal that are proven not to hold together; None where nothing is proven.
 
     Args:
-        grounded: The task; its guards are not looked at.
+        instantiated: The task; its guards are not looked at.
         deadline: When to give up.
     """
     try:
-        parts = goal_parts(grounded)
-        return Mutexes(replace(grounded, operators=lasting(grounded).operators), parts, deadline).conflict()
+        parts = goal_parts(instantiated)
+        return Mutexes(replace(instantiated, operators=lasting(instantiated).operators), parts, deadline).conflict()
     except Undecided:
         return None
 
@@ -45,7 +45,7 @@ class Mutexes:
     """Which pairs of facts a reachable state may contain; a fact's absence counts as a fact where the goal wants it.
 
     Args:
-        grounded: The task.
+        instantiated: The task.
         parts: Of its goal.
         deadline: When to give up.
 
@@ -53,11 +53,11 @@ class Mutexes:
         Undecided: There are too many facts, or the time was up.
     """
 
-    def __init__(self, grounded: Grounded, parts: list[Part], deadline: Deadline) -> None:
+    def __init__(self, instantiated: InstantiatedTask, parts: list[Part], deadline: Deadline) -> None:
         self._parts, self._deadline = parts, deadline
         absent = {literal for part in parts for way in part.ways for literal in way if not literal[1]}
-        heads = {axiom.head for axiom in grounded.axioms}
-        facts = {(fact, True) for fact in (grounded.initial | grounded.reachable) - heads}
+        heads = {axiom.head for axiom in instantiated.axioms}
+        facts = {(fact, True) for fact in (instantiated.initial | instantiated.reachable) - heads}
         facts |= {literal for part in parts for way in part.ways for literal in way}
         self._number = {literal: i for i, literal in enumerate([*sorted(facts), *((head, True) for head in heads)])}
         if len(self._number) ** 2 > MOST_PAIRS:
@@ -65,14 +65,14 @@ class Mutexes:
         self._with = [0] * len(self._number)
         self._lasting = (1 << len(facts)) - 1
         self._absent = absent
-        initial = [(fact, True) for fact in grounded.initial] + [
-            literal for literal in absent if literal[0] not in grounded.initial
+        initial = [(fact, True) for fact in instantiated.initial] + [
+            literal for literal in absent if literal[0] not in instantiated.initial
         ]
         start = self._mask(initial)
         for literal in initial:
             self._with[self._number[literal]] = start
         self._alive = start
-        self._fixpoint(grounded)
+        self._fixpoint(instantiated)
 
     def conflict(self) -> tuple[Literal, ...] | None:
         """The fewest parts of the goal that cannot hold together, as far as pairs of facts show it."""
@@ -116,10 +116,10 @@ class Mutexes:
 
         return choose(0, self._alive)
 
-    def _fixpoint(self, grounded: Grounded) -> None:
+    def _fixpoint(self, instantiated: InstantiatedTask) -> None:
         """Apply operators and rules to pairs until no new one comes."""
-        moves = list(dict.fromkeys(move for operator in grounded.operators for move in self._moves(operator)))
-        rules = [(self._number[a.head, True], self._body(a.positive, a.negative)) for a in grounded.axioms]
+        moves = list(dict.fromkeys(move for operator in instantiated.operators for move in self._moves(operator)))
+        rules = [(self._number[a.head, True], self._body(a.positive, a.negative)) for a in instantiated.axioms]
         seen: list[tuple[int, ...] | None] = [None] * len(moves)
         changed = True
         while changed:

@@ -1,4 +1,4 @@
-"""What a task becomes once its variables are replaced by objects: operators, guards, axioms, a goal."""
+"""The instantiated task, its variables replaced by objects: operators, guards, axioms, a goal."""
 
 from __future__ import annotations
 
@@ -12,22 +12,26 @@ Facts = frozenset[Fact]
 NONE: Facts = frozenset()
 
 ANY = "(any)"
-"""The predicate of static facts that say that an object is there, of which no condition says anything else."""
+"""The predicate of static facts that say that an object is there, of which no condition says
+anything else.
+"""
 
 
 class Guard(NamedTuple):
     """Facts under which an operator costs more, or may not be applied.
 
-    A named tuple, not a dataclass: there are many (operators times poses of other bodies), made three times faster.
+    A named tuple, not a dataclass: there are many (operators times poses of other bodies), made
+    three times faster.
 
     Attributes:
         facts: Fluent facts; the guard is *triggered* in the states that contain all of them.
-        lifted_by: The static fact, a test stream's result, whose truth makes the guard harmless; its price is paid
-            when the guard is triggered. None: nothing lifts it, the operator is inapplicable while the facts hold.
+        waived_by: The static fact, a test stream's result, whose truth makes the guard harmless;
+            its price is paid when the guard is triggered. None: nothing lifts it, the operator is
+            inapplicable while the facts hold.
     """
 
     facts: Facts
-    lifted_by: Fact | None
+    waived_by: Fact | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +47,8 @@ class ConditionalEffect:
 
 @dataclass(frozen=True, slots=True)
 class Operator:
-    """An action with objects for its parameters. Facts are fluent or derived, those in `static` are static.
+    """An action with objects for its parameters. Facts are fluent or derived, those in `static` are
+    static.
 
     Attributes:
         name: The action's name.
@@ -75,7 +80,9 @@ class Operator:
 
 @dataclass(frozen=True, slots=True)
 class Axiom:
-    """`head` holds in every state where the body does. Bodies look at their own stratum only positively."""
+    """`head` holds in every state where the body does. Bodies look at their own stratum only
+    positively.
+    """
 
     head: Fact
     positive: Facts
@@ -86,7 +93,9 @@ class Axiom:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What must hold at the end. `static` are the static facts that it names itself, all of them true."""
+    """What must hold at the end. `static` are the static facts that it names itself, all of them
+    true.
+    """
 
     positive: Facts
     negative: Facts = NONE
@@ -94,16 +103,18 @@ class Goal:
 
 
 @dataclass(frozen=True)
-class Grounded:
+class InstantiatedTask:
     """A task without variables.
 
     Attributes:
         initial: The fluent facts of the initial state.
         goal: Unreachable goal facts are kept in it, see `unreachable`.
-        operators: Sorted by name and arguments; only those applicable in some state of the delete relaxation.
+        operators: Sorted by name and arguments; only those applicable in some state of the delete
+            relaxation.
         axioms: Sorted by stratum; only those that an operator or the goal may need.
         reachable: Fluent and derived facts that hold in some state of the delete relaxation.
-        meanings: For the auxiliary facts that stand for a subformula ("or 1" ...), a few words to show to people.
+        meanings: For the auxiliary facts that stand for a subformula ("or 1" ...), a few words to
+            show to people.
     """
 
     initial: Facts

@@ -1,4 +1,4 @@
-"""Plans without their useless actions."""
+"""Action elimination: plans without their useless actions."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from tamp.symbolic.search.successors import State, Successors
 
 
-def shorten(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
-    """Drop operators as long as the rest is a plan that costs no more (action elimination, Nakhost and Mueller 2010).
+def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
+    """Drop operators as long as the rest is a plan that costs no more (action elimination, Nakhost
+    and Mueller 2010).
 
     Each operator is dropped together with the later ones that no longer apply without it.
 
@@ -38,7 +39,9 @@ def shorten(successors: Successors, plan: Sequence[int]) -> tuple[list[int], flo
 
 
 def _run(s: Successors, state: State, plan: list[int]) -> tuple[list[int] | None, float]:
-    """The operators of a plan that apply when those that do not are left out, and their cost; None without the goal."""
+    """Apply a plan's operators, leaving out those that do not apply; return them and their cost,
+    None without the goal.
+    """
     cost = 0.0
     rest: list[int] = []
     for operator in plan:

@@ -1,4 +1,6 @@
-"""A plan step by step, with every static fact that it rests on: what the streams must really certify."""
+"""A plan step by step, with every static fact that it rests on: what the streams must really
+certify.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import derive, supports
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
-from tamp.symbolic.search.operators import NONE, Facts, Grounded, Guard, Operator
+from tamp.symbolic.search.operators import NONE, Facts, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,10 +21,12 @@ class Step:
     Attributes:
         operator: What is applied.
         state: The fluent facts before it.
-        static: What it rests on there: its static preconditions, the facts that lift its triggered guards, the static
-            facts in the derivations of its derived preconditions and of the conditional effects that take place.
+        static: What it rests on there: its static preconditions, the facts that lift its triggered
+            guards, the static facts in the derivations of its derived preconditions and of the
+            conditional effects that take place.
         derived: Those of the static facts that derivations rest on.
-        read: The fluent facts that its preconditions, the effects that take place, and the derivations rest on.
+        read: The fluent facts that its preconditions, the effects that take place, and the
+            derivations rest on.
         heads: The derived facts behind all that.
         added: What it makes true there.
         deleted: What of the state it makes false.
@@ -42,7 +46,9 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """The state in the end, and what the goal rests on there: static facts, those of them in derivations, fluents."""
+    """The state in the end, and what the goal rests on there: static facts, those of them in
+    derivations, fluents.
+    """
 
     state: Facts
     static: Facts
@@ -52,67 +58,80 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """All steps and the end; whether something that they rest on could be derived in another way as well."""
+    """All steps and the end; whether something that they rest on could be derived in another way as
+    well.
+    """
 
     steps: tuple[Step, ...]
     end: End
     open: bool = False
 
 
-def trace(grounded: Grounded, operators: Iterable[Operator], price: Mapping[Fact, float] | None = None) -> Trace:
+def trace(
+    instantiated: InstantiatedTask,
+    operators: Iterable[Operator],
+    price: Mapping[Fact, float] | None = None,
+) -> Trace:
     """Replay a plan's operators from the initial state.
 
     Args:
-        grounded: The task.
+        instantiated: The task.
         operators: The plan.
         price: Of static facts; what is derived rests on the cheapest ones.
 
     Raises:
         ValueError: An operator is not applicable, or the goal does not hold in the end.
     """
-    state = grounded.initial
+    state = instantiated.initial
     steps: list[Step] = []
-    ways = Counter(axiom.head for axiom in grounded.axioms)
+    ways = Counter(axiom.head for axiom in instantiated.axioms)
     several = frozenset(head for head, count in ways.items() if count > 1)
     open_ = False
     for operator in operators:
-        step, state = _applied(grounded, operator, state, price)
+        step, state = _applied(instantiated, operator, state, price)
         steps.append(step)
         open_ = open_ or not several.isdisjoint(step.heads)
-    why = derive(grounded.axioms, state, price)
+    why = derive(instantiated.axioms, state, price)
     holds = state | why.keys()
-    if not grounded.goal.positive <= holds or not grounded.goal.negative.isdisjoint(holds):
+    if not instantiated.goal.positive <= holds or not instantiated.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
-    goal = supports(why, grounded.goal.positive)
-    end = End(state, grounded.goal.static | goal.static, goal.static, goal.read)
+    goal = supports(why, instantiated.goal.positive)
+    end = End(state, instantiated.goal.static | goal.static, goal.static, goal.read)
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
-def replayed(grounded: Grounded, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
-    """Whether actions, by name and arguments, lead from the initial state to the goal."""
+def replayed(
+    instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]
+) -> bool:
+    """Check that actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
-    for operator in grounded.operators:
+    for operator in instantiated.operators:
         operators.setdefault((operator.name, operator.arguments), []).append(operator)
-    states = {grounded.initial}
+    states = {instantiated.initial}
     for action in actions:
         after: set[Facts] = set()
         for state in states:  # several where the condition is a disjunction
             for operator in operators.get(action, ()):
                 try:
-                    after.add(_applied(grounded, operator, state)[1])
+                    after.add(_applied(instantiated, operator, state)[1])
                 except ValueError:
                     continue
         states = after
-    goal = grounded.goal
-    holding = (state | derive(grounded.axioms, state).keys() for state in states)
+    goal = instantiated.goal
+    holding = (state | derive(instantiated.axioms, state).keys() for state in states)
     return any(goal.positive <= holds and goal.negative.isdisjoint(holds) for holds in holding)
 
 
 def _applied(
-    grounded: Grounded, operator: Operator, state: Facts, price: Mapping[Fact, float] | None = None
+    instantiated: InstantiatedTask,
+    operator: Operator,
+    state: Facts,
+    price: Mapping[Fact, float] | None = None,
 ) -> tuple[Step, Facts]:
-    """The operator's step in a state, and the state after it; ValueError where it is not applicable."""
-    why = derive(grounded.axioms, state, price)
+    """Apply the operator in a state; return its step and the state after it. ValueError where it
+    is not applicable.
+    """
+    why = derive(instantiated.axioms, state, price)
     holds = state | why.keys()
     if not operator.positive <= holds or not operator.negative.isdisjoint(holds):
         raise ValueError(f"{operator} is not applicable")
@@ -120,9 +139,9 @@ def _applied(
     static = set(operator.static)
     guards = triggered(operator, state)
     for guard in guards:
-        if guard.lifted_by is None:
+        if guard.waived_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
-        static.add(guard.lifted_by)
+        static.add(guard.waived_by)
     added, deleted = operator.added, operator.deleted
     for effect in operator.conditional:
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
@@ -133,11 +152,13 @@ def _applied(
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
     after = (state - deleted) | added
     gone = state - after
-    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
+    return Step(
+        operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
+    ), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:
-    """The operator's guards whose facts the state contains."""
+    """Return the operator's guards whose facts the state contains."""
     if isinstance(operator.guards, LazyGuards):
         return operator.guards.triggered(state)
     return tuple(guard for guard in operator.guards if guard.facts <= state)

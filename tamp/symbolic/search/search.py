@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from tamp.errors import InputError
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.eager import astar, best_first
-from tamp.symbolic.search.expansion import Expansion, Stop
 from tamp.symbolic.search.expansion import Plan as Plan
 from tamp.symbolic.search.expansion import Reason as Reason
+from tamp.symbolic.search.expansion import SearchLimitReached, SearchSpace
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS
 from tamp.symbolic.search.lazy import lazy
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.successors import Price, Successors
 from tamp.system.deadline import Deadline
 
@@ -27,7 +27,8 @@ class Result:
         plan: None when there is none, then `reason` says why.
         expanded: States whose successors were generated.
         evaluated: States that the heuristics were asked about.
-        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0 after other searches.
+        bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0
+            after other searches.
     """
 
     plan: Plan | None
@@ -37,7 +38,7 @@ class Result:
     bound: float = 0.0
 
 
-SEARCHES: dict[str, Callable[[Expansion, float], Plan | None]] = {
+SEARCHES: dict[str, Callable[[SearchSpace, float], Plan | None]] = {
     "astar": lambda search, weight: astar(search),
     "wastar": lazy,
     "greedy": lambda search, weight: lazy(search, math.inf),
@@ -46,7 +47,7 @@ SEARCHES: dict[str, Callable[[Expansion, float], Plan | None]] = {
 
 
 def split_heuristics(heuristic: str) -> tuple[str, ...]:
-    """The names in "ff+landmarks".
+    """Split the names in "ff+landmarks".
 
     Raises:
         InputError: A name of none.
@@ -59,7 +60,7 @@ def split_heuristics(heuristic: str) -> tuple[str, ...]:
 
 
 def search(
-    grounded: Grounded,
+    instantiated: InstantiatedTask,
     *,
     search: str = "wastar",
     heuristic: str = "ff",
@@ -73,47 +74,59 @@ def search(
     """Search for a plan.
 
     Args:
-        grounded: The task.
-        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax", "blind") is optimal;
-            "wastar" and "greedy" are lazy and use preferred operators, "eager" is plain greedy best-first search.
-        heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues to each, "astar"
-            takes the maximum, "eager" the sum.
+        instantiated: The task.
+        search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax",
+            "blind") is optimal; "wastar" and "greedy" are lazy and use preferred operators, "eager"
+            is plain greedy best-first search.
+        heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues
+            to each, "astar" takes the maximum, "eager" the sum.
         weight: Of the estimate in "wastar".
-        price: What the use of a static fact costs (by an operator resting on it, to lift a guard, and in the lazy
-            searches where the goal is derived from it); may be infinite.
-            A mapping of those that cost something is faster than a function. Nothing by default.
+        price: What the use of a static fact costs (by an operator resting on it, to lift a guard,
+            and in the lazy searches where the goal is derived from it); may be infinite. A mapping
+            of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
         deadline: When to give up. It never changes the plan that is found, only whether one is.
-        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with prices. Not for the
-            greedy searches, which keep to the first way to each state.
-        audit: Asked once, when the search turns out not to be a short one: whether it is proven that there is no plan.
+        below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with
+            prices. Not for the greedy searches, which keep to the first way to each state.
+        audit: Asked once, when the search turns out not to be a short one: whether it is proven
+            that there is no plan.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
     if below < math.inf and search not in ("wastar", "astar"):
         raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
     names = split_heuristics(heuristic)
-    if not grounded.goal.positive <= grounded.reachable | grounded.initial:
+    if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
-    successors = Successors(grounded, price if price is not None else {})
-    run = Expansion(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
+    successors = Successors(instantiated, price if price is not None else {})
+    run = SearchSpace(
+        successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit
+    )
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
-    except Stop as stop:
+    except SearchLimitReached as stop:
         plan, reason = None, stop.reason
-    return Result(plan, reason, run.expanded, run.evaluated, run.bound if ADMISSIBLE.issuperset(names) else 0.0)
+    return Result(
+        plan,
+        reason,
+        run.expanded,
+        run.evaluated,
+        run.bound if ADMISSIBLE.issuperset(names) else 0.0,
+    )
 
 
-def unreachable(grounded: Grounded) -> tuple[Fact, ...]:
-    """The goal facts that hold in no state of the delete relaxation, sorted.
+def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:
+    """Return the goal facts that hold in no state of the delete relaxation, sorted.
 
-    A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that stand for a
-    subformula are explained in `grounded.meanings`.
+    A fact that must not hold and that nothing can make false is given as ("not", ...). Facts that
+    stand for a subformula are explained in `instantiated.meanings`.
     """
-    goal = grounded.goal
-    never = sorted(goal.positive - grounded.reachable - grounded.initial)
-    deleted = {fact for o in grounded.operators for fact in o.deleted}
-    deleted |= {fact for o in grounded.operators for effect in o.conditional for fact in effect.deleted}
-    kept = sorted(("not", *fact) for fact in (goal.negative & grounded.initial) - deleted)
+    goal = instantiated.goal
+    never = sorted(goal.positive - instantiated.reachable - instantiated.initial)
+    deleted = {fact for o in instantiated.operators for fact in o.deleted}
+    deleted |= {
+        fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted
+    }
+    kept = sorted(("not", *fact) for fact in (goal.negative & instantiated.initial) - deleted)
     return (*never, *kept)

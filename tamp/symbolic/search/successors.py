@@ -1,64 +1,60 @@
-"""The task over integers: which operators are applicable in a state, what they cost there, what comes after.
+"""The successor generator, the task over integers: applicable operators of a state, their costs,
+what comes after.
 
-Facts are numbered once; a state is an `int` whose set bits are the facts that hold. benchmarks/search.py measures it
-against frozenset[int] for 100 to 2,000 facts.
+Facts are numbered once; a state is an `int` whose set bits are the facts that hold.
+benchmarks/search.py measures it against frozenset[int] for 100 to 2,000 facts.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.axiom_strata import axiom_strata
 from tamp.symbolic.search.instantiation.datalog import Row
-from tamp.symbolic.search.instantiation.lazy_guards import Blocking, LazyGuards
-from tamp.symbolic.search.operators import Facts, Grounded
+from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards, LazyGuards
+from tamp.symbolic.search.operators import Facts, InstantiatedTask
 
 State = int
 Price = Callable[[Fact], float] | Mapping[Fact, float]
-"""What static facts cost; a mapping gives those that cost something, and is faster where guards are many."""
+"""What static facts cost; a mapping gives those that cost something, and is faster where guards are
+many.
+"""
 
 
 def bits(mask: int) -> Iterator[int]:
-    """The numbers of the bits that are set, lowest first."""
+    """Generate the numbers of the bits that are set, lowest first."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
         mask ^= low
 
 
-@dataclass(slots=True)
-class _Stratum:
-    """The axioms of one stratum, each under the lowest bit of its body."""
-
-    watched: dict[int, list[tuple[int, int, int]]] = field(default_factory=dict[int, list[tuple[int, int, int]]])
-    free: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
-    mask: int = 0
-    recursive: bool = False
-
-
 class Successors:
-    """A grounded task with numbered facts and priced operators.
+    """An instantiated task with numbered facts and priced operators.
 
-    Facts that no condition mentions are left out of the states, operators whose price is infinite are never applied.
+    Facts that no condition mentions are left out of the states, operators whose price is infinite
+    are never applied.
 
     Attributes:
         facts: By number, sorted.
-        operators: Indices into `grounded.operators` are kept: entry i is about operator i.
+        operators: Indices into `instantiated.operators` are kept: entry i is about operator i.
         cost: The operators' costs with the prices of their static facts.
         axiom_cost: The prices of the axioms' static facts.
         initial: The initial state, without derived facts.
     """
 
-    def __init__(self, grounded: Grounded, price: Price) -> None:
-        self.grounded = grounded
+    def __init__(self, instantiated: InstantiatedTask, price: Price) -> None:
+        self.instantiated = instantiated
         self._listed: Mapping[Fact, float] | None = None if callable(price) else price
-        self._ask: Callable[[Fact], float] = price if callable(price) else lambda fact: price.get(fact, 0.0)
+        self._ask: Callable[[Fact], float] = (
+            price if callable(price) else lambda fact: price.get(fact, 0.0)
+        )
         self._prices: dict[Fact, float] = {}
-        self.operators = grounded.operators
+        self.operators = instantiated.operators
         self._guarded: dict[Facts, list[tuple[int, Fact | None]]] = {}
-        self._blocked: dict[Blocking, dict[Row, list[int]]] = {}
+        self._blocked: dict[DerivedGuards, dict[Row, list[int]]] = {}
         self._collect_guards()
         self.facts = sorted(self._mentioned())
         self.number = {fact: i for i, fact in enumerate(self.facts)}
@@ -71,21 +67,24 @@ class Successors:
         self.added = [mask(o.added) for o in self.operators]
         self.kept = [~mask(o.deleted) for o in self.operators]
         self.conditional = [
-            tuple((mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted)) for c in o.conditional)
+            tuple(
+                (mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted))
+                for c in o.conditional
+            )
             for o in self.operators
         ]
-        self.initial = mask(grounded.initial)
-        self.goal = mask(grounded.goal.positive)
-        self.goal_absent = mask(grounded.goal.negative)
-        self.derived_mask = mask(axiom.head for axiom in grounded.axioms)
-        self._strata = self._sort_axioms()
-        self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in grounded.axioms]
+        self.initial = mask(instantiated.initial)
+        self.goal = mask(instantiated.goal.positive)
+        self.goal_absent = mask(instantiated.goal.negative)
+        self.derived_mask = mask(axiom.head for axiom in instantiated.axioms)
+        self._strata = axiom_strata(instantiated.axioms, mask)
+        self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in instantiated.axioms]
         self._watched, self._always = self._watch()
         self._watch_mask = sum(1 << i for i in self._watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}
         self._many = [facts for facts in self._guards_on if facts.bit_count() > 1]
-        blocking = {blocking.fluent for blocking in self._blocked}
-        self.guard_mask = mask(fact for fact in self.facts if fact[0] in blocking)
+        fluents = {source.fluent for source in self._blocked}
+        self.guard_mask = mask(fact for fact in self.facts if fact[0] in fluents)
         for facts in self._guards_on:
             self.guard_mask |= facts
         self._has_guards = [bool(o.guards) for o in self.operators]
@@ -93,14 +92,14 @@ class Successors:
         self._extras: dict[State, dict[int, float]] = {}
 
     def price(self, fact: Fact) -> float:
-        """The price of a static fact, asked for once."""
+        """Return the price of a static fact, asked for once."""
         known = self._prices.get(fact)
         if known is None:
             known = self._prices[fact] = self._ask(fact)
         return known
 
     def mask(self, facts: Iterable[Fact]) -> State:
-        """The bits of those facts that some condition mentions."""
+        """Return the bits of those facts that some condition mentions."""
         if isinstance(facts, frozenset):
             known = self._masks.get(facts)
             if known is not None:
@@ -115,7 +114,7 @@ class Successors:
         return mask
 
     def closure(self, state: State) -> State:
-        """The state with its derived facts."""
+        """Return the state with its derived facts."""
         for stratum in self._strata:
             before = -1
             while before != state:
@@ -135,11 +134,11 @@ class Successors:
         return state
 
     def holds_goal(self, closed: State) -> bool:
-        """Whether the goal holds in a state with its derived facts."""
+        """Check that the goal holds in a state with its derived facts."""
         return closed & self.goal == self.goal and not closed & self.goal_absent
 
     def applicable(self, closed: State) -> list[int]:
-        """The operators whose preconditions hold; guards are not looked at."""
+        """Return the operators whose preconditions hold; guards are not looked at."""
         before, absent = self.before, self.absent
         found = [i for i in self._always if not absent[i] & closed]
         mask, watched = closed & self._watch_mask, self._watched
@@ -153,29 +152,31 @@ class Successors:
         return found
 
     def penalties(self, facts: State) -> dict[int, float]:
-        """For a guard's facts: the operators that it costs something when it is triggered, and how much."""
+        """Return for a guard's facts the operators that it costs something when it is triggered,
+        and how much.
+        """
         known = self._penalties.get(facts)
         if known is None:
             known = self._penalties[facts] = dict[int, float]()
-            for index, lifted_by in self._owners(facts):
-                price = math.inf if lifted_by is None else self.price(lifted_by)
+            for index, waived_by in self._owners(facts):
+                price = math.inf if waived_by is None else self.price(waived_by)
                 if price > 0.0:
                     known[index] = known.get(index, 0.0) + price
         return known
 
     def _owners(self, facts: State) -> Iterator[tuple[int, Fact | None]]:
-        """The operators that have the guard with these facts, and what lifts it."""
+        """Find the operators that have the guard with these facts, and what waives it."""
         yield from self._guards_on.get(facts, ())
         if self._blocked and facts.bit_count() == 1:
             fact = self.facts[facts.bit_length() - 1]
-            for blocking, owners in self._blocked.items():
-                if blocking.fluent == fact[0]:
-                    for row, guard in blocking.on(fact):
+            for source, owners in self._blocked.items():
+                if source.fluent == fact[0]:
+                    for row, guard in source.on(fact):
                         for index in owners.get(row, ()):
-                            yield index, guard.lifted_by
+                            yield index, guard.waived_by
 
     def triggered(self, state: State) -> Iterator[int]:
-        """The guards' facts that a state contains."""
+        """Find the guards' facts that a state contains."""
         mask = state & self.guard_mask
         for facts in self._many:
             if facts & mask == facts:
@@ -186,7 +187,7 @@ class Successors:
             yield low
 
     def extras(self, state: State) -> dict[int, float]:
-        """The operators with triggered guards that have a price, and these prices' sums."""
+        """Return the operators with triggered guards that have a price, and these prices' sums."""
         key = state & self.guard_mask
         known = self._extras.get(key)
         if known is None:
@@ -198,11 +199,17 @@ class Successors:
         return known
 
     def step_cost(self, index: int, state: State) -> float:
-        """The operator's cost in the state, with the prices of its triggered guards; infinite where it is forbidden."""
-        return self.cost[index] + self.extras(state).get(index, 0.0) if self._has_guards[index] else self.cost[index]
+        """Return the operator's cost in the state, with the prices of its triggered guards;
+        infinite where it is forbidden.
+        """
+        return (
+            self.cost[index] + self.extras(state).get(index, 0.0)
+            if self._has_guards[index]
+            else self.cost[index]
+        )
 
     def apply(self, index: int, state: State, closed: State) -> State:
-        """The state after the operator (adding wins over deleting)."""
+        """Apply the operator (adding wins over deleting); return the state after it."""
         after = (state & self.kept[index]) | self.added[index]
         if self.conditional[index]:
             added = self.added[index]
@@ -214,60 +221,50 @@ class Successors:
         return after
 
     def _collect_guards(self) -> None:
-        """Sort the guards by their facts. Those not made yet are made where a listed price matters, or later."""
-        blocked: dict[Blocking, dict[Row, list[int]]] = {}
+        """Sort the guards by their facts. Those not made yet are made where a listed price matters,
+        or later.
+        """
+        blocked: dict[DerivedGuards, dict[Row, list[int]]] = {}
         for index, operator in enumerate(self.operators):
             guards = operator.guards
             if isinstance(guards, LazyGuards):
-                for blocking, row in guards.blocked:
-                    blocked.setdefault(blocking, {}).setdefault(row, []).append(index)
+                for source, row in guards.blocked:
+                    blocked.setdefault(source, {}).setdefault(row, []).append(index)
                 guards = guards.made
             for guard in guards:
-                self._guarded.setdefault(guard.facts, []).append((index, guard.lifted_by))
+                self._guarded.setdefault(guard.facts, []).append((index, guard.waived_by))
         if self._listed is None:
             self._blocked = blocked
             return
         priced = sorted(fact for fact, price in self._listed.items() if price > 0.0)
-        for blocking, owners in blocked.items():
-            for row, guard in (*blocking.lifted_by(priced), *blocking.refused()):
+        for source, owners in blocked.items():
+            for row, guard in (*source.waived_by(priced), *source.refused()):
                 for index in owners.get(row, ()):
-                    self._guarded.setdefault(guard.facts, []).append((index, guard.lifted_by))
+                    self._guarded.setdefault(guard.facts, []).append((index, guard.waived_by))
 
     def _mentioned(self) -> set[Fact]:
-        grounded = self.grounded
-        mentioned = set(grounded.goal.positive | grounded.goal.negative).union(*self._guarded)
-        fluents = {blocking.fluent for blocking in self._blocked}
-        mentioned |= {fact for fact in grounded.reachable | grounded.initial if fact[0] in fluents}
-        for operator in grounded.operators:
+        instantiated = self.instantiated
+        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(
+            *self._guarded
+        )
+        fluents = {source.fluent for source in self._blocked}
+        mentioned |= {
+            fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents
+        }
+        for operator in instantiated.operators:
             mentioned |= operator.positive
             mentioned |= operator.negative
             for effect in operator.conditional:
                 mentioned |= effect.positive | effect.negative
-        for axiom in grounded.axioms:
+        for axiom in instantiated.axioms:
             mentioned.add(axiom.head)
             mentioned |= axiom.positive | axiom.negative
         return mentioned
 
-    def _sort_axioms(self) -> list[_Stratum]:
-        strata: dict[int, _Stratum] = {}
-        heads: dict[int, int] = {}
-        for axiom in self.grounded.axioms:
-            heads[axiom.stratum] = heads.get(axiom.stratum, 0) | self.mask((axiom.head,))
-        for axiom in self.grounded.axioms:
-            stratum = strata.setdefault(axiom.stratum, _Stratum())
-            positive, negative = self.mask(axiom.positive), self.mask(axiom.negative)
-            head = self.mask((axiom.head,))
-            if positive:
-                low = positive & -positive
-                stratum.watched.setdefault(low, []).append((positive, negative, head))
-                stratum.mask |= low
-            else:
-                stratum.free.append((negative, head))
-            stratum.recursive = stratum.recursive or bool(positive & heads[axiom.stratum])
-        return [strata[number] for number in sorted(strata)]
-
     def _watch(self) -> tuple[dict[int, list[int]], list[int]]:
-        """Each operator under the one of its preconditions that the fewest operators share."""
+        """Watch each operator under the one of its preconditions that the fewest operators
+        share.
+        """
         uses: dict[Fact, int] = {}
         for i in self.alive:
             for fact in self.operators[i].positive:

@@ -59,7 +59,7 @@ def test_levels_of_a_chain(chain: tuple[Sequence[BoundStream], list[Fact]]) -> N
     assert sorted((g.level, g.stream.name) for g in made) == sorted(
         2 * [(1, "to-second"), (2, "to-third"), (3, "test-last")]
     )
-    assert all(g.is_grounded == (g.level == 1) for g in made)
+    assert all(g.has_real_inputs == (g.level == 1) for g in made)
 
 
 @pytest.mark.parametrize(("levels", "count"), [(1, 2), (2, 4), (3, 6), (4, 6)])

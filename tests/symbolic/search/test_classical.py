@@ -24,23 +24,23 @@ def test_small_tasks_are_solved_and_optimally(name: str) -> None:
         domain, problem = GENERATORS[name](SIZES[name], Random(seed))
         task = parse_task(problem, parse_domain(domain))
         interpreter = Interpreter(task)
-        grounded = instantiate(task)
+        instantiated = instantiate(task)
         best = interpreter.best(20_000)
         for method, heuristic in (("astar", "lmcut"), ("greedy", "ff+landmarks"), ("wastar", "ff"), ("eager", "hadd")):
-            result = search(grounded, search=method, heuristic=heuristic)
+            result = search(instantiated, search=method, heuristic=heuristic)
             if best is None:
                 assert result.reason is Reason.UNSOLVABLE
                 continue
             assert result.plan is not None
             cost = interpreter.run((o.name, o.arguments) for o in result.plan.operators)
             assert cost == best if method == "astar" else cost >= best
-            assert len(trace(grounded, result.plan.operators).steps) == len(result.plan.operators)
+            assert len(trace(instantiated, result.plan.operators).steps) == len(result.plan.operators)
             solved += 1
     assert solved >= 4
 
 
 def test_an_unknown_heuristic_among_several_is_refused() -> None:
     domain, problem = GENERATORS["gripper"](1, Random(0))
-    grounded = instantiate(parse_task(problem, parse_domain(domain)))
+    instantiated = instantiate(parse_task(problem, parse_domain(domain)))
     with pytest.raises(InputError, match=r"unknown heuristic 'landmark'.*Did you mean 'landmarks'"):
-        search(grounded, search="greedy", heuristic="ff+landmark")
+        search(instantiated, search="greedy", heuristic="ff+landmark")

@@ -13,7 +13,7 @@ from benchmarks.search import cupboard, effort
 from tamp.symbolic.pddl.structs import And, Atom, Fact
 from tamp.symbolic.search.heuristics.registry import HEURISTICS
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.plan_trace import trace
 from tamp.symbolic.search.search import SEARCHES, Reason, search
 from tests.symbolic.search.interpreter import Interpreter
@@ -22,20 +22,20 @@ INFORMED = ("wastar", "greedy")
 
 
 @pytest.fixture(scope="module")
-def eight() -> Grounded:
+def eight() -> InstantiatedTask:
     return instantiate(*cupboard(8))
 
 
 @pytest.mark.parametrize("name", INFORMED)
 @pytest.mark.parametrize("priced", [True, False])
-def test_eight_interchangeable_bodies_need_no_search(eight: Grounded, name: str, priced: bool) -> None:
+def test_eight_interchangeable_bodies_need_no_search(eight: InstantiatedTask, name: str, priced: bool) -> None:
     result = search(eight, search=name, price=effort if priced else lambda fact: 0.0)
     assert result.plan is not None
     assert len(result.plan.operators) == 32
     assert result.expanded <= 40
 
 
-def test_the_trace_names_every_static_fact_used(eight: Grounded) -> None:
+def test_the_trace_names_every_static_fact_used(eight: InstantiatedTask) -> None:
     result = search(eight)
     assert result.plan is not None
     steps = trace(eight, result.plan.operators)
@@ -65,13 +65,13 @@ def blocked(price: float, name: str, heuristic: str = "ff") -> tuple[list[str], 
     """Body o0 shall leave the table, but o1 at its start pose is in the way of every reach for it."""
     task, facts, objects = cupboard(2, 3)
     goal = And((Atom("on", ("o0", "shelf")),))
-    grounded = instantiate(type(task)(task.name, task.domain, task.objects, task.initial, goal, {}), facts, objects)
+    instantiated = instantiate(type(task)(task.name, task.domain, task.objects, task.initial, goal, {}), facts, objects)
 
     def prices(fact: Fact) -> float:
         return price if fact[0] == "reach-clear" and fact[1:3] == ("o0", "o0_start") and fact[6] == "o1" else 0.0
 
     result = search(
-        grounded, search=name, heuristic=heuristic, price=lambda f: prices(f) if f[-1] == "o1_start" else 0.0
+        instantiated, search=name, heuristic=heuristic, price=lambda f: prices(f) if f[-1] == "o1_start" else 0.0
     )
     assert result.plan is not None
     return [f"{o.name} {o.arguments[0]}" for o in result.plan.operators], result.plan.cost, result.expanded
@@ -121,7 +121,7 @@ def test_bodies_that_swap_places_need_a_third_place(name: str) -> None:
     assert result.expanded <= 60
 
 
-def test_limits_are_reported(eight: Grounded) -> None:
+def test_limits_are_reported(eight: InstantiatedTask) -> None:
     result = search(eight, limit=3)
     assert result.plan is None
     assert result.reason is Reason.LIMIT
@@ -129,10 +129,10 @@ def test_limits_are_reported(eight: Grounded) -> None:
 
 
 def test_infinite_prices_take_operators_away() -> None:
-    grounded = instantiate(*cupboard(1, 2))
-    assert search(grounded, price=lambda f: float("inf") if f[0] == "nothing" else 0.0).plan is not None
+    instantiated = instantiate(*cupboard(1, 2))
+    assert search(instantiated, price=lambda f: float("inf") if f[0] == "nothing" else 0.0).plan is not None
     for name in ("pick-motion", "supported"):  # an operator rests on the one, the goal's derivation on the other
-        result = search(grounded, price=lambda f, name=name: float("inf") if f[0] == name else 0.0)
+        result = search(instantiated, price=lambda f, name=name: float("inf") if f[0] == name else 0.0)
         assert result.reason is Reason.UNSOLVABLE
 
 

@@ -14,7 +14,7 @@ from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import derive
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Facts, Grounded, Operator
+from tamp.symbolic.search.operators import Facts, InstantiatedTask, Operator
 from tamp.symbolic.search.search import search
 
 TESTS = ("pose-clear", "reach-clear")
@@ -29,22 +29,22 @@ def step_cost(operator: Operator, state: Facts, prices: dict[Fact, float]) -> fl
     cost = operator.cost + sum(prices.get(fact, 0.0) for fact in operator.static)
     for guard in operator.guards:
         if guard.facts <= state:
-            cost += math.inf if guard.lifted_by is None else prices.get(guard.lifted_by, 0.0)
+            cost += math.inf if guard.waived_by is None else prices.get(guard.waived_by, 0.0)
     return cost
 
 
-def dijkstra(grounded: Grounded, prices: dict[Fact, float]) -> float:
+def dijkstra(instantiated: InstantiatedTask, prices: dict[Fact, float]) -> float:
     order = itertools.count()
-    queue = [(0.0, next(order), grounded.initial)]
+    queue = [(0.0, next(order), instantiated.initial)]
     done: set[Facts] = set()
     while queue:
         cost, _, state = heapq.heappop(queue)
         if state in done:
             continue
         done.add(state)
-        if grounded.goal.positive <= state | derive(grounded.axioms, state).keys():
+        if instantiated.goal.positive <= state | derive(instantiated.axioms, state).keys():
             return cost
-        for operator in grounded.operators:
+        for operator in instantiated.operators:
             if operator.positive <= state and operator.negative.isdisjoint(state):
                 reached = cost + step_cost(operator, state, prices)
                 if reached < math.inf:
@@ -52,7 +52,7 @@ def dijkstra(grounded: Grounded, prices: dict[Fact, float]) -> float:
     return math.inf
 
 
-def instances(seed: int) -> tuple[Instance, dict[Fact, float], Grounded, Grounded]:
+def instances(seed: int) -> tuple[Instance, dict[Fact, float], InstantiatedTask, InstantiatedTask]:
     """A task with some tests refused, priced at random; its grounding with tests listed and with tests assumed."""
     rng = Random(seed)
     task, facts, objects = cupboard(2, 2)
@@ -69,9 +69,9 @@ def test_astar_is_optimal_with_prices(seed: int) -> None:
     _, prices, listed, assumed = instances(seed)
     best = dijkstra(listed, prices)
     assert best == pytest.approx(dijkstra(assumed, prices))
-    for grounded, heuristic in itertools.product((listed, assumed), ("hmax", "blind")):
+    for instantiated, heuristic in itertools.product((listed, assumed), ("hmax", "blind")):
         for price in (prices, lambda fact: prices.get(fact, 0.0)):
-            result = search(grounded, search="astar", heuristic=heuristic, price=price)
+            result = search(instantiated, search="astar", heuristic=heuristic, price=price)
             assert (result.plan.cost if result.plan else math.inf) == pytest.approx(best)
 
 
@@ -81,14 +81,14 @@ def test_informed_searches_pay_what_they_say(seed: int, name: str) -> None:
     _, prices, listed, assumed = instances(seed)
     best = dijkstra(listed, prices)
     found: list[list[str]] = []
-    for grounded, price in itertools.product((listed, assumed), (prices, lambda fact: prices.get(fact, 0.0))):
-        result = search(grounded, search=name, price=price)
+    for instantiated, price in itertools.product((listed, assumed), (prices, lambda fact: prices.get(fact, 0.0))):
+        result = search(instantiated, search=name, price=price)
         if best == math.inf:
             assert result.plan is None
             continue
         assert result.plan is not None
         found.append(list(map(str, result.plan.operators)))
-        state, cost = grounded.initial, 0.0
+        state, cost = instantiated.initial, 0.0
         for operator in result.plan.operators:
             assert operator.positive <= state
             assert operator.negative.isdisjoint(state)
@@ -107,12 +107,12 @@ def test_what_the_goal_is_derived_from_has_a_price(method: str, cheap: str) -> N
       (:action put :parameters (?p) :precondition (place ?p) :effect (at ?p))
       (:derived (done) (exists (?p) (and (at ?p) (within ?p)))))""")
     problem = "(define (problem p) (:domain d) (:objects p1 p2) (:init (place p1) (place p2)) (:goal (done)))"
-    grounded = instantiate(parse_task(problem, domain), [("within", "p1"), ("within", "p2")])
+    instantiated = instantiate(parse_task(problem, domain), [("within", "p1"), ("within", "p2")])
     dear = "p2" if cheap == "p1" else "p1"
     for blind in (None, "blind"):
-        result = search(grounded, search=method, price={("within", dear): 5.0}, heuristic=blind or "ff")
+        result = search(instantiated, search=method, price={("within", dear): 5.0}, heuristic=blind or "ff")
         assert result.plan is not None
         assert [operator.arguments for operator in result.plan.operators] == [(cheap,)]
-    only = search(grounded, search=method, price={("within", "p1"): 5.0, ("within", "p2"): 7.0}, heuristic="blind")
+    only = search(instantiated, search=method, price={("within", "p1"): 5.0, ("within", "p2"): 7.0}, heuristic="blind")
     assert only.plan is not None
     assert only.plan.cost == 1.0

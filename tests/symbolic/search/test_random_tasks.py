@@ -121,9 +121,9 @@ def check(task: Task) -> str:
     """Compare all searches with brute force; what came out, in a word."""
     interpreter = Interpreter(task)
     best = interpreter.best(400)
-    grounded = instantiate(task)
+    instantiated = instantiate(task)
     for name, heuristic in itertools.product(SEARCHES, (*HEURISTICS, "ff+landmarks", "lmcut+hmax")):
-        result = search(grounded, search=name, heuristic=heuristic)
+        result = search(instantiated, search=name, heuristic=heuristic)
         if best is None:
             assert result.plan is None
             assert result.reason is Reason.UNSOLVABLE
@@ -134,9 +134,9 @@ def check(task: Task) -> str:
         assert cost >= best
         if name == "astar" and ADMISSIBLE.issuperset(heuristic.split("+")):
             assert cost == best, heuristic
-        steps = trace(grounded, result.plan.operators).steps
+        steps = trace(instantiated, result.plan.operators).steps
         assert len(steps) == len(result.plan.operators)
-    if unreachable(grounded):
+    if unreachable(instantiated):
         assert best is None
     return "unsolvable" if best is None else "trivial" if best == 0 else "solved"
 

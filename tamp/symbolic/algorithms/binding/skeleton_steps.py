@@ -1,4 +1,4 @@
-"""From a grounded plan to the steps of a skeleton."""
+"""From an instantiated plan to the steps of a skeleton."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from tamp.symbolic.algorithms.binding.skeleton import Step, Usage
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.operators import Grounded, Guard, Operator
+from tamp.symbolic.search.operators import Guard, InstantiatedTask, Operator
 from tamp.symbolic.search.plan_trace import Trace, trace
 from tamp.symbolic.search.search import Plan
 
@@ -16,10 +16,10 @@ NOGOOD = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
 
 
-def with_nogoods(grounded: Grounded, experience: Experience) -> tuple[Grounded, dict[Fact, float]]:
+def with_nogoods(instantiated: InstantiatedTask, experience: Experience) -> tuple[InstantiatedTask, dict[Fact, float]]:
     """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
     if not experience.nogoods:
-        return grounded, {}
+        return instantiated, {}
     guards: dict[Fact, list[Guard]] = {}
     prices: dict[Fact, float] = {}
     for number, ((fact, present), record) in enumerate(experience.nogoods.items()):
@@ -28,9 +28,9 @@ def with_nogoods(grounded: Grounded, experience: Experience) -> tuple[Grounded, 
         guards.setdefault(fact, []).append(Guard(present, name))
     operators = tuple(
         _guarded(operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())])
-        for operator in grounded.operators
+        for operator in instantiated.operators
     )
-    return replace(grounded, operators=operators), prices
+    return replace(instantiated, operators=operators), prices
 
 
 def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
@@ -39,16 +39,18 @@ def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
     return replace(operator, guards=(*operator.guards, *guards))
 
 
-def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tuple[tuple[Step, ...], Trace]:
+def to_steps(
+    instantiated: InstantiatedTask, plan: Plan, prices: Mapping[Fact, float]
+) -> tuple[tuple[Step, ...], Trace]:
     """The plan's steps, and the trace that they come from."""
-    traced = trace(grounded, plan.operators, prices)
+    traced = trace(instantiated, plan.operators, prices)
     steps: list[Step] = []
     for step in traced.steps:
         operator = step.operator
         usages = [
-            Usage(guard.lifted_by, guard.facts)
+            Usage(guard.waived_by, guard.facts)
             for guard in step.guards
-            if guard.lifted_by is not None and guard.lifted_by[0] != NOGOOD
+            if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
         ]
         used = {usage.fact for usage in usages}
         steps.append(

@@ -8,26 +8,26 @@ from dataclasses import replace
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import stratify
-from tamp.symbolic.search.operators import Axiom, Facts, Grounded
+from tamp.symbolic.search.operators import Axiom, Facts, InstantiatedTask
 
 ELSEWHERE = "(elsewhere)"
 """The predicate of derived facts that say that a state is another one; no PDDL name looks like it."""
 
 
-def elsewhere(grounded: Grounded, experience: Experience) -> Grounded:
+def elsewhere(instantiated: InstantiatedTask, experience: Experience) -> InstantiatedTask:
     """The task in which everything that rests on a call that failed in a state is to be done in other states."""
     needs: dict[Fact, set[Fact]] = defaultdict(set)
     axioms: list[Axiom] = []
     none: Facts = frozenset()
     for number, ((fact, predicates), states) in enumerate(experience.exact.items()):
-        changing = sorted(one for one in grounded.reachable | grounded.initial if one[0] in predicates)
+        changing = sorted(one for one in instantiated.reachable | instantiated.initial if one[0] in predicates)
         for place, state in enumerate(states):
             head = (ELSEWHERE, str(number), str(place))
             needs[fact].add(head)
             axioms += [Axiom(head, none, frozenset((one,))) for one in sorted(state)]
             axioms += [Axiom(head, frozenset((one,)), none) for one in changing if one not in state]
     if not needs:
-        return grounded
+        return instantiated
 
     def asked(static: Facts) -> Facts:
         return frozenset(head for fact in static for head in needs.get(fact, ()))
@@ -40,9 +40,9 @@ def elsewhere(grounded: Grounded, experience: Experience) -> Grounded:
                 replace(effect, positive=effect.positive | asked(effect.static)) for effect in operator.conditional
             ),
         )
-        for operator in grounded.operators
+        for operator in instantiated.operators
     )
-    axioms += [replace(axiom, positive=axiom.positive | asked(axiom.static)) for axiom in grounded.axioms]
-    goal = replace(grounded.goal, positive=grounded.goal.positive | asked(grounded.goal.static))
-    reachable = grounded.reachable | {axiom.head for axiom in axioms}
-    return replace(grounded, operators=operators, axioms=stratify(axioms), goal=goal, reachable=reachable)
+    axioms += [replace(axiom, positive=axiom.positive | asked(axiom.static)) for axiom in instantiated.axioms]
+    goal = replace(instantiated.goal, positive=instantiated.goal.positive | asked(instantiated.goal.static))
+    reachable = instantiated.reachable | {axiom.head for axiom in axioms}
+    return replace(instantiated, operators=operators, axioms=stratify(axioms), goal=goal, reachable=reachable)

@@ -11,13 +11,13 @@ from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
 from tamp.symbolic.algorithms.experience.failure_counts import Tally, in_the_way
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
-from tamp.symbolic.algorithms.explanation.goal_conflicts import Ground, conflict
+from tamp.symbolic.algorithms.explanation.goal_conflicts import InstantiateGoal, conflict
 from tamp.symbolic.algorithms.explanation.kept import kept_from
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
 from tamp.symbolic.algorithms.result import Attempt, StreamTask
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
@@ -48,27 +48,27 @@ def explain_attempts(
 
 def explain_infeasible(
     problem: StreamTask,
-    grounded: Grounded,
+    instantiated: InstantiatedTask,
     dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
     missing: Missing,
     deadline: Deadline,
-    ground: Ground,
+    instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
     """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
 
     Args:
         problem: The task and its streams.
-        grounded: The optimistic task, unsolvable.
+        instantiated: The optimistic task, unsolvable.
         dead: The calls that ended without a value.
         missing: Says what a fact lacks.
         deadline: When to look no further.
-        ground: Grounds the task with another goal.
+        instantiate: Instantiates the task with another goal.
     """
     lines: list[str] = []
     blamed: set[tuple[str, tuple[str, ...]]] = set()
-    for fact in unreachable(grounded):
+    for fact in unreachable(instantiated):
         words = fact[2:] if fact[0] == "not" else fact[1:]
-        meaning = grounded.meanings.get(fact[0])
+        meaning = instantiated.meanings.get(fact[0])
         text = meaning or f"({' '.join(fact)})"
         words = tuple(re.findall(r"[^\s()]+", meaning)) if meaning else words
         causes: list[str] = []
@@ -79,15 +79,15 @@ def explain_infeasible(
         causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
     lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
-    if blamed or unreachable(grounded):
+    if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
     soon = Deadline(min(SOON, deadline.left()))
-    goals = conflict(grounded, soon, problem.task.goal, ground)
+    goals = conflict(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
     what = goals[0] if goals else "the goal"
     calls = {_call(problem, *key): (frozenset(_names(problem, key[1])), why.reason) for key, why in dead.items()}
-    forbidding = kept_from(problem, grounded, calls, what)
+    forbidding = kept_from(problem, instantiated, calls, what)
     kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
     if kept:
         return tuple(dict.fromkeys((*kept, *lines)))

@@ -11,7 +11,7 @@ from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
 from tamp.symbolic.search.instantiation.normal_form import show
 from tamp.symbolic.search.mutex import excluded
-from tamp.symbolic.search.operators import Goal, Grounded
+from tamp.symbolic.search.operators import Goal, InstantiatedTask
 from tamp.symbolic.search.search import Reason, search
 from tamp.system.deadline import Deadline
 
@@ -21,34 +21,36 @@ LIMIT = 5000
 PAIRS = 200
 """Pairs of conjuncts looked at where the goal is one formula with variables."""
 
-Ground = Callable[[Formula], Grounded]
-"""Grounds the task with another goal."""
+InstantiateGoal = Callable[[Formula], InstantiatedTask]
+"""Instantiates the task with another goal."""
 
 
-def conflict(grounded: Grounded, deadline: Deadline, goal: Formula, ground: Ground) -> tuple[str, ...]:
+def conflict(
+    instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
+) -> tuple[str, ...]:
     """The goals of an unsolvable task without those that its being unsolvable does not depend on, as texts.
 
     Pairs of facts that exclude each other say it at once. Where they do not, one goal after the other is left out; it
     stays out when the others are proven unsolvable without it, within LIMIT and the time.
 
     Args:
-        grounded: The task.
+        instantiated: The task.
         deadline: When to look no further.
         goal: The goal as it was written.
-        ground: Grounds the task with another goal.
+        instantiate: Instantiates the task with another goal.
     """
-    found = excluded(grounded, deadline)
-    if found is not None and any(_is_odd(fact, grounded) for fact, _ in found):
-        return _conjuncts(goal, ground, deadline) or _texts(grounded, found)
-    return _texts(grounded, found or _searched(grounded, deadline))
+    found = excluded(instantiated, deadline)
+    if found is not None and any(_is_odd(fact, instantiated) for fact, _ in found):
+        return _conjuncts(goal, instantiate, deadline) or _texts(instantiated, found)
+    return _texts(instantiated, found or _searched(instantiated, deadline))
 
 
-def _is_odd(fact: Fact, grounded: Grounded) -> bool:
+def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
     """Whether nobody wrote it so: an auxiliary fact, or one about a placeholder."""
-    return fact[0] in grounded.meanings or any(word.startswith(MARK) for word in fact)
+    return fact[0] in instantiated.meanings or any(word.startswith(MARK) for word in fact)
 
 
-def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, ...]:
+def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) -> tuple[str, ...]:
     """The fewest conjuncts of a goal with variables that pairs of facts show to be too many; none if they do not."""
     parts = goal.parts if isinstance(goal, And) else (goal,)
     denied = {part.body for part in parts if isinstance(part, Not)}
@@ -59,20 +61,20 @@ def _conjuncts(goal: Formula, ground: Ground, deadline: Deadline) -> tuple[str, 
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
-        if excluded(ground(And(some)), deadline) is not None:
+        if excluded(instantiate(And(some)), deadline) is not None:
             return tuple(show(part) for part in some)
     return tuple(show(part) for part in parts)
 
 
-def _searched(grounded: Grounded, deadline: Deadline) -> tuple[tuple[Fact, bool], ...]:
-    kept = [part.literal for part in goal_parts(grounded)]
+def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple[Fact, bool], ...]:
+    kept = [part.literal for part in goal_parts(instantiated)]
     for literal in sorted(
-        kept, key=lambda one: one[0][0] not in grounded.meanings
+        kept, key=lambda one: one[0][0] not in instantiated.meanings
     ):  # the parts say more than the whole
         rest = [other for other in kept if other != literal]
         if not rest or deadline.passed:
             break
-        left = replace(grounded, goal=_goal(grounded.goal, rest))
+        left = replace(instantiated, goal=_goal(instantiated.goal, rest))
         found = search(left, search="greedy", limit=LIMIT, deadline=deadline)
         if found.reason is Reason.UNSOLVABLE:
             kept = rest
@@ -84,10 +86,10 @@ def _goal(goal: Goal, literals: Iterable[tuple[Fact, bool]]) -> Goal:
     return Goal(positive, frozenset(fact for fact, wanted in literals if not wanted), goal.static)
 
 
-def _texts(grounded: Grounded, literals: Iterable[tuple[Fact, bool]]) -> tuple[str, ...]:
+def _texts(instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]) -> tuple[str, ...]:
     texts: list[str] = []
     for fact, wanted in literals:
-        meaning = grounded.meanings.get(fact[0])
+        meaning = instantiated.meanings.get(fact[0])
         text = meaning or f"({' '.join(fact)})"
         # what an auxiliary universal fact stands for is the formula that holds where the fact does not
         negated = not wanted and not (meaning is not None and fact[0].startswith("forall "))

@@ -8,26 +8,26 @@ from tamp.symbolic.algorithms.explanation.unachievable_facts import plain_atoms
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
 from tamp.symbolic.search.lasting import forbidden_by, lasting
-from tamp.symbolic.search.operators import Grounded, Operator
+from tamp.symbolic.search.operators import InstantiatedTask, Operator
 
 CALLS = 2
 """Calls that are named as the reason why a thing stays where it is."""
 
 
 def kept_from(
-    problem: StreamTask, grounded: Grounded, calls: Mapping[str, tuple[frozenset[str], str]], goal: str
+    problem: StreamTask, instantiated: InstantiatedTask, calls: Mapping[str, tuple[frozenset[str], str]], goal: str
 ) -> Iterator[str]:
     """For each action about the goal's objects that something forbids for good: the action, what it is, and why.
 
     Args:
         problem: The task, whose rules say what a fact means.
-        grounded: The optimistic task.
+        instantiated: The optimistic task.
         calls: The calls that ended without a value, each with the objects that it is about and its reason.
         goal: As text.
     """
     wanted = set(goal.replace("(", " ").replace(")", " ").split())
-    for_good = lasting(grounded).forbidden
-    for operator, facts in for_good or forbidden_by(grounded, grounded.initial):
+    for_good = lasting(instantiated).forbidden
+    for operator, facts in for_good or forbidden_by(instantiated, instantiated.initial):
         about = [word for word in operator.arguments if word in wanted]
         if not about:
             continue

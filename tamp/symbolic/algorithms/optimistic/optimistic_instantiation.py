@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tamp.symbolic.algorithms.bound_stream import BoundStream, ground
+from tamp.symbolic.algorithms.bound_stream import BoundStream, substitute
 from tamp.symbolic.algorithms.optimistic.fact_index import FactIndex, unify
 from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula, Not, Or, Task
 
@@ -43,7 +43,7 @@ class Guess:
     level: int
 
     @property
-    def is_grounded(self) -> bool:
+    def has_real_inputs(self) -> bool:
         """Whether all inputs are real, so that what its function says of them is final."""
         return not any(name.startswith(MARK) for name in self.inputs)
 
@@ -84,8 +84,8 @@ class Optimism:
         declaration = stream.declaration
         binding = dict(zip(atom.terms, fact[1:], strict=True))
         inputs = tuple(binding[name] for name in declaration.inputs)
-        domain = ground(declaration.domain, declaration.inputs, inputs)
-        certified = ground(declaration.certified, declaration.inputs, inputs)
+        domain = substitute(declaration.domain, declaration.inputs, inputs)
+        certified = substitute(declaration.certified, declaration.inputs, inputs)
         made = self.makers[fact] = Guess(stream, inputs, (), domain, certified, 0)
         return made
 
@@ -144,7 +144,7 @@ def imagine(
             return
         seen.add(key)
         call = named.get(key)
-        domain = ground(declaration.domain, declaration.inputs, inputs) if call is None else call.domain
+        domain = substitute(declaration.domain, declaration.inputs, inputs) if call is None else call.domain
         level = 1
         for fact in domain:
             if level_of[fact] >= level:
@@ -163,7 +163,7 @@ def imagine(
                 counts[prefix] += 1
                 outputs.append(f"{prefix}{counts[prefix]}")
             variables = (*declaration.inputs, *declaration.outputs)
-            certified = ground(declaration.certified, variables, (*inputs, *outputs))
+            certified = substitute(declaration.certified, variables, (*inputs, *outputs))
             call = named[key] = Named(tuple(outputs), domain, certified)
         if call.outputs:
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))

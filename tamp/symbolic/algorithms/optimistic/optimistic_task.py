@@ -23,7 +23,7 @@ from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import (
 from tamp.symbolic.algorithms.result import Effort, StreamTask
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 
 DEEPEST = 8
 """How many times the first depth and number of guesses are imagined at most, when there is no plan with fewer."""
@@ -71,7 +71,7 @@ class Imagination:
         shown = {name for stream in problem.streams for name in stream.declaration.fluents} - changing
         self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
-        self.optimism, self.grounded = self.imagined()
+        self.optimism, self.instantiated = self.imagined()
 
     def bystanders(self) -> frozenset[str]:
         """The objects of which nothing is imagined at first: none, unless an algorithm knows when to recall them."""
@@ -82,10 +82,10 @@ class Imagination:
         recalled = self.aside if objects is None else objects & self.aside
         if recalled:
             self.aside -= recalled
-            self.optimism, self.grounded = self.imagined()
+            self.optimism, self.instantiated = self.imagined()
         return bool(recalled)
 
-    def imagined(self) -> tuple[Optimism, Grounded]:
+    def imagined(self) -> tuple[Optimism, InstantiatedTask]:
         """The optimistic task without the calls that are known to be dead.
 
         Where guesses have to be left out, those that are not deeper than a first plan asks for are all that is kept.
@@ -93,12 +93,12 @@ class Imagination:
         started = time.perf_counter()
         try:
             optimism = self._guesses()
-            grounded = self._instantiated(optimism)
-            while self._shallower() and not grounded.goal.positive <= grounded.reachable | grounded.initial:
+            instantiated = self._instantiated(optimism)
+            while self._shallower() and not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
                 self.shallow = (self.shallow or 0) + 1
                 optimism = self._guesses()
-                grounded = self._instantiated(optimism)
-            return optimism, grounded
+                instantiated = self._instantiated(optimism)
+            return optimism, instantiated
         finally:
             self.effort.search_seconds += time.perf_counter() - started
 
@@ -124,7 +124,7 @@ class Imagination:
         optimism.assumed = self.assumed
         return optimism
 
-    def _instantiated(self, optimism: Optimism) -> Grounded:
+    def _instantiated(self, optimism: Optimism) -> InstantiatedTask:
         facts = [*self.real, *optimism.makers]
         types = {**self.objects.types, **optimism.types}
         return self.instantiator.instantiate(facts, types, frozenset(self.refused))
@@ -142,5 +142,5 @@ class Imagination:
             return False
         else:
             self.depth *= 2
-        self.optimism, self.grounded = self.imagined()
+        self.optimism, self.instantiated = self.imagined()
         return True

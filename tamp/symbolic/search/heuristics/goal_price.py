@@ -1,4 +1,4 @@
-"""What it costs that the goal is derived: the prices of the static facts that axioms rest on."""
+"""The price of deriving the goal: the prices of the static facts that axioms rest on."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from tamp.symbolic.search.successors import State, Successors, bits
 class GoalPrice:
     """The price of the goal's cheapest derivation in a state; axioms with a negation count as free.
 
-    No step pays for it, so a search that takes the first goal state takes the dearest derivation as gladly as any.
+    No step pays for it, so a search that takes the first goal state takes the dearest derivation as
+    gladly as any.
     """
 
     def __init__(self, successors: Successors) -> None:
@@ -18,12 +19,14 @@ class GoalPrice:
         self._goal = list(bits(s.goal))
         self._axioms: list[tuple[list[int], int, float]] = []
         if any(s.axiom_cost):
-            for axiom, cost in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+            for axiom, cost in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
                 price = 0.0 if axiom.negative else cost
-                self._axioms.append(([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price))
+                self._axioms.append(
+                    ([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price)
+                )
 
     def __call__(self, state: State) -> float:
-        """Of a state without its derived facts, in which the goal holds."""
+        """Price the goal in a state without its derived facts, in which the goal holds."""
         if not self._axioms:
             return 0.0
         costs = dict.fromkeys(bits(state), 0.0)

@@ -1,8 +1,9 @@
-"""Facts that every plan makes true at some time, and which of them are still to come.
+"""Fact landmarks: facts that every plan makes true at some time, and those of them that are still
+to come.
 
-All fact landmarks of the delete relaxation, found by one fixpoint over sets of facts (Zhu and Givan, Landmark
-extraction via planning graph propagation, 2003; Keyder, Richter, Helmert, Sound and complete landmarks for and/or
-graphs, 2010).
+All fact landmarks of the delete relaxation, found by one fixpoint over sets of facts (Zhu and
+Givan, Landmark extraction via planning graph propagation, 2003; Keyder, Richter, Helmert, Sound and
+complete landmarks for and/or graphs, 2010).
 """
 
 from __future__ import annotations
@@ -20,19 +21,26 @@ Mask = int
 class Landmarks:
     """The landmarks of a task, and those reached on the way to each state that was asked for.
 
-    A landmark counts as long as it was not true on the way; again when it is false now and is a goal, or is needed by
-    all that first achieves a landmark that was not true yet (Richter and Westphal, LAMA, 2010).
+    A landmark counts as long as it was not true on the way; again when it is false now and is a
+    goal, or is needed by all that first achieves a landmark that was not true yet (Richter and
+    Westphal, LAMA, 2010).
     """
 
     def __init__(self, successors: Successors) -> None:
         self._relaxation = relaxation = Relaxation(successors, steps=True)
         self._size = len(successors.facts)
         initial = successors.closure(successors.initial)
-        situation = relaxation.situation(initial)
-        before, effects, needed = situation.before.lists(), situation.effects.lists(), situation.needed.lists()
+        relaxed_state = relaxation.relaxed_state(initial)
+        before, effects, needed = (
+            relaxed_state.before.lists(),
+            relaxed_state.effects.lists(),
+            relaxed_state.needed.lists(),
+        )
         here = relaxation.holding(initial)
-        sets: list[Mask] = [0] * len(needed)  # 0: not reached yet; every reached set contains the fact itself
-        for fact in (*here, *situation.paid):
+        sets: list[Mask] = [0] * len(
+            needed
+        )  # 0: not reached yet; every reached set contains the fact itself
+        for fact in (*here, *relaxed_state.paid):
             sets[fact] = 1 << fact
         start = set(here)
         waiting = dict.fromkeys(range(len(before)))
@@ -64,11 +72,11 @@ class Landmarks:
         self._goals = goals & useful
         self._reached: dict[State, Mask] = {}
         self._complements = self._all >> self._size
-        self._weights = self._weigh(effects, situation.costs)
+        self._weights = self._weigh(effects, relaxed_state.costs)
         self._needs = self._first_needs(sets, before, effects)
 
     def remaining(self, closed: State, parent: State | None) -> Mask:
-        """The landmarks that are still to come, or to come again.
+        """Return the landmarks that are still to come, or to come again.
 
         Args:
             closed: The state with its derived facts.
@@ -87,7 +95,7 @@ class Landmarks:
         return missing | (again & ~now & self._all)
 
     def cost(self, remaining: Mask) -> float:
-        """The sum of the cheapest achievers' costs."""
+        """Sum the costs of the landmarks' cheapest achievers."""
         weights = self._weights
         return sum(weights[fact] for fact in bits(remaining))
 
@@ -102,8 +110,12 @@ class Landmarks:
                     weights[fact] = min(weights.get(fact, math.inf), float(costs[i]))
         return {fact: weights.get(fact, 0.0) for fact in self.landmarks}
 
-    def _first_needs(self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]) -> dict[int, Mask]:
-        """For each landmark what all its first achievers need: those that do not need itself."""
+    def _first_needs(
+        self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]
+    ) -> dict[int, Mask]:
+        """Return for each landmark what all its first achievers need: those that do not need
+        itself.
+        """
         needs: dict[int, Mask] = {}
         for i, facts in enumerate(effects):
             if not all(sets[fact] for fact in before[i]):

@@ -1,48 +1,69 @@
-"""The landmark-cut heuristic (Helmert and Domshlak, Landmarks, Critical Paths and Abstractions, 2009): admissible.
+"""The landmark-cut heuristic (Helmert and Domshlak, Landmarks, Critical Paths and Abstractions,
+2009): admissible.
 
-Each cut is a set of operators of which every plan of the delete relaxation needs one. It counts with the cost of the
-cheapest, which is taken off the cost of all operators in it. An operator with conditional effects is several relaxed
-operators: all of them get cheaper when one is in a cut, since one application may do all they do.
+Each cut is a set of operators of which every plan of the delete relaxation needs one. It counts
+with the cost of the cheapest, which is taken off the cost of all operators in it. An operator with
+conditional effects is several relaxed operators: all of them get cheaper when one is in a cut,
+since one application may do all they do.
 """
 
 from __future__ import annotations
 
-from tamp.symbolic.search.heuristics.relaxation import KEPT, Relaxation, Situation
+from tamp.symbolic.search.heuristics.relaxation import MAX_RELAXED_STATES, Relaxation
+from tamp.symbolic.search.heuristics.relaxed_state import RelaxedState
 from tamp.symbolic.search.successors import State
 
-CUTS = 10
+EXPECTED_CUTS = 10
 """So many cuts an estimate takes for granted, in telling what it will cost."""
 
 
 class LandmarkCut:
     """The heuristic for the states that share one relaxed task.
 
-    Two facts are added: one that always holds, for operators without preconditions, and one that stands for the goal.
+    Two facts are added: one that always holds, for operators without preconditions, and one that
+    stands for the goal.
 
     Args:
         relaxation: Whose operators they are.
-        situation: The relaxed task.
+        relaxed_state: The relaxed task.
     """
 
-    def __init__(self, relaxation: Relaxation, situation: Situation) -> None:
+    def __init__(self, relaxation: Relaxation, relaxed_state: RelaxedState) -> None:
         self._relaxation = relaxation
-        self.situation = it = situation
+        self.relaxed_state = it = relaxed_state
         self._true = true = it.facts
         self._goal = goal = true + 1
-        loops, last, goals = it.loops, it.operators, relaxation.goals or [true]
-        integers = loops.integers
-        at, what = [*relaxation.free, *[last] * len(goals)], [*[true] * len(relaxation.free), *goals]
-        before = loops.appended(it.before, integers(at), integers(what), last + 1)
-        effects = loops.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
-        self._rows = before, effects, loops.transposed(before, goal + 1), loops.transposed(effects, goal + 1)
-        self._costs = loops.raised(it.costs, integers(()), loops.reals(()), 1)
+        kernels, last, goals = it.kernels, it.operators, relaxation.goals or [true]
+        integers = kernels.integers
+        at, what = (
+            [*relaxation.free, *[last] * len(goals)],
+            [*[true] * len(relaxation.free), *goals],
+        )
+        before = kernels.appended(it.before, integers(at), integers(what), last + 1)
+        effects = kernels.appended(it.effects, integers((last,)), integers((goal,)), last + 1)
+        self._rows = (
+            before,
+            effects,
+            kernels.transposed(before, goal + 1),
+            kernels.transposed(effects, goal + 1),
+        )
+        self._costs = kernels.incremented(it.costs, integers(()), kernels.reals(()), 1)
 
     def value(self, closed: State) -> float:
-        """The estimate for a state with its derived facts; infinite in a dead end."""
-        loops = self.situation.loops
-        here = loops.integers((*self._relaxation.holding(closed), self._true, *self.situation.paid))
-        return loops.landmark_cut(
-            *self._rows, self._costs, here, self._relaxation.owners, self._relaxation.groups, self._goal
+        """Estimate the cost from a state with its derived facts by landmark cuts; infinite in a
+        dead end.
+        """
+        kernels = self.relaxed_state.kernels
+        here = kernels.integers(
+            (*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid)
+        )
+        return kernels.landmark_cut(
+            *self._rows,
+            self._costs,
+            here,
+            self._relaxation.owners,
+            self._relaxation.groups,
+            self._goal,
         )
 
 
@@ -54,11 +75,14 @@ class LandmarkCuts:
         self._known: dict[State, LandmarkCut] = {}
 
     def value(self, closed: State) -> float:
-        """The estimate for a state with its derived facts."""
-        situation, key = self._relaxation.situation(closed, CUTS), self._relaxation.key(closed)
+        """Estimate the cost from a state with its derived facts."""
+        relaxed_state, key = (
+            self._relaxation.relaxed_state(closed, EXPECTED_CUTS),
+            self._relaxation.key(closed),
+        )
         known = self._known.get(key)
-        if known is None or known.situation.loops is not situation.loops:
-            if len(self._known) >= KEPT:
+        if known is None or known.relaxed_state.kernels is not relaxed_state.kernels:
+            if len(self._known) >= MAX_RELAXED_STATES:
                 self._known.clear()
-            known = self._known[key] = LandmarkCut(self._relaxation, situation)
+            known = self._known[key] = LandmarkCut(self._relaxation, relaxed_state)
         return known.value(closed)

@@ -1,4 +1,4 @@
-"""Estimates of the cost from a state to the goal, by name."""
+"""Heuristics by name: estimates of the cost from a state to the goal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ class Estimate:
 
     Attributes:
         value: The estimated cost to the goal, infinite in a dead end.
-        plan: The operators of a relaxed plan, where the heuristic makes one; those applicable are preferred.
+        plan: The operators of a relaxed plan, where the heuristic makes one; those applicable are
+            preferred.
         paid: Says of an operator of that plan which prices of its guards the value contains.
     """
 
@@ -32,12 +33,16 @@ class Heuristic(Protocol):
     """Estimates the cost to the goal from a state."""
 
     def __call__(self, closed: State, parent: State | None = None) -> Estimate:
-        """Estimate; `closed` is the state with its derived facts, `parent` the one before it on the way."""
+        """Estimate; `closed` is the state with its derived facts, `parent` the one before it on the
+        way.
+        """
         ...
 
 
 def ff(successors: Successors) -> Heuristic:
-    """The cost of a relaxed plan (Hoffmann and Nebel 2001) along hadd's best supporters."""
+    """Estimate by the cost of a relaxed plan (Hoffmann and Nebel 2001) along hadd's best
+    supporters.
+    """
     relaxation = Relaxation(successors, steps=True)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
@@ -51,7 +56,9 @@ def ff(successors: Successors) -> Heuristic:
 
 
 def hadd(successors: Successors) -> Heuristic:
-    """The sum of the goals' costs, each fact's cost the sum of its preconditions' (Bonet and Geffner 2001)."""
+    """Estimate by the sum of the goals' costs, each fact's cost the sum of its preconditions'
+    (Bonet and Geffner 2001).
+    """
     relaxation = Relaxation(successors, steps=True)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
@@ -62,7 +69,9 @@ def hadd(successors: Successors) -> Heuristic:
 
 
 def hmax(successors: Successors) -> Heuristic:
-    """The most expensive goal's cost, each fact's cost the maximum of its preconditions': admissible."""
+    """Estimate by the most expensive goal's cost, each fact's cost the maximum of its
+    preconditions': admissible.
+    """
     relaxation = Relaxation(successors, steps=False)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
@@ -73,7 +82,7 @@ def hmax(successors: Successors) -> Heuristic:
 
 
 def blind(successors: Successors) -> Heuristic:
-    """Zero in goal states, elsewhere the cheapest operator's cost: admissible."""
+    """Estimate zero in goal states, elsewhere the cheapest operator's cost: admissible."""
     cheapest = min((successors.cost[i] for i in successors.alive), default=math.inf)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
@@ -83,7 +92,9 @@ def blind(successors: Successors) -> Heuristic:
 
 
 def lmcut(successors: Successors) -> Heuristic:
-    """The sum of disjoint cuts' costs: admissible, and the most informed of the admissible ones here."""
+    """Estimate by the sum of disjoint landmark cuts' costs: admissible, and the most informed of
+    the admissible ones here.
+    """
     cuts = LandmarkCuts(Relaxation(successors, steps=False))
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
@@ -93,7 +104,9 @@ def lmcut(successors: Successors) -> Heuristic:
 
 
 def landmarks(successors: Successors) -> Heuristic:
-    """The cost of the landmarks that were not true on the way to the state, or are needed again."""
+    """Estimate by the cost of the landmarks that were not true on the way to the state, or are
+    needed again.
+    """
     known = Landmarks(successors)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:

@@ -1,87 +1,26 @@
 """The delete relaxation of a state: the cheapest way to each fact when nothing is ever deleted.
 
-Three things go beyond STRIPS. A negative condition violated in the evaluated state waits for the complement of its
-fact, which the operators that delete the fact achieve. A triggered guard waits likewise, or is paid for: its operator
-gets a precondition that costs the lesser of the guard's price and of removing its facts. Conditional effects and axioms
-are operators of their own. Negated derived facts are taken for free (only recursive ones are left at this stage).
+Three things go beyond STRIPS. A negative condition violated in the evaluated state waits for the
+complement of its fact, which the operators that delete the fact achieve. A triggered guard waits
+likewise, or is paid for: its operator gets a precondition that costs the lesser of the guard's
+price and of removing its facts. Conditional effects and axioms are operators of their own. Negated
+derived facts are taken for free (only recursive ones are left at this stage).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cache
 
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows
-from tamp.symbolic.search.heuristics.loops.selection import Loops, choose
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
+from tamp.symbolic.search.heuristics.loops.selection import choose
+from tamp.symbolic.search.heuristics.relaxed_state import RelaxedExploration, RelaxedState
 from tamp.symbolic.search.successors import State, Successors, bits
 
-KEPT = 64
-"""So many situations are kept; one of a large task takes a megabyte, and making it again less time than exploring."""
-
-
-@dataclass(frozen=True, slots=True)
-class Situation:
-    """The relaxed task for the states in which the same guards are triggered and negative conditions violated.
-
-    Attributes:
-        loops: Those that its lists are made for.
-        before: Preconditions of each relaxed operator.
-        costs: Their costs.
-        effects: Their effects: facts, complements of facts, paid guards.
-        needed: For each fact, complement or guard, the relaxed operators that wait for it.
-        paid: Guards that can be paid for.
-        prices: What they cost.
-        raised: For each operator the prices of guards that its cost contains.
-        guarded: For each operator the guards, with their prices, that it waits for.
-    """
-
-    loops: Loops
-    before: Rows
-    costs: Reals
-    effects: Rows
-    needed: Rows
-    paid: tuple[int, ...] = ()
-    prices: tuple[float, ...] = ()
-    raised: Mapping[int, float] = field(default_factory=dict[int, float])
-    guarded: Mapping[int, list[tuple[int, float]]] = field(default_factory=dict[int, list[tuple[int, float]]])
-
-    @property
-    def operators(self) -> int:
-        """How many relaxed operators there are."""
-        return len(self.before.starts) - 1
-
-    @property
-    def facts(self) -> int:
-        """How many facts, complements and guards there are."""
-        return len(self.needed.starts) - 1
-
-
-@dataclass(frozen=True, slots=True)
-class Exploration:
-    """The result: costs of facts, and for each the relaxed operator that reaches it best (-1: it holds, or is paid)."""
-
-    costs: Reals
-    supporters: Integers
-    situation: Situation
-    goals: list[int]
-
-    @property
-    def goal_costs(self) -> list[float]:
-        """What each fact of the goal costs."""
-        return [float(self.costs[goal]) for goal in self.goals]
-
-    def paid(self, operator: int) -> float:
-        """Sum the prices of an operator's guards that a relaxed plan with it pays, rather than removes their facts."""
-        it = self.situation
-        waited = it.guarded.get(operator, ())
-        return it.raised.get(operator, 0.0) + sum(price for guard, price in waited if self.supporters[guard] < 0)
-
-    @property
-    def dead(self) -> bool:
-        """Whether the goal is out of reach even in the relaxation, so that the state is a dead end."""
-        return math.inf in self.goal_costs
+MAX_RELAXED_STATES = 64
+"""So many relaxed states are kept; one of a large task takes a megabyte, and making it again less
+time than exploring.
+"""
 
 
 class Relaxation:
@@ -89,8 +28,8 @@ class Relaxation:
 
     Args:
         successors: The task.
-        steps: Count steps too where some operator costs nothing, so that estimates tell such steps from none at all.
-            Not admissible.
+        steps: Count steps too where some operator costs nothing, so that estimates tell such steps
+            from none at all. Not admissible.
 
     Attributes:
         owners: The operator that each relaxed operator belongs to, -1 for axioms.
@@ -109,13 +48,13 @@ class Relaxation:
         self._effects: list[list[int]] = []
         self._negative: dict[int, list[int]] = {}
         self._of_operator: list[list[int]] = [[] for _ in s.operators]
-        derived = s.mask(axiom.head for axiom in s.grounded.axioms)
+        derived = s.mask(axiom.head for axiom in s.instantiated.axioms)
         negated = s.guard_mask | s.goal_absent
         for i in s.alive:
             negated |= s.absent[i]
             for _, negative, _, _ in s.conditional[i]:
                 negated |= negative
-        for axiom in s.grounded.axioms:
+        for axiom in s.instantiated.axioms:
             negated |= s.mask(axiom.negative)
         self._negated = negated = negated & ~derived
         every = (1 << size) - 1
@@ -126,12 +65,27 @@ class Relaxation:
             if effects or not s.conditional[i]:
                 self._add(i, split(s.before[i]), s.absent[i], s.cost[i] + step, effects)
             for positive, negative, added, removed in s.conditional[i]:
-                effects = [*bits(added), *(size + b for b in bits(removed & ~added & ~s.added[i] & negated))]
+                effects = [
+                    *bits(added),
+                    *(size + b for b in bits(removed & ~added & ~s.added[i] & negated)),
+                ]
                 if effects:
-                    self._add(i, split(s.before[i] | positive), s.absent[i] | negative, s.cost[i] + step, effects)
-        for axiom, price in zip(s.grounded.axioms, s.axiom_cost, strict=True):
+                    self._add(
+                        i,
+                        split(s.before[i] | positive),
+                        s.absent[i] | negative,
+                        s.cost[i] + step,
+                        effects,
+                    )
+        for axiom, price in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
-            self._add(-1, split(s.mask(axiom.positive)), s.mask(axiom.negative), cost, [s.number[axiom.head]])
+            self._add(
+                -1,
+                split(s.mask(axiom.positive)),
+                s.mask(axiom.negative),
+                cost,
+                [s.number[axiom.head]],
+            )
         self.free = [i for i, facts in enumerate(self._before) if not facts]
         self._removal = self._removal_costs()
         self._negative_goals = list(bits(s.goal_absent & ~derived))
@@ -139,16 +93,20 @@ class Relaxation:
         self._entries = sum(map(len, self._before)) + len(self._before) + size
         self._prepare(choose(0))
 
-    def _prepare(self, loops: Loops) -> None:
-        """Make the lists that the loops take, of the states that trigger no guards and violate nothing."""
-        before = loops.rows(self._before)
-        effects, needed = loops.rows(self._effects), loops.transposed(before, 2 * self._size)
-        self._base = Situation(loops, before, loops.reals(self._costs), effects, needed)
-        self._situations: dict[int, Situation] = {}
-        self._ends = loops.integers(self.goals)
-        self.owners, self.groups = loops.integers(self._owners), loops.rows(self._of_operator)
+    def _prepare(self, kernels: Kernels) -> None:
+        """Make the lists that the kernels take, of the states that trigger no guards and violate
+        nothing.
+        """
+        before = kernels.rows(self._before)
+        effects, needed = kernels.rows(self._effects), kernels.transposed(before, 2 * self._size)
+        self._base = RelaxedState(kernels, before, kernels.reals(self._costs), effects, needed)
+        self._relaxed_states: dict[int, RelaxedState] = {}
+        self._ends = kernels.integers(self.goals)
+        self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
 
-    def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
+    def _add(
+        self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]
+    ) -> None:
         number = len(self._owners)
         self._owners.append(owner)
         self._before.append(before)
@@ -160,7 +118,7 @@ class Relaxation:
             self._negative.setdefault(fact, []).append(number)
 
     def _removal_costs(self) -> list[float]:
-        """For each fact the cost of the cheapest operator that deletes it."""
+        """Compute for each fact the cost of the cheapest operator that deletes it."""
         costs = [math.inf] * self._size
         for i, effects in enumerate(self._effects):
             for effect in effects:
@@ -169,27 +127,32 @@ class Relaxation:
         return costs
 
     def holding(self, closed: State) -> list[int]:
-        """The relaxed facts that hold in a state with its derived facts: facts, and complements that the goal names."""
-        return [*bits(closed), *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1)]
+        """Return the relaxed facts that hold in a state with its derived facts: facts, and
+        complements that the goal names.
+        """
+        return [
+            *bits(closed),
+            *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1),
+        ]
 
     def key(self, state: State) -> State:
-        """What states with the same situation have in common."""
+        """Return what states with the same relaxed task have in common."""
         return state & self._negated
 
-    def situation(self, state: State, effort: int = 1) -> Situation:
-        """The relaxed task as seen from a state, to be gone through about so many times."""
-        loops = choose(effort * self._entries)
-        if loops is not self._base.loops:
-            self._prepare(loops)
+    def relaxed_state(self, state: State, effort: int = 1) -> RelaxedState:
+        """Return the relaxed task as seen from a state, to be gone through about so many times."""
+        kernels = choose(effort * self._entries)
+        if kernels is not self._base.kernels:
+            self._prepare(kernels)
         key = self.key(state)
-        known = self._situations.get(key)
+        known = self._relaxed_states.get(key)
         if known is None:
-            if len(self._situations) >= KEPT:
-                self._situations.clear()
-            known = self._situations[key] = self._situation(key)
+            if len(self._relaxed_states) >= MAX_RELAXED_STATES:
+                self._relaxed_states.clear()
+            known = self._relaxed_states[key] = self._relax(key)
         return known
 
-    def _situation(self, state: State) -> Situation:
+    def _relax(self, state: State) -> RelaxedState:
         s, size, base = self._successors, self._size, self._base
         dearer: list[int] = []
         by: list[float] = []
@@ -226,16 +189,25 @@ class Relaxation:
             removers += complements
             removed += [guard] * len(complements)
         numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
-        loops, last = base.loops, operators + len(removers)
-        added = loops.integers(range(operators, last))
-        behind, sources = loops.integers([*waiters, *added]), loops.integers([*guards, *removers])
-        paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
-        return Situation(
-            loops,
-            before=loops.appended(base.before, behind, sources, last),
-            costs=loops.raised(base.costs, loops.integers(dearer), loops.reals(by), len(removers)),
-            effects=loops.appended(base.effects, added, loops.integers(removed), last),
-            needed=loops.appended(base.needed, sources, behind, first + len(waiting)),
+        kernels, last = base.kernels, operators + len(removers)
+        added = kernels.integers(range(operators, last))
+        behind, sources = (
+            kernels.integers([*waiters, *added]),
+            kernels.integers([*guards, *removers]),
+        )
+        paid = [
+            (guard, price)
+            for guard, (_, price) in enumerate(waiting, start=first)
+            if price < math.inf
+        ]
+        return RelaxedState(
+            kernels,
+            before=kernels.appended(base.before, behind, sources, last),
+            costs=kernels.incremented(
+                base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)
+            ),
+            effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
+            needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),
             prices=tuple(price for _, price in paid),
             raised=raised,
@@ -245,32 +217,39 @@ class Relaxation:
             },
         )
 
-    def explore(self, closed: State, *, additive: bool) -> Exploration:
-        """Costs of all facts from a state: sums of the preconditions' costs (hadd) or their maximum (hmax).
+    def explore(self, closed: State, *, additive: bool) -> RelaxedExploration:
+        """Compute the costs of all facts from a state: sums of the preconditions' costs (hadd) or
+        their maximum (hmax).
 
-        Facts are taken in the order of their costs, until the goal is reached at the cost of all that is left.
+        Facts are taken in the order of their costs, until the goal is reached at the cost of all
+        that is left.
 
         Args:
             closed: The state with its derived facts.
             additive: Sum, or maximum.
         """
-        it = self.situation(closed)
-        holding, loops = self.holding(closed), it.loops
-        here, prices = loops.integers((*it.paid, *holding)), loops.reals((*it.prices, *[0.0] * len(holding)))
-        costs, supporters = loops.explore(
+        it = self.relaxed_state(closed)
+        holding, kernels = self.holding(closed), it.kernels
+        here, prices = (
+            kernels.integers((*it.paid, *holding)),
+            kernels.reals((*it.prices, *[0.0] * len(holding))),
+        )
+        costs, supporters = kernels.explore(
             it.before, it.effects, it.needed, it.costs, here, prices, self._ends, additive
         )
-        return Exploration(costs, supporters, it, self.goals)
+        return RelaxedExploration(costs, supporters, it, self.goals)
 
-    def plan(self, exploration: Exploration) -> tuple[float, list[int]]:
-        """The cost of a relaxed plan made of best supporters, guards' prices included, and its operators.
+    def plan(self, exploration: RelaxedExploration) -> tuple[float, list[int]]:
+        """Extract a relaxed plan made of best supporters: its cost, guards' prices included, and
+        its operators.
 
-        Facts are taken in the order of falling cost. One that an operator chosen already adds needs no supporter of
-        its own, if that operator is cheaper than what the fact is needed for: the hand is free for the next body once
-        this one is placed where it shall be, it need not be put back first.
+        Facts are taken in the order of falling cost. One that an operator chosen already adds needs
+        no supporter of its own, if that operator is cheaper than what the fact is needed for: the
+        hand is free for the next body once this one is placed where it shall be, it need not be put
+        back first.
         """
-        it = exploration.situation
-        cost, plan = it.loops.relaxed_plan(
+        it = exploration.relaxed_state
+        cost, plan = it.kernels.relaxed_plan(
             exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owners,
             len(self._of_operator), self._ends, 2 * self._size,
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Axioms: sorting them into strata, and what they derive in a state."""
+"""Axioms: their stratification, and what they derive in a state."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from tamp.symbolic.search.operators import Axiom, Facts
 
 
 def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
-    """Sort the axioms such that each one's body needs only its own stratum (positively) and lower ones.
+    """Sort the axioms such that each one's body needs only its own stratum (positively) and lower
+    ones.
 
     Raises:
         InputError: A fact depends on its own negation.
@@ -32,19 +33,27 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
             for rule in by_head[head]:
                 for fact in sorted(rule.negative & members):
                     raise InputError(
-                        f"the derived fact ({' '.join(head)}) depends on the negation of ({' '.join(fact)}), "
+                        f"the derived fact ({' '.join(head)}) depends on the negation of "
+                        f"({' '.join(fact)}), "
                         "which depends on it",
-                        remedy="Derived predicates must be stratified: no predicate may depend on its own negation",
+                        remedy="Derived predicates must be stratified: "
+                        "no predicate may depend on its own negation",
                     )
-        level = 1 + max((stratum[f] for head in component for f in below[head] if f not in members), default=-1)
+        level = 1 + max(
+            (stratum[f] for head in component for f in below[head] if f not in members), default=-1
+        )
         for head in component:
             stratum[head] = level
     ordered = sorted(by_head, key=lambda head: (stratum[head], head))
-    return tuple(replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head])
+    return tuple(
+        replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head]
+    )
 
 
 def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
-    """Strongly connected components, those that others lead to first (Tarjan 1972, without recursion)."""
+    """Find the strongly connected components, those that others lead to first (Tarjan 1972,
+    without recursion).
+    """
     order: dict[Fact, int] = {}
     low: dict[Fact, int] = {}
     stack: list[Fact] = []
@@ -81,13 +90,16 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     return found
 
 
-def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None) -> dict[Fact, Axiom]:
-    """The derived facts of a state, each with the axiom that gave it; in the order of derivation.
+def derive(
+    axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None
+) -> dict[Fact, Axiom]:
+    """Derive the facts of a state, each with the axiom that gave it; in the order of derivation.
 
     Args:
         axioms: By stratum.
         state: The fluent facts.
-        price: Of static facts: then each fact has an axiom of its cheapest derivation, else the first that gave it.
+        price: Of static facts: then each fact has an axiom of its cheapest derivation, else the
+            first that gave it.
     """
     holds = set(state)
     why: dict[Fact, Axiom] = {}
@@ -120,7 +132,9 @@ def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | 
 
 
 class Support(NamedTuple):
-    """What derivations rest on: static facts, facts of the state, and the derived facts themselves."""
+    """What derivations rest on: static facts, facts of the state, and the derived facts
+    themselves.
+    """
 
     static: frozenset[Fact]
     read: frozenset[Fact]
@@ -128,7 +142,9 @@ class Support(NamedTuple):
 
 
 def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> Support:
-    """What the derivations of the given facts rest on; those that are not derived are facts of the state."""
+    """Collect what the derivations of the given facts rest on; those that are not derived are
+    facts of the state.
+    """
     static: set[Fact] = set()
     read: set[Fact] = set()
     seen: set[Fact] = set()

@@ -1,4 +1,6 @@
-"""Relations with indexes, joins over them, and the semi-naive fixpoint of rules (delete relaxation as Datalog)."""
+"""Relations with indexes, joins over them, and the semi-naive fixpoint of rules (delete relaxation
+as Datalog).
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ _EMPTY: tuple[Row, ...] = ()
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A conjunction with free variables. Variables of `negative` and `equalities` occur in `positive` too.
+    """A conjunction with free variables. Variables of `negative` and `equalities` occur in
+    `positive` too.
 
     Attributes:
         positive: Atoms to join; types are unary atoms.
@@ -30,7 +33,9 @@ class Body:
 
 @dataclass(slots=True)
 class _Index:
-    """The rows that match a pattern: from the values at some positions to the lists of those at others."""
+    """The rows that match a pattern: from the values at some positions to the lists of those at
+    others.
+    """
 
     matches: Callable[[Row], bool] | None
     key: Callable[[Row], Any]
@@ -45,7 +50,7 @@ class _Index:
 
 
 def getter(positions: Sequence[int]) -> Callable[[Row], Row]:
-    """A function that picks the positions out of a row, always as a tuple."""
+    """Build a function that picks the positions out of a row, always as a tuple."""
     if not positions:
         return lambda row: ()
     if len(positions) == 1:
@@ -63,7 +68,9 @@ class Relations:
         self._distinct: dict[tuple[str, int], tuple[int, int]] = {}
 
     def rows(self, predicate: str) -> dict[Row, None]:
-        """The predicate's rows in the order of their arrival (a dict used as an ordered set)."""
+        """Return the predicate's rows in the order of their arrival (a dict used as an ordered
+        set).
+        """
         return self._rows.setdefault(predicate, {})
 
     def add(self, predicate: str, rows: Iterable[Row]) -> list[Row]:
@@ -80,21 +87,26 @@ class Relations:
         return new
 
     def index(self, atom: Atom, bound: Sequence[int], free: Sequence[int]) -> dict[Any, list[Row]]:
-        """Rows matching the atom's constants and repeated variables, by the bound positions' values.
+        """Return the rows matching the atom's constants and repeated variables, by the bound
+        positions' values.
 
         The key is the bare value when one position is bound.
         """
         terms = atom.terms
         first = {term: terms.index(term) for term in terms}
         constants = tuple((i, t) for i, t in enumerate(terms) if not t.startswith("?"))
-        same = tuple((i, first[t]) for i, t in enumerate(terms) if t.startswith("?") and first[t] != i)
+        same = tuple(
+            (i, first[t]) for i, t in enumerate(terms) if t.startswith("?") and first[t] != i
+        )
         name = (tuple(bound), tuple(free), constants, same)
         indexes = self._indexes.setdefault(atom.predicate, {})
         found = indexes.get(name)
         if found is None:
 
             def fits(row: Row) -> bool:
-                return all(row[i] == t for i, t in constants) and all(row[i] == row[j] for i, j in same)
+                return all(row[i] == t for i, t in constants) and all(
+                    row[i] == row[j] for i, j in same
+                )
 
             matches = fits if constants or same else None
             key: Callable[[Row], Any] = itemgetter(*bound) if bound else lambda row: ()
@@ -103,7 +115,7 @@ class Relations:
         return found.table
 
     def fan_out(self, atom: Atom, known: Iterable[str]) -> float:
-        """About how many rows an atom adds to each binding of the known variables."""
+        """Estimate how many rows an atom adds to each binding of the known variables."""
         rows = self.rows(atom.predicate)
         distinct = 1
         for position, term in enumerate(atom.terms):
@@ -121,11 +133,17 @@ class Relations:
 
 
 def join(
-    relations: Relations, body: Body, variables: tuple[str, ...], rows: list[Row], order: Iterable[str]
+    relations: Relations,
+    body: Body,
+    variables: tuple[str, ...],
+    rows: list[Row],
+    order: Iterable[str],
 ) -> list[Row]:
-    """Extend the bindings `rows` of `variables` to all that satisfy the body; return the bindings of `order`.
+    """Extend the bindings `rows` of `variables` to all that satisfy the body; return the bindings
+    of `order`.
 
-    Atoms are joined greedily, that which adds the fewest rows first, through an index on what is bound already.
+    Atoms are joined greedily, that which adds the fewest rows first, through an index on what is
+    bound already.
     """
     atoms = list(body.positive)
     negative = list(body.negative)
@@ -152,7 +170,9 @@ def join(
         table = relations.index(atom, bound, free)
         if not bound:
             added = table.get((), _EMPTY)
-            rows = [row + more for row in rows for more in added] if free else (rows if added else [])
+            rows = (
+                [row + more for row in rows for more in added] if free else (rows if added else [])
+            )
         else:
             key = itemgetter(*columns)
             if free:
@@ -178,7 +198,9 @@ def _filter(
     equalities: list[tuple[str, str, bool]],
     rows: list[Row],
 ) -> list[Row]:
-    """Apply the equalities and negative atoms whose variables are all known, and take them off the lists."""
+    """Apply the equalities and negative atoms whose variables are all known, and take them off the
+    lists.
+    """
     for equality in equalities[:]:
         left, right, same = equality
         if all(not term.startswith("?") or term in known for term in (left, right)):
@@ -198,7 +220,7 @@ def _filter(
 
 
 def filler(terms: Sequence[str], known: dict[str, int]) -> Callable[[Row], Row]:
-    """A function from a binding to the terms with variables replaced."""
+    """Build a function from a binding to the terms with variables replaced."""
     constants = tuple(term for term in terms if term not in known)
     if not constants:
         return getter([known[term] for term in terms])
@@ -211,7 +233,9 @@ def filler(terms: Sequence[str], known: dict[str, int]) -> Callable[[Row], Row]:
 
 @dataclass(slots=True)
 class Rule:
-    """body -> heads. `rows` collects the bindings of `variables` that satisfied the body, in order of arrival."""
+    """body -> heads. `rows` collects the bindings of `variables` that satisfied the body, in order
+    of arrival.
+    """
 
     variables: tuple[str, ...]
     body: Body
@@ -219,8 +243,11 @@ class Rule:
     rows: dict[Row, None] = field(default_factory=lambda: {})
 
 
-def fixpoint(relations: Relations, rules: Sequence[Rule], delta: Mapping[str, list[Row]] | None = None) -> None:
-    """Apply the rules until nothing new follows; relations and rules' rows are extended in place.
+def fixpoint(
+    relations: Relations, rules: Sequence[Rule], delta: Mapping[str, list[Row]] | None = None
+) -> None:
+    """Apply the rules until nothing new follows (semi-naive evaluation); relations and rules' rows
+    are extended in place.
 
     Semi-naive: a rule is joined from the new rows of each predicate in its body only.
 
@@ -241,12 +268,16 @@ def fixpoint(relations: Relations, rules: Sequence[Rule], delta: Mapping[str, li
                 continue
             known = {variable: i for i, variable in enumerate(rule.variables)}
             for head in rule.heads:
-                derived.setdefault(head.predicate, {}).update(dict.fromkeys(map(filler(head.terms, known), new)))
+                derived.setdefault(head.predicate, {}).update(
+                    dict.fromkeys(map(filler(head.terms, known), new))
+                )
         added = {predicate: relations.add(predicate, rows) for predicate, rows in derived.items()}
         delta = {predicate: rows for predicate, rows in added.items() if rows}
 
 
-def _triggered(relations: Relations, rule: Rule, delta: Mapping[str, list[Row]] | None) -> Iterable[Row]:
+def _triggered(
+    relations: Relations, rule: Rule, delta: Mapping[str, list[Row]] | None
+) -> Iterable[Row]:
     if delta is None:
         yield from join(relations, rule.body, (), [()], rule.variables)
         return

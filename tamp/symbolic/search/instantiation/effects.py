@@ -9,7 +9,7 @@ from tamp.symbolic.pddl.structs import Action, And, Atom, Fact
 from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, getter, join
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import NONE, ConditionalEffect, Facts
 
 
@@ -24,19 +24,27 @@ class LiftedEffect:
 
 
 def lifted_effects(action: Action, normalizer: Normalizer) -> tuple[LiftedEffect, ...]:
-    """Normalize an action's effects. A quantified variable may have the name of one of the action's parameters."""
+    """Normalize an action's effects. A quantified variable may have the name of one of the action's
+    parameters.
+    """
     effects: list[LiftedEffect] = []
     for effect in action.effects:
         names = {parameter.name: f"{parameter.name} of effect" for parameter in effect.parameters}
         scope = {parameter.name: parameter.types for parameter in action.parameters}
         scope |= {names[parameter.name]: parameter.types for parameter in effect.parameters}
-        atom = Atom(effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms))
+        atom = Atom(
+            effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms)
+        )
         simple = not effect.parameters and effect.condition == And(())
-        effects.append(LiftedEffect(atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple))
+        effects.append(
+            LiftedEffect(
+                atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple
+            )
+        )
     return tuple(effects)
 
 
-_Grounded = tuple[frozenset[Fact], frozenset[Fact], frozenset[Fact], Fact]
+_Instance = tuple[frozenset[Fact], frozenset[Fact], frozenset[Fact], Fact]
 """Positive and negative condition, static facts that it rests on, the fact added or deleted."""
 
 
@@ -54,17 +62,17 @@ class Effects:
         effects: tuple[LiftedEffect, ...],
         variables: tuple[str, ...],
         rows: list[Row],
-        vocabulary: Vocabulary,
+        predicates: PredicateKinds,
         negation: Negation,
         need: Callable[[Fact], None],
     ) -> None:
-        self._vocabulary, self._negation, self._need = vocabulary, negation, need
+        self._predicates, self._negation, self._need = predicates, negation, need
         self._known = {name: i for i, name in enumerate(variables)}
-        relations = vocabulary.relations
+        relations = predicates.relations
         self._adds: list[Callable[[Row], Fact]] = []
         self._deletes: list[tuple[str, Callable[[Row], Row], Callable[[Row], Fact]]] = []
-        self._expanded: list[tuple[bool, Callable[[Row], Row], dict[Row, list[_Grounded]]]] = []
-        self._shared: dict[int, dict[Row, tuple[Facts, list[_Grounded]]]] = {}
+        self._expanded: list[tuple[bool, Callable[[Row], Row], dict[Row, list[_Instance]]]] = []
+        self._shared: dict[int, dict[Row, tuple[Facts, list[_Instance]]]] = {}
         self._rows = relations.rows
         for effect in effects:
             atom = effect.atom
@@ -78,13 +86,24 @@ class Effects:
                     self._expand(effect, condition, rows)
 
     def _expand(self, effect: LiftedEffect, condition: Literals, rows: list[Row]) -> None:
-        """Find all instances of one effect, by the values of the action's variables that it mentions."""
-        body = self._vocabulary.body(condition)
-        used = {term for atom in (effect.atom, *condition.positive, *condition.negative) for term in atom.terms}
+        """Find all instances of one effect, by the values of the action's variables that it
+        mentions.
+        """
+        body = self._predicates.body(condition)
+        used = {
+            term
+            for atom in (effect.atom, *condition.positive, *condition.negative)
+            for term in atom.terms
+        }
         used |= {term for left, right, _ in condition.equalities for term in (left, right)}
         shared = tuple(name for name in self._known if name in used)
-        # Types of the action's own parameters have been checked already; only what exists can be deleted.
-        atoms = [a for a in body.positive if not (a.predicate.startswith("type ") and a.terms[0] in self._known)]
+        # Types of the action's own parameters have been checked already; only what exists can be
+        # deleted.
+        atoms = [
+            a
+            for a in body.positive
+            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
+        ]
         if not effect.adds and effect.atom not in atoms:
             atoms.append(effect.atom)
         own = tuple(name for name in condition.names if name not in self._known)
@@ -92,11 +111,15 @@ class Effects:
         start = list(dict.fromkeys(map(key, rows)))
         names = (*shared, *own)
         found = join(
-            self._vocabulary.relations, Body(tuple(atoms), body.negative, body.equalities), shared, start, names
+            self._predicates.relations,
+            Body(tuple(atoms), body.negative, body.equalities),
+            shared,
+            start,
+            names,
         )
         known = {name: i for i, name in enumerate(names)}
-        kinds = self._vocabulary.sort(condition)
-        unnamed = [atom for atom in self._vocabulary.unnamed(condition) if atom.terms[0] in own]
+        kinds = self._predicates.classify(condition)
+        unnamed = [atom for atom in self._predicates.unnamed(condition) if atom.terms[0] in own]
         unnamed = [] if not effect.adds else unnamed
         fact = filler((effect.atom.predicate, *effect.atom.terms), known)
         fills = {
@@ -105,37 +128,49 @@ class Effects:
                 ("positive", (*kinds.positive, *kinds.derived)),
                 ("negative", kinds.negative),
                 ("refuted", kinds.refuted),
-                ("static", (*(a for a in kinds.static if not a.predicate.startswith("type ")), *unnamed)),
+                (
+                    "static",
+                    (*(a for a in kinds.static if not a.predicate.startswith("type ")), *unnamed),
+                ),
             )
         }
-        instances: dict[Row, list[_Grounded]] = {}
+        instances: dict[Row, list[_Instance]] = {}
         width = len(shared)
         for row in sorted(found):
             needs = Needs([fill(row) for fill in fills["positive"]])
-            needs.negative += [f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])]
+            needs.negative += [
+                f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])
+            ]
             for fill in fills["refuted"]:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if needs.impossible:
                 continue
-            static = frozenset([fill(row) for fill in fills["static"]]) - self._vocabulary.certain
+            static = frozenset([fill(row) for fill in fills["static"]]) - self._predicates.certain
             changed = fact(row)
             for needed in (*needs.positive, *needs.negative):
                 self._need(needed)
             positive = frozenset(needs.positive)
             if not effect.adds:
                 positive -= {changed}  # deleting what is absent changes nothing
-            instances.setdefault(row[:width], []).append((positive, frozenset(needs.negative), static, changed))
+            instances.setdefault(row[:width], []).append(
+                (positive, frozenset(needs.negative), static, changed)
+            )
         self._expanded.append((effect.adds, key, instances))
 
     def of(self, row: Row, before: Facts) -> tuple[Facts, Facts, tuple[ConditionalEffect, ...]]:
-        """Added facts, deleted facts and conditional effects of the operator with this binding.
+        """Return the added facts, deleted facts and conditional effects of the operator with this
+        binding.
 
         Args:
             row: The binding.
             before: The operator's positive precondition: conditions need not repeat it.
         """
         added = [fill(row) for fill in self._adds]
-        deleted = [fact(row) for predicate, fill, fact in self._deletes if fill(row) in self._rows(predicate)]
+        deleted = [
+            fact(row)
+            for predicate, fill, fact in self._deletes
+            if fill(row) in self._rows(predicate)
+        ]
         universal: list[Facts] = []
         conditional: dict[tuple[Facts, Facts, Facts], tuple[list[Fact], list[Fact]]] = {}
         for number, (adds, key, instances) in enumerate(self._expanded):
@@ -168,12 +203,18 @@ class Effects:
             ),
         )
 
-    def _split(self, number: int, key: Row, instances: list[_Grounded]) -> tuple[Facts, list[_Grounded]]:
-        """The facts changed in any case, one set for all operators with this key, and the conditional instances."""
+    def _split(
+        self, number: int, key: Row, instances: list[_Instance]
+    ) -> tuple[Facts, list[_Instance]]:
+        """Split off the facts changed in any case, one set for all operators with this key, from
+        the conditional instances.
+        """
         table = self._shared.setdefault(number, {})
         if key not in table:
             always = frozenset(
-                fact for positive, negative, static, fact in instances if not (positive or negative or static)
+                fact
+                for positive, negative, static, fact in instances
+                if not (positive or negative or static)
             )
             table[key] = (always, [i for i in instances if i[0] or i[1] or i[2]])
         return table[key]

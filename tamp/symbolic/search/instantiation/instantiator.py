@@ -1,4 +1,4 @@
-"""A lifted task's operators without variables, worked out once, or again and again while facts come along."""
+"""Instantiation of a lifted task: once, or again and again while facts come along."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from tamp.symbolic.pddl.structs import Fact, Task
 from tamp.symbolic.search.instantiation.normal_form import Types
 from tamp.symbolic.search.instantiation.task_instantiation import Instantiation
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 
 
 def instantiate(
@@ -17,18 +17,19 @@ def instantiate(
     *,
     assumed: frozenset[str] = frozenset(),
     refused: frozenset[Fact] = frozenset(),
-) -> Grounded:
+) -> InstantiatedTask:
     """Instantiate a task once; see `Instantiator`."""
     return Instantiator(task, assumed).instantiate(facts, objects or {}, refused)
 
 
 class Instantiator:
-    """Instantiates a task again and again while static facts and objects come along: only what is new is joined.
+    """Instantiates a task again and again while static facts and objects come along: only what is
+    new is joined.
 
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
-        assumed: Static predicates of tests that are taken to hold, without listing their facts, where they would lift
-            a guard.
+        assumed: Static predicates of tests that are taken to hold, without listing their facts,
+            where they would lift a guard.
     """
 
     def __init__(self, task: Task, assumed: frozenset[str] = frozenset()) -> None:
@@ -43,16 +44,19 @@ class Instantiator:
         facts: Iterable[Fact] = (),
         objects: Mapping[str, Types] | None = None,
         refused: frozenset[Fact] = frozenset(),
-    ) -> Grounded:
-        """The task over these facts. It begins anew where one of the last time is missing, or an absence has ended.
+    ) -> InstantiatedTask:
+        """Instantiate the task over these facts. It begins anew where one of the last time is
+        missing, or an absence has ended.
 
         Args:
-            facts: Static facts besides those of the initial state: certified by streams, really or optimistically.
+            facts: Static facts besides those of the initial state: certified by streams, really or
+                optimistically.
             objects: Further objects with their types, placeholders among them.
             refused: Facts of the assumed predicates that are known not to hold.
 
         Raises:
-            InputError: A derived fact depends on its own negation, or an action's cost is not known.
+            InputError: A derived fact depends on its own negation, or an action's cost is not
+                known.
         """
         known = frozenset(facts)
         new = known - self._facts
@@ -63,4 +67,4 @@ class Instantiator:
             self._given = given
             self._run, new = Instantiation(self._task, self._assumed, given), known
         self._facts = known
-        return self._run.grounded(new, objects or {}, refused)
+        return self._run.instantiate(new, objects or {}, refused)

@@ -1,7 +1,8 @@
 """Guards that are made only when they are asked for.
 
-A task has as many guards as operators times poses of other bodies (24,000 for 8 bodies, 164,000 for 20), but a search
-meets few of them: those of the poses that bodies take, or those that a price makes matter.
+A task has as many guards as operators times poses of other bodies (24,000 for 8 bodies, 164,000 for
+20), but a search meets few of them: those of the poses that bodies take, or those that a price
+makes matter.
 """
 
 from __future__ import annotations
@@ -12,22 +13,23 @@ from typing import overload
 from tamp.symbolic.pddl.structs import Atom, Fact
 from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, join
 from tamp.symbolic.search.instantiation.normal_form import Definition
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Facts, Guard
 
 
-class Blocking:
-    """The guards that `not d(...)` amounts to, by a rule of d with one fluent and one absent assumed atom in its body.
+class DerivedGuards:
+    """The guards that `not d(...)` amounts to, by a rule of d with one fluent and one absent
+    assumed atom in its body.
 
-    For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2) is a guard of
-    `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
+    For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2)
+    is a guard of `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
     """
 
-    def __init__(self, vocabulary: Vocabulary, definition: Definition) -> None:
-        self._vocabulary = vocabulary
+    def __init__(self, predicates: PredicateKinds, definition: Definition) -> None:
+        self._predicates = predicates
         self._head = definition.head
         self._names = definition.literals.names
-        kinds = vocabulary.sort(definition.literals)
+        kinds = predicates.classify(definition.literals)
         (self._fluent,) = kinds.positive
         (self._absent,) = kinds.absent
         known = {name: i for i, name in enumerate(self._names)}
@@ -35,19 +37,19 @@ class Blocking:
         self._fill_fluent = filler((self._fluent.predicate, *self._fluent.terms), known)
         self._fill_absent = filler((self._absent.predicate, *self._absent.terms), known)
         self._rows = Atom(f"rows of {definition.head.predicate}", self._head.terms)
-        self._body = vocabulary.body(definition.literals, absent=False)
+        self._body = predicates.body(definition.literals, absent=False)
         self._made: dict[Row, tuple[Guard, ...]] = {}
         self._on: dict[Fact, list[tuple[Row, Guard]]] = {}
 
     @staticmethod
-    def fits(vocabulary: Vocabulary, definition: Definition) -> bool:
-        """Whether a rule has the form that this class is about."""
-        kinds = vocabulary.sort(definition.literals)
+    def fits(predicates: PredicateKinds, definition: Definition) -> bool:
+        """Check that a rule has the form that this class is about."""
+        kinds = predicates.classify(definition.literals)
         terms = definition.head.terms
         return (
             len(kinds.positive) == 1
             and len(kinds.absent) == 1
-            and kinds.absent[0].predicate in vocabulary.assumed
+            and kinds.absent[0].predicate in predicates.assumed
             and not (kinds.negative or kinds.derived or kinds.refuted)
             and all(term.startswith("?") for term in terms)
             and len(set(terms)) == len(terms)
@@ -55,23 +57,25 @@ class Blocking:
 
     @property
     def fluent(self) -> str:
-        """The predicate of the facts that block."""
+        """Return the predicate of the facts that trigger its guards."""
         return self._fluent.predicate
 
     def add(self, rows: Iterable[Row]) -> None:
         """Register arguments of the derived predicate whose guards will be asked for."""
-        self._vocabulary.relations.add(self._rows.predicate, rows)
+        self._predicates.relations.add(self._rows.predicate, rows)
         self._on.clear()
 
     def of(self, row: Row) -> tuple[Guard, ...]:
-        """All guards of one negated fact."""
+        """Return all guards of one negated fact."""
         made = self._made.get(row)
         if made is None:
-            made = self._made[row] = tuple(guard for _, guard in self._find(self._head.terms, [row]))
+            made = self._made[row] = tuple(
+                guard for _, guard in self._find(self._head.terms, [row])
+            )
         return made
 
     def triggered(self, row: Row, state: Facts) -> list[Guard]:
-        """The guards of one negated fact that a state triggers, in the facts' order."""
+        """Return the guards of one negated fact that a state triggers, in the facts' order."""
         names = tuple(dict.fromkeys(term for term in self._fluent.terms if term.startswith("?")))
         if row in self._made or set(names) & set(self._head.terms):
             return [guard for guard in self.of(row) if guard.facts <= state]
@@ -80,43 +84,52 @@ class Blocking:
         return [guard for _, guard in self._find((*self._head.terms, *names), rows)]
 
     def on(self, fact: Fact) -> list[tuple[Row, Guard]]:
-        """The guards, with their rows, that a fluent fact triggers."""
+        """Return the guards, with their rows, that a fluent fact triggers."""
         found = self._on.get(fact)
         if found is None:
             found = self._on[fact] = list(self._match(self._fluent, [fact]))
         return found
 
-    def lifted_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards, with their rows, that one of the static facts lifts, or would lift were it not refused."""
-        return self._match(self._absent, [fact for fact in facts if fact[0] == self._absent.predicate])
+    def waived_by(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
+        """Find the guards, with their rows, that one of the static facts waives, or would waive
+        were it not refused.
+        """
+        return self._match(
+            self._absent, [fact for fact in facts if fact[0] == self._absent.predicate]
+        )
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
-        """The guards that nothing lifts."""
-        return self.lifted_by(sorted(self._vocabulary.refused))
+        """Find the guards that nothing waives."""
+        return self.waived_by(sorted(self._predicates.refused))
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
-        """The guards of registered rows for which the atom is one of the facts."""
+        """Find the guards of registered rows for which the atom is one of the facts."""
         names = tuple(dict.fromkeys(term for term in atom.terms if term.startswith("?")))
         return self._find(names, self._values(atom, names, facts), self._rows)
 
     @staticmethod
     def _values(atom: Atom, names: tuple[str, ...], facts: list[Fact]) -> list[Row]:
-        """The values of the atom's variables in those facts that match it."""
+        """Return the values of the atom's variables in those facts that match it."""
         first = {term: 1 + atom.terms.index(term) for term in atom.terms}
         return [
             tuple(fact[first[name]] for name in names)
             for fact in facts
-            if all(f == (fact[first[t]] if t.startswith("?") else t) for f, t in zip(fact[1:], atom.terms, strict=True))
+            if all(
+                f == (fact[first[t]] if t.startswith("?") else t)
+                for f, t in zip(fact[1:], atom.terms, strict=True)
+            )
         ]
 
-    def _find(self, variables: tuple[str, ...], rows: list[Row], *more: Atom) -> Iterator[tuple[Row, Guard]]:
-        vocabulary = self._vocabulary
+    def _find(
+        self, variables: tuple[str, ...], rows: list[Row], *more: Atom
+    ) -> Iterator[tuple[Row, Guard]]:
+        predicates = self._predicates
         body = Body((*self._body.positive, *more), (), self._body.equalities)
-        for row in join(vocabulary.relations, body, variables, rows, self._names):
-            lift = self._fill_absent(row)
-            if lift not in vocabulary.certain:
-                lifted_by = lift if vocabulary.may_hold(lift) else None
-                yield self._fill_head(row), Guard(frozenset((self._fill_fluent(row),)), lifted_by)
+        for row in join(predicates.relations, body, variables, rows, self._names):
+            waiver = self._fill_absent(row)
+            if waiver not in predicates.certain:
+                waived_by = waiver if predicates.may_hold(waiver) else None
+                yield self._fill_head(row), Guard(frozenset((self._fill_fluent(row),)), waived_by)
 
 
 class LazyGuards(Sequence[Guard]):
@@ -127,17 +140,22 @@ class LazyGuards(Sequence[Guard]):
         blocked: Where the others come from, and which they are.
     """
 
-    def __init__(self, made: tuple[Guard, ...], blocked: tuple[tuple[Blocking, Row], ...]) -> None:
+    def __init__(
+        self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]
+    ) -> None:
         self.made = made
         self.blocked = blocked
 
     def triggered(self, state: Facts) -> tuple[Guard, ...]:
-        """The guards whose facts a state contains; only these are made."""
+        """Return the guards whose facts a state contains; only these are made."""
         made = [guard for guard in self.made if guard.facts <= state]
-        return (*made, *(guard for blocking, row in self.blocked for guard in blocking.triggered(row, state)))
+        return (
+            *made,
+            *(guard for source, row in self.blocked for guard in source.triggered(row, state)),
+        )
 
     def _all(self) -> tuple[Guard, ...]:
-        return (*self.made, *(guard for blocking, row in self.blocked for guard in blocking.of(row)))
+        return (*self.made, *(guard for source, row in self.blocked for guard in source.of(row)))
 
     @overload
     def __getitem__(self, index: int) -> Guard: ...

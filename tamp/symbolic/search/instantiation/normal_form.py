@@ -1,15 +1,29 @@
-"""Formulas to rules: disjunctions split, existential variables freed, universal ones turned into negated rules."""
+"""Normal form of formulas: disjunctions split, existential variables freed, universal ones
+turned into negated rules.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tamp.symbolic.pddl.structs import And, Atom, Derived, Domain, Exists, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Derived,
+    Domain,
+    Exists,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+)
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
 
-SPLITS = 12
-"""A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary predicates."""
+MAX_CONJUNCTIONS = 12
+"""A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary
+predicates.
+"""
 
 Types = tuple[str, ...]
 Scope = Mapping[str, Types]
@@ -26,13 +40,15 @@ class Literals:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The variables without their types."""
+        """Return the variables without their types."""
         return tuple(name for name, _ in self.variables)
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
-    """A rule of a derived or auxiliary predicate: head <- exists (the variables that are not in head). literals."""
+    """A rule of a derived or auxiliary predicate: head <- exists (the variables that are not in
+    head). literals.
+    """
 
     head: Atom
     literals: Literals
@@ -42,7 +58,8 @@ _Part = tuple[tuple[Parameter, ...], tuple[tuple[bool, Atom], ...]]
 
 
 class Normalizer:
-    """Turns formulas into disjunctions of literals. Collects the rules of the derived and auxiliary predicates.
+    """Turns formulas into disjunctions of literals. Collects the rules of the derived and auxiliary
+    predicates.
 
     Attributes:
         definitions: Rules by the predicate that they define.
@@ -50,7 +67,8 @@ class Normalizer:
 
     Args:
         domain: Gives the types and the derived predicates.
-        given: Derived predicates of which facts are given as well, so that their rules do not say all.
+        given: Derived predicates of which facts are given as well, so that their rules do not say
+            all.
     """
 
     def __init__(self, domain: Domain, given: frozenset[str] = frozenset()) -> None:
@@ -66,10 +84,15 @@ class Normalizer:
                 if term.startswith("?") and term not in types:
                     types[term] = declared.parameters[i].types if declared else ("object",)
             for literals in self.split(rule.body, types):
-                self.definitions.setdefault(rule.head.predicate, []).append(Definition(rule.head, literals))
+                self.definitions.setdefault(rule.head.predicate, []).append(
+                    Definition(rule.head, literals)
+                )
 
-    def split(self, formula: Formula, scope: Scope, names: Mapping[str, str] | None = None) -> list[Literals]:
-        """The formula as a disjunction; each disjunct has the scope's variables and those of existential quantifiers.
+    def split(
+        self, formula: Formula, scope: Scope, names: Mapping[str, str] | None = None
+    ) -> list[Literals]:
+        """Split the formula into a disjunction; each disjunct has the scope's variables and those
+        of existential quantifiers.
 
         Args:
             formula: Any formula.
@@ -88,17 +111,24 @@ class Normalizer:
                 else:
                     (positive if sign else negative).append(self._typed(atom))
             disjuncts.append(
-                Literals(variables, _unique(positive), _unique(negative), tuple(dict.fromkeys(equalities)))
+                Literals(
+                    variables,
+                    _unique(positive),
+                    _unique(negative),
+                    tuple(dict.fromkeys(equalities)),
+                )
             )
         return disjuncts
 
     def _typed(self, atom: Atom) -> Atom:
-        """A type used as a predicate names the type's relation."""
+        """Replace a type used as a predicate by the type's relation."""
         if atom.predicate in self._domain.types and atom.predicate not in self._domain.predicates:
             return Atom(type_relation((atom.predicate,)), atom.terms)
         return Atom(atom.predicate, atom.terms)
 
-    def _dnf(self, formula: Formula, sign: bool, names: Mapping[str, str], scope: dict[str, Types]) -> list[_Part]:
+    def _dnf(
+        self, formula: Formula, sign: bool, names: Mapping[str, str], scope: dict[str, Types]
+    ) -> list[_Part]:
         if isinstance(formula, Atom):
             terms = tuple(names.get(term, term) for term in formula.terms)
             if sign and formula.predicate in self._unfolded:
@@ -119,22 +149,35 @@ class Normalizer:
             parameters.append(Parameter(names[parameter.name], parameter.types))
             scope[names[parameter.name]] = parameter.types
         if isinstance(formula, Exists) is sign:
-            return [((*parameters, *more), literals) for more, literals in self._dnf(formula.body, sign, names, scope)]
+            return [
+                ((*parameters, *more), literals)
+                for more, literals in self._dnf(formula.body, sign, names, scope)
+            ]
         # not exists x. f(x): a negated auxiliary predicate that f defines
-        inner = [((*parameters, *more), literals) for more, literals in self._dnf(formula.body, not sign, names, scope)]
+        inner = [
+            ((*parameters, *more), literals)
+            for more, literals in self._dnf(formula.body, not sign, names, scope)
+        ]
         if not inner:
             return [((), ())]
         return [((), ((False, self._name(formula, inner, scope, "forall")),))]
 
-    def _unfold(self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]) -> list[_Part]:
-        """The rule's body in the place of its head, with the types that it asks of its arguments."""
+    def _unfold(
+        self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]
+    ) -> list[_Part]:
+        """Put the rule's body in the place of its head, with the types that it asks of its
+        arguments.
+        """
         names = dict(zip(rule.head.terms, terms, strict=True))
         typed = tuple(
             (True, Atom(type_relation(parameter.types), (names[parameter.name],)))
             for parameter in rule.parameters
             if "object" not in parameter.types
         )
-        return [(more, (*typed, *literals)) for more, literals in self._dnf(rule.body, True, names, scope)]
+        return [
+            (more, (*typed, *literals))
+            for more, literals in self._dnf(rule.body, True, names, scope)
+        ]
 
     def _product(self, parts: list[list[_Part]], scope: dict[str, Types]) -> list[_Part]:
         size = 1
@@ -142,13 +185,17 @@ class Normalizer:
             size *= len(part)
         product: list[_Part] = [((), ())]
         for part in parts:
-            if size > SPLITS and len(part) > 1:
+            if size > MAX_CONJUNCTIONS and len(part) > 1:
                 part = [((), ((True, self._name(None, part, scope, "or")),))]
             product = [((*p, *q), (*a, *b)) for p, a in product for q, b in part]
         return product
 
-    def _name(self, formula: Formula | None, parts: list[_Part], scope: dict[str, Types], kind: str) -> Atom:
-        """An auxiliary predicate of the free variables that holds when one of the parts does."""
+    def _name(
+        self, formula: Formula | None, parts: list[_Part], scope: dict[str, Types], kind: str
+    ) -> Atom:
+        """Name an auxiliary predicate of the free variables that holds when one of the parts
+        does.
+        """
         free: dict[str, Types] = {}
         for parameters, literals in parts:
             bound = {parameter.name for parameter in parameters}
@@ -158,7 +205,9 @@ class Normalizer:
                         free[term] = scope[term]
         name = f"{kind} {len(self.auxiliary) + 1}"
         head = Atom(name, tuple(free))
-        self.auxiliary[name] = formula if formula is not None else Or(tuple(_formula(part) for part in parts))
+        self.auxiliary[name] = (
+            formula if formula is not None else Or(tuple(_formula(part) for part in parts))
+        )
         rules: list[Definition] = []
         for parameters, literals in parts:
             body = And(tuple(atom if sign else Not(atom) for sign, atom in literals))
@@ -168,14 +217,17 @@ class Normalizer:
         return head
 
     def goal(self, disjuncts: list[Literals], formula: Formula) -> Atom:
-        """An auxiliary predicate without arguments that holds when one of the disjuncts does."""
+        """Name an auxiliary predicate without arguments that holds when one of the disjuncts
+        does.
+        """
         name = f"goal {len(self.auxiliary) + 1}"
         self.auxiliary[name] = formula
         self.definitions[name] = [Definition(Atom(name, ()), literals) for literals in disjuncts]
         return Atom(name, ())
 
     def reached(self, roots: Iterable[Literals], recursive: frozenset[str]) -> list[str]:
-        """The predicates whose facts must be derived; others are only ever negated, and worked out fact by fact.
+        """Return the predicates whose facts must be derived; others are only ever negated, and
+        worked out fact by fact.
 
         Args:
             roots: All conjunctions in which an action or the goal uses predicates.
@@ -194,7 +246,9 @@ class Normalizer:
                 self._want(rule.literals, refuted, wanted)
         return [name for name in self.definitions if (name, False) in wanted]
 
-    def _want(self, literals: Literals, refuted: bool, wanted: dict[tuple[str, bool], None]) -> None:
+    def _want(
+        self, literals: Literals, refuted: bool, wanted: dict[tuple[str, bool], None]
+    ) -> None:
         for atom in literals.positive:
             if atom.predicate in self.definitions:
                 wanted.setdefault((atom.predicate, False))  # a join goes over its facts
@@ -205,24 +259,28 @@ class Normalizer:
                 wanted.setdefault((atom.predicate, not refuted))
 
     def meanings(self) -> dict[str, str]:
-        """The auxiliary predicates with the formulas that they stand for, in PDDL."""
+        """Show the auxiliary predicates' formulas in PDDL, by name."""
         return {name: show(formula) for name, formula in self.auxiliary.items()}
 
 
 def show(formula: Formula) -> str:
-    """A formula in PDDL, on one line."""
+    """Show a formula in PDDL, on one line."""
     if isinstance(formula, Atom):
         return f"({' '.join((formula.predicate, *(t.split(' ')[0] for t in formula.terms)))})"
     if isinstance(formula, Not):
         return f"(not {show(formula.body)})"
     if isinstance(formula, And | Or):
-        return f"({' '.join(('and' if isinstance(formula, And) else 'or', *map(show, formula.parts)))})"
+        connective = "and" if isinstance(formula, And) else "or"
+        return f"({' '.join((connective, *map(show, formula.parts)))})"
     word = "exists" if isinstance(formula, Exists) else "forall"
-    return f"({word} ({' '.join(p.name.split(' ')[0] for p in formula.parameters)}) {show(formula.body)})"
+    variables = " ".join(p.name.split(" ")[0] for p in formula.parameters)
+    return f"({word} ({variables}) {show(formula.body)})"
 
 
 def type_relation(types: Types) -> str:
-    """The name of the relation of the objects that have one of the types. Not a word of PDDL, since it has a blank."""
+    """Name the relation of the objects that have one of the types. Not a word of PDDL, since it
+    has a blank.
+    """
     return " ".join(("type", *sorted(types)))
 
 

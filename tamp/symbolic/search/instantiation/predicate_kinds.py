@@ -1,4 +1,6 @@
-"""Which predicates change, which are derived, which are static; and the relations of a task before anything happens."""
+"""Predicates by kind, fluent, derived or static; and the relations of a task before anything
+happens.
+"""
 
 from __future__ import annotations
 
@@ -7,16 +9,22 @@ from dataclasses import dataclass
 
 from tamp.symbolic.pddl.structs import Atom, Fact, Task
 from tamp.symbolic.search.instantiation.datalog import Body, Relations, Row
-from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types, type_relation
+from tamp.symbolic.search.instantiation.normal_form import (
+    Definition,
+    Literals,
+    Normalizer,
+    Types,
+    type_relation,
+)
 from tamp.symbolic.search.operators import ANY
 
 
 @dataclass(frozen=True, slots=True)
-class Sorted:
+class ClassifiedAtoms:
     """The atoms of a conjunction by what becomes of them.
 
-    `positive` and `negative` hold fluent atoms, `derived` and `refuted` atoms of derived and auxiliary predicates,
-    `static` and `absent` atoms of static predicates.
+    `positive` and `negative` hold fluent atoms, `derived` and `refuted` atoms of derived and
+    auxiliary predicates, `static` and `absent` atoms of static predicates.
     """
 
     positive: tuple[Atom, ...]
@@ -27,7 +35,7 @@ class Sorted:
     absent: tuple[Atom, ...]
 
 
-class Vocabulary:
+class PredicateKinds:
     """The predicates of a task by kind, and its relations.
 
     Attributes:
@@ -40,12 +48,16 @@ class Vocabulary:
         given: Facts of derived predicates that were given nevertheless.
     """
 
-    def __init__(self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer
         self.assumed = assumed
         self.refused: frozenset[Fact] = frozenset()
-        self.fluent = frozenset(effect.atom.predicate for action in task.domain.actions for effect in action.effects)
+        self.fluent = frozenset(
+            effect.atom.predicate for action in task.domain.actions for effect in action.effects
+        )
         self.relations = Relations()
         self.certain = task.initial
         self.given: set[Fact] = set()
@@ -55,7 +67,9 @@ class Vocabulary:
         self.add((), {**task.domain.constants, **task.objects})
 
     def add(self, facts: Iterable[Fact], objects: Mapping[str, Types]) -> dict[str, list[Row]]:
-        """Take over static facts (others are left out) and objects; returns what is new, by predicate."""
+        """Take over static facts (others are left out) and objects; returns what is new, by
+        predicate.
+        """
         new = self._add(fact for fact in facts if fact[0] not in self.fluent)
         fresh = {name: types for name, types in objects.items() if name not in self._objects}
         self._objects |= fresh
@@ -79,13 +93,15 @@ class Vocabulary:
         return new
 
     def may_hold(self, fact: Fact) -> bool:
-        """Whether a static fact is known, or of a predicate that is assumed to hold and not refused."""
+        """Check that a static fact is known, or of a predicate that is assumed to hold and not
+        refused.
+        """
         if fact[1:] in self.relations.rows(fact[0]):
             return True
         return fact[0] in self.assumed and fact not in self.refused
 
     def recursive(self) -> frozenset[str]:
-        """Derived predicates that depend on themselves."""
+        """Return the derived predicates that depend on themselves."""
         definitions = self._normalizer.definitions
         below = {
             name: {
@@ -109,7 +125,7 @@ class Vocabulary:
                 found.add(name)
         return frozenset(found)
 
-    def sort(self, literals: Literals) -> Sorted:
+    def classify(self, literals: Literals) -> ClassifiedAtoms:
         """Split a conjunction by the kinds of its predicates."""
         definitions = self._normalizer.definitions
 
@@ -117,20 +133,24 @@ class Vocabulary:
             return tuple(
                 a
                 for a in atoms
-                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2) == kind
+                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2)
+                == kind
             )
 
         positive, negative = literals.positive, literals.negative
-        return Sorted(
-            of(positive, 0), of(negative, 0), of(positive, 1), of(negative, 1), of(positive, 2), of(negative, 2)
+        return ClassifiedAtoms(
+            of(positive, 0), of(negative, 0),
+            of(positive, 1), of(negative, 1),
+            of(positive, 2), of(negative, 2),
         )  # fmt: skip
 
     def body(self, literals: Literals, *, absent: bool = True, derived: bool = True) -> Body:
-        """What a join can check: positive atoms, types, equalities and, if wanted, the absent static atoms.
+        """Build what a join can check: positive atoms, types, equalities and, if wanted, the absent
+        static atoms.
 
         Variables of the root type that occur in an atom need no relation of their own.
         """
-        kinds = self.sort(literals)
+        kinds = self.classify(literals)
         atoms = (*kinds.positive, *(kinds.derived if derived else ()), *kinds.static)
         covered = {term for atom in atoms for term in atom.terms}
         types = tuple(
@@ -144,12 +164,16 @@ class Vocabulary:
         return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
 
     def unnamed(self, literals: Literals) -> tuple[Atom, ...]:
-        """For each variable that no positive atom names: that there is the object that it stands for."""
+        """Return for each variable that no positive atom names: that there is the object that it
+        stands for.
+        """
         covered = {term for atom in literals.positive for term in atom.terms}
         return tuple(Atom(ANY, (name,)) for name, _ in literals.variables if name not in covered)
 
     def type_atom(self, variable: str, types: Types) -> Atom:
-        """The atom that says that the variable has one of the types; its relation is made when first asked for."""
+        """Return the atom that says that the variable has one of the types; its relation is made
+        when first asked for.
+        """
         name = type_relation(types)
         if name not in self._types:
             self.relations.add(name, self._fitting(types, self._objects))
@@ -157,7 +181,9 @@ class Vocabulary:
         return Atom(name, (variable,))
 
     def any_atom(self, variable: str, types: Types) -> Atom:
-        """The same of one object only, which the task itself has: for a variable that makes no difference."""
+        """Return the same of one object only, which the task itself has: for a variable that
+        makes no difference.
+        """
         fitting = self._fitting(types, {**self._task.domain.constants, **self._task.objects})
         if not fitting:
             return self.type_atom(variable, types)
@@ -170,5 +196,5 @@ class Vocabulary:
         return [(name,) for name in sorted(objects) if fits[objects[name]]]
 
     def definitions(self, predicate: str) -> list[Definition]:
-        """The rules of a derived or auxiliary predicate."""
+        """Return the rules of a derived or auxiliary predicate."""
         return self._normalizer.definitions[predicate]

@@ -1,36 +1,31 @@
-"""From a lifted task to operators without variables, by joins over static facts and relaxed reachability.
+"""Instantiation: from a lifted task to operators without variables, by joins over static facts and
+relaxed reachability.
 
-Predicates that no action changes and no rule derives are static: their facts are joined, smallest first, never
-enumerated. Fluent and derived preconditions take part in the join as relations that grow by a semi-naive fixpoint, so
-that only what is reachable in the delete relaxation is instantiated (Helmert, Concise finite-domain representations,
-2009).
+Predicates that no action changes and no rule derives are static: their facts are joined, smallest
+first, never enumerated. Fluent and derived preconditions take part in the join as relations that
+grow by a semi-naive fixpoint, so that only what is reachable in the delete relaxation is
+instantiated (Helmert, Concise finite-domain representations, 2009).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
 
 from tamp.errors import InputError
-from tamp.symbolic.pddl.structs import Action, Atom, Fact, Task
+from tamp.symbolic.pddl.structs import Action, Fact, Task
 from tamp.symbolic.search.instantiation.axioms import stratify
-from tamp.symbolic.search.instantiation.datalog import Body, Row, Rule, filler, fixpoint
-from tamp.symbolic.search.instantiation.effects import Effects, LiftedEffect, lifted_effects
-from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
+from tamp.symbolic.search.instantiation.datalog import Row, Rule, filler, fixpoint
+from tamp.symbolic.search.instantiation.effects import LiftedEffect, lifted_effects
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Definition, Literals, Normalizer, Types
-from tamp.symbolic.search.instantiation.predicate_kinds import Vocabulary
-from tamp.symbolic.search.operators import Axiom, Goal, Grounded, Operator
-
-
-@dataclass(frozen=True, slots=True)
-class _Variant:
-    """One disjunct of an action's precondition."""
-
-    action: Action
-    literals: Literals
-    effects: tuple[LiftedEffect, ...]
-    rule: Rule
+from tamp.symbolic.search.instantiation.operator_templates import (
+    OperatorTemplate,
+    Variant,
+    action_rule,
+    effect_rules,
+)
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
+from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Operator
 
 
 class Instantiation:
@@ -45,45 +40,56 @@ class Instantiation:
         absences: The static predicates that some condition wants not to hold.
     """
 
-    def __init__(self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
         for action in task.domain.actions:
             effects = lifted_effects(action, normalizer)
             scope = {parameter.name: parameter.types for parameter in action.parameters}
-            split += [(action, literals, effects) for literals in normalizer.split(action.precondition, scope)]
+            split += [
+                (action, literals, effects)
+                for literals in normalizer.split(action.precondition, scope)
+            ]
         goals = normalizer.split(task.goal, {})
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
         (self._goal_literals,) = goals
-        self._vocabulary = vocabulary = Vocabulary(task, normalizer, assumed)
-        self._recursive = vocabulary.recursive()
-        self._variants = [_Variant(*variant, _action_rule(vocabulary, *variant)) for variant in split]
+        self._predicates = predicates = PredicateKinds(task, normalizer, assumed)
+        self._recursive = predicates.recursive()
+        self._variants = [Variant(*variant, action_rule(predicates, *variant)) for variant in split]
         roots = [*(v.literals for v in self._variants), *goals]
         roots += [c for v in self._variants for effect in v.effects for c in effect.conditions]
         self._definitions: dict[str, list[tuple[Definition, Rule]]] = {
             name: [
-                (d, Rule(d.literals.names, vocabulary.body(d.literals), (d.head,)))
+                (d, Rule(d.literals.names, predicates.body(d.literals), (d.head,)))
                 for d in normalizer.definitions[name]
             ]
             for name in normalizer.reached(roots, self._recursive)
         }
         self._rules = [variant.rule for variant in self._variants]
-        self._rules += [rule for variant in self._variants for rule in _effect_rules(vocabulary, variant)]
+        self._rules += [
+            rule for variant in self._variants for rule in effect_rules(predicates, variant)
+        ]
         self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
-        self.absences = frozenset(atom.predicate for rule in self._rules for atom in rule.body.negative)
+        self.absences = frozenset(
+            atom.predicate for rule in self._rules for atom in rule.body.negative
+        )
         self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
         self._joined = False
 
-    def grounded(self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]) -> Grounded:
+    def instantiate(
+        self, facts: Iterable[Fact], objects: Mapping[str, Types], refused: frozenset[Fact]
+    ) -> InstantiatedTask:
         """Run the fixpoint from what is new, and build everything from what it reached."""
-        vocabulary = self._vocabulary
-        vocabulary.refused = refused
-        delta = vocabulary.add(facts, objects)
-        fixpoint(vocabulary.relations, self._rules, delta if self._joined else None)
+        predicates = self._predicates
+        predicates.refused = refused
+        delta = predicates.add(facts, objects)
+        fixpoint(predicates.relations, self._rules, delta if self._joined else None)
         self._joined = True
-        self._negation = Negation(vocabulary, self._recursive)
+        self._negation = Negation(predicates, self._recursive)
         self._axioms: dict[Axiom, None] = {}
         self._needed: dict[Fact, None] = {}
         self._waiting: list[Fact] = []
@@ -98,84 +104,37 @@ class Instantiation:
         goal = self._goal()
         self._derive()
         heads = {axiom.head for axiom in self._axioms}
-        reachable = {(p, *row) for p in sorted(vocabulary.fluent) for row in vocabulary.relations.rows(p)} | heads
-        initial = frozenset(f for f in self._task.initial if f[0] in vocabulary.fluent)
+        reachable = {
+            (p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)
+        } | heads
+        initial = frozenset(f for f in self._task.initial if f[0] in predicates.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
-        return Grounded(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
+        return InstantiatedTask(
+            initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings
+        )
 
-    def _operators(self, variant: _Variant, made: dict[Row, Operator]) -> list[Operator]:
-        """The operators of all bindings; `made` keeps those that nothing which may come along can change."""
-        action, rule = variant.action, variant.rule
-        rows = sorted(rule.rows)
+    def _operators(self, variant: Variant, made: dict[Row, Operator]) -> list[Operator]:
+        """Instantiate the operators of all bindings.
+
+        `made` keeps those that nothing which may come along can change.
+        """
+        rows = sorted(variant.rule.rows)
         if not rows:
             return []
-        known = {name: i for i, name in enumerate(rule.variables)}
+        template = OperatorTemplate(
+            variant, rows, self._predicates, self._negation, self._need, self._cost
+        )
 
-        def fills(atoms: Iterable[Atom]) -> list[Callable[[Row], Fact]]:
-            return [filler((atom.predicate, *atom.terms), known) for atom in atoms]
-
-        kinds = self._vocabulary.sort(variant.literals)
-        for atom in kinds.refuted:
-            self._negation.prepare(atom.predicate, map(filler(atom.terms, known), rows))
-        positive = fills((*kinds.positive, *kinds.derived))
-        derived = fills(kinds.derived)
-        negative = [(atom.predicate, fill) for atom, fill in zip(kinds.negative, fills(kinds.negative), strict=True)]
-        refuted = fills(kinds.refuted)
-        named = {parameter.name for parameter in action.parameters}
-        unnamed = [atom for atom in self._vocabulary.unnamed(variant.literals) if atom.terms[0] not in named]
-        static = fills([*(atom for atom in kinds.static if not atom.predicate.startswith("type ")), *unnamed])
-        arguments = filler([parameter.name for parameter in action.parameters], known)
-        relations = self._vocabulary.relations
-        effects = Effects(variant.effects, rule.variables, rows, self._vocabulary, self._negation, self._need)
-        cost = action.cost
-        price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
-        simple = not (kinds.negative or kinds.refuted) and all(effect.simple for effect in variant.effects)
-        deletes = sum(not effect.adds for effect in variant.effects)
         operators: list[Operator] = []
         for row in rows:
-            kept = made.get(row)
-            if kept is not None:
-                for fill in derived:
-                    self._need(fill(row))
-                spent = self._cost(price(row)) if price else kept.cost
-                operators.append(kept if spent == kept.cost else replace(kept, cost=spent))
+            if (kept := made.get(row)) is not None:
+                operators.append(template.renew(kept, row))
                 continue
-            before = frozenset([fill(row) for fill in positive])
-            needs = Needs()
-            for predicate, fill in negative:
-                fact = fill(row)
-                if fact[1:] in relations.rows(predicate):
-                    needs.negative.append(fact)
-            for fill in refuted:
-                needs.add(self._negation.refute(fill(row), guards=True))
-            for fill in derived:
-                self._need(fill(row))
-            if needs.positive:
-                before |= frozenset(needs.positive)
-            for fact in needs.positive:
-                self._need(fact)
-            after = frozenset(needs.negative)
-            if needs.impossible or not before.isdisjoint(after):
-                continue
-            for fact in needs.negative:
-                self._need(fact)
-            added, deleted, conditional = effects.of(row, before)
-            operators.append(
-                Operator(
-                    action.name,
-                    arguments(row),
-                    before,
-                    after,
-                    added,
-                    deleted,
-                    self._cost(price(row)) if price else float(cost) if isinstance(cost, int | float) else 0.0,
-                    frozenset([fill(row) for fill in static]),
-                    LazyGuards(tuple(needs.guards), tuple(needs.blocked)) if needs.blocked else tuple(needs.guards),
-                    conditional,
-                )
-            )
-            if simple and len(deleted) == deletes:
-                made[row] = operators[-1]
+            operator = template.instantiate(row)
+            if operator is not None:
+                operators.append(operator)
+                if template.is_final(operator):
+                    made[row] = operator
         return operators
 
     def _cost(self, fact: Fact) -> float:
@@ -189,15 +148,17 @@ class Instantiation:
 
     def _goal(self) -> Goal:
         literals = self._goal_literals
-        kinds = self._vocabulary.sort(literals)
-        relations = self._vocabulary.relations
+        kinds = self._predicates.classify(literals)
+        relations = self._predicates.relations
         needs = Needs()
         static: list[Fact] = []
         for atom in (*kinds.positive, *kinds.derived):
             needs.positive.append((atom.predicate, *atom.terms))
         for atom in kinds.static:
             fact = (atom.predicate, *atom.terms)
-            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(fact)
+            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(
+                fact
+            )
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
                 needs.negative.append((atom.predicate, *atom.terms))
@@ -218,7 +179,9 @@ class Instantiation:
 
     def _need(self, fact: Fact) -> None:
         """Ask for the axioms of a derived fact (others are ignored)."""
-        if (fact[0] in self._definitions or fact[0].startswith("choice ")) and fact not in self._needed:
+        if (
+            fact[0] in self._definitions or fact[0].startswith("choice ")
+        ) and fact not in self._needed:
             self._needed[fact] = None
             self._waiting.append(fact)
 
@@ -231,7 +194,9 @@ class Instantiation:
             for axiom in self._negation.axioms[used:]:
                 choices.setdefault(axiom.head, []).append(axiom)
             used = len(self._negation.axioms)
-            for axiom in choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact):
+            for axiom in (
+                choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact)
+            ):
                 self._axioms.setdefault(axiom)
                 for other in sorted(axiom.positive | axiom.negative):
                     self._need(other)
@@ -246,17 +211,21 @@ class Instantiation:
                 head = filler((predicate, *definition.head.terms), known)
                 for row in sorted(rule.rows):
                     heads.setdefault(head(row), []).append((i, row))
-                kinds = self._vocabulary.sort(definition.literals)
+                kinds = self._predicates.classify(definition.literals)
                 static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
-                static += self._vocabulary.unnamed(definition.literals)
+                static += self._predicates.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
-                bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
+                bodies.append(
+                    [[filler((a.predicate, *a.terms), known) for a in part] for part in parts]
+                )
                 for atom in kinds.refuted:
-                    self._negation.prepare(atom.predicate, map(filler(atom.terms, known), sorted(rule.rows)))
+                    self._negation.prepare(
+                        atom.predicate, map(filler(atom.terms, known), sorted(rule.rows))
+                    )
         axioms: list[Axiom] = []
-        if fact in self._vocabulary.given:
+        if fact in self._predicates.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
-        rows = self._vocabulary.relations.rows
+        rows = self._predicates.relations.rows
         for i, row in self._heads[predicate].get(fact, ()):
             positive, negative, refuted, static = self._bodies[predicate][i]
             needs = Needs([fill(row) for fill in positive])
@@ -265,34 +234,7 @@ class Instantiation:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if not needs.impossible:
                 given = frozenset([fill(row) for fill in static])
-                axioms.append(Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given))
+                axioms.append(
+                    Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given)
+                )
         return axioms
-
-
-def _action_rule(vocabulary: Vocabulary, action: Action, literals: Literals, effects: tuple[LiftedEffect, ...]) -> Rule:
-    """A parameter that neither conditions nor effects nor the cost mention takes one value: others change nothing."""
-    heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
-    conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
-    mentioned = {term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms}
-    mentioned |= {term for one in conditions for left, right, _ in one.equalities for term in (left, right)}
-    mentioned |= {term for effect in effects for term in effect.atom.terms}
-    mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
-    free = {name: types for name, types in literals.variables if name not in mentioned}
-    body = vocabulary.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
-    any_ = tuple(vocabulary.any_atom(name, types) for name, types in free.items())
-    return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
-
-
-def _effect_rules(vocabulary: Vocabulary, variant: _Variant) -> list[Rule]:
-    """Rules for the conditional and universal effects that add something."""
-    rules: list[Rule] = []
-    for effect in variant.effects:
-        for condition in effect.conditions if effect.adds and not effect.simple else ():
-            before, when = variant.rule.body, vocabulary.body(condition)
-            body = Body(
-                tuple(dict.fromkeys((*before.positive, *when.positive))),
-                (*before.negative, *when.negative),
-                (*before.equalities, *when.equalities),
-            )
-            rules.append(Rule(tuple(dict.fromkeys((*variant.literals.names, *condition.names))), body, (effect.atom,)))
-    return rules

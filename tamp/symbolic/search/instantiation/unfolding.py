@@ -1,7 +1,7 @@
 """Select the derived predicates whose rule is unfolded (inlined) into the conditions that use it.
 
-After the idea of magic sets (Bancilhon, Maier, Sagiv, Ullman, 1986): a rule is asked only for the bindings that its
-caller has.
+After the idea of magic sets (Bancilhon, Maier, Sagiv, Ullman, 1986): a rule is asked only for the
+bindings that its caller has.
 """
 
 from __future__ import annotations
@@ -14,15 +14,18 @@ from tamp.symbolic.pddl.structs import And, Atom, Derived, Domain, Exists, Foral
 def unfoldable(domain: Domain, given: frozenset[str]) -> list[Derived]:
     """Select the rules whose head binds a variable that no positive atom of the body does.
 
-    Instantiated by itself such a rule ranges over all objects for that variable (`free(?x)` as `not exists ...`); put
-    in the place of its head, it ranges over what the condition around it binds. Only rules that say all of their
-    predicate will do: one rule each, not recursive, without facts `given` besides.
+    Instantiated by itself such a rule ranges over all objects for that variable (`free(?x)` as `not
+    exists ...`); put in the place of its head, it ranges over what the condition around it binds.
+    Only rules that say all of their predicate will do: one rule each, not recursive, without facts
+    `given` besides.
     """
     rules: dict[str, list[Derived]] = {}
     for rule in domain.derived:
         rules.setdefault(rule.head.predicate, []).append(rule)
 
-    below = {name: {a for rule in those for a in _predicates(rule.body)} for name, those in rules.items()}
+    below = {
+        name: {a for rule in those for a in _predicates(rule.body)} for name, those in rules.items()
+    }
     chosen: list[Derived] = []
     for name, (rule, *others) in rules.items():
         terms = rule.head.terms
@@ -35,11 +38,17 @@ def unfoldable(domain: Domain, given: frozenset[str]) -> list[Derived]:
 
 
 def bound_variables(formula: Formula, sign: bool) -> frozenset[str]:
-    """The free variables that have a value wherever the formula (or its negation) holds: a positive atom names them."""
+    """Return the free variables that have a value wherever the formula (or its negation) holds:
+    a positive atom names them.
+    """
     match formula:
         case Atom():
             named = sign and formula.predicate != "="
-            return frozenset(term for term in formula.terms if term.startswith("?")) if named else frozenset()
+            return (
+                frozenset(term for term in formula.terms if term.startswith("?"))
+                if named
+                else frozenset()
+            )
         case Not():
             return bound_variables(formula.body, not sign)
         case And() | Or():
@@ -53,7 +62,9 @@ def bound_variables(formula: Formula, sign: bool) -> frozenset[str]:
         case Exists() | Forall():
             if isinstance(formula, Exists) is not sign:
                 return frozenset()
-            return bound_variables(formula.body, sign) - {parameter.name for parameter in formula.parameters}
+            return bound_variables(formula.body, sign) - {
+                parameter.name for parameter in formula.parameters
+            }
 
 
 def _predicates(formula: Formula) -> Iterator[str]:
@@ -68,7 +79,7 @@ def _predicates(formula: Formula) -> Iterator[str]:
 
 
 def _reached(below: Mapping[str, set[str]], name: str) -> set[str]:
-    """The predicates that the rules of one lead to, itself if they come back to it."""
+    """Return the predicates that the rules of one lead to, itself if they come back to it."""
     seen: set[str] = set()
     stack = list(below[name])
     while stack:

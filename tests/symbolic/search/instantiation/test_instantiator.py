@@ -13,16 +13,16 @@ from hypothesis import strategies as st
 from benchmarks.search import cupboard
 from tamp.symbolic.pddl.structs import Fact, Task
 from tamp.symbolic.search.instantiation.instantiator import Instantiator, instantiate
-from tamp.symbolic.search.operators import Grounded
+from tamp.symbolic.search.operators import InstantiatedTask
 from tests.symbolic.search.test_random_tasks import random_task
 
 Objects = Mapping[str, tuple[str, ...]]
 
 
-def plain(grounded: Grounded) -> Grounded:
+def plain(instantiated: InstantiatedTask) -> InstantiatedTask:
     """Guards that are made only when they are asked for, made."""
-    operators = tuple(replace(one, guards=tuple(sorted(set(one.guards), key=str))) for one in grounded.operators)
-    return replace(grounded, operators=operators)
+    operators = tuple(replace(one, guards=tuple(sorted(set(one.guards), key=str))) for one in instantiated.operators)
+    return replace(instantiated, operators=operators)
 
 
 def check(task: Task, facts: Sequence[Fact], objects: Objects, steps: int, assumed: frozenset[str]) -> Instantiator:

@@ -8,7 +8,7 @@ from benchmarks.search import cupboard
 from tamp.errors import InputError
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.search.instantiation.instantiator import instantiate
-from tamp.symbolic.search.operators import Grounded, Guard
+from tamp.symbolic.search.operators import Guard, InstantiatedTask
 from tamp.symbolic.search.search import Reason, search, unreachable
 
 DOMAIN = """(define (domain d) (:requirements :adl :derived-predicates :action-costs)
@@ -22,34 +22,34 @@ MOVE = """(:action move :parameters (?x ?y - node) :precondition (and (at ?x) (e
   :effect (and (not (at ?x)) (at ?y)))"""
 
 
-def ground(body: str, init: str, goal: str, objects: str = "a b c d - node") -> Grounded:
+def ground(body: str, init: str, goal: str, objects: str = "a b c d - node") -> InstantiatedTask:
     domain = parse_domain(DOMAIN.format(body=body))
     return instantiate(parse_task(PROBLEM.format(objects=objects, init=init, goal=goal), domain))
 
 
-def names(grounded: Grounded) -> list[str]:
-    return [str(operator) for operator in grounded.operators]
+def names(instantiated: InstantiatedTask) -> list[str]:
+    return [str(operator) for operator in instantiated.operators]
 
 
 def test_only_reachable_operators_are_instantiated() -> None:
-    grounded = ground(MOVE, "(at a) (edge a b) (edge b c) (edge d a)", "(at c)")
-    assert names(grounded) == ["(move a b)", "(move b c)"]
-    assert grounded.operators[0].static == {("edge", "a", "b")}
-    assert grounded.operators[0].positive == {("at", "a")}
+    instantiated = ground(MOVE, "(at a) (edge a b) (edge b c) (edge d a)", "(at c)")
+    assert names(instantiated) == ["(move a b)", "(move b c)"]
+    assert instantiated.operators[0].static == {("edge", "a", "b")}
+    assert instantiated.operators[0].positive == {("at", "a")}
 
 
 def test_an_unreachable_goal_is_named() -> None:
-    grounded = ground(MOVE, "(at a) (edge a b)", "(and (at b) (at c) (seen a) (not (lamp)))")
-    assert unreachable(grounded) == (("at", "c"), ("seen", "a"))
-    result = search(grounded)
+    instantiated = ground(MOVE, "(at a) (edge a b)", "(and (at b) (at c) (seen a) (not (lamp)))")
+    assert unreachable(instantiated) == (("at", "c"), ("seen", "a"))
+    result = search(instantiated)
     assert result.plan is None
     assert result.reason is Reason.UNSOLVABLE
 
 
 def test_a_fact_that_nothing_deletes_is_named() -> None:
-    grounded = ground(MOVE + "(:action light :parameters () :effect (lamp))", "(at a) (lamp)", "(not (lamp))")
-    assert unreachable(grounded) == (("not", "lamp"),)
-    assert search(grounded).reason is Reason.UNSOLVABLE
+    instantiated = ground(MOVE + "(:action light :parameters () :effect (lamp))", "(at a) (lamp)", "(not (lamp))")
+    assert unreachable(instantiated) == (("not", "lamp"),)
+    assert search(instantiated).reason is Reason.UNSOLVABLE
 
 
 def test_static_goals() -> None:
@@ -62,14 +62,14 @@ def test_static_goals() -> None:
 )
 def test_deleting_all_is_unconditional_and_adding_wins(effect: str) -> None:
     jump = f"(:action jump :parameters (?x - node) :effect (and {effect} (at ?x)))"
-    grounded = ground(jump, "(at a)", "(at b)")
-    (operator,) = (o for o in grounded.operators if o.arguments == ("b",))
+    instantiated = ground(jump, "(at a)", "(at b)")
+    (operator,) = (o for o in instantiated.operators if o.arguments == ("b",))
     assert operator.conditional == ()
     assert operator.deleted >= {("at", "a"), ("at", "c"), ("at", "d")}
     assert operator.added == {("at", "b")}
     both = ground(jump, "(at a)", "(and (at b) (at a))")
     assert search(both).reason is Reason.UNSOLVABLE
-    assert search(grounded).plan is not None
+    assert search(instantiated).plan is not None
 
 
 def test_conditional_effects_look_at_the_state_before() -> None:
@@ -85,8 +85,8 @@ def test_recursive_axioms(heuristic: str) -> None:
         (or (edge ?x ?y) (lamp) (exists (?z - node) (and (seen ?z) (edge ?x ?z) (reach ?z ?y)))))
       (:action see :parameters (?x - node) :precondition (not (dark)) :effect (seen ?x))"""
     init = "(edge a b) (edge b c) (edge c d) (edge d a)"
-    grounded = ground(body, init, "(reach a d)")
-    result = search(grounded, search="astar", heuristic=heuristic)
+    instantiated = ground(body, init, "(reach a d)")
+    result = search(instantiated, search="astar", heuristic=heuristic)
     assert result.plan is not None
     assert sorted(map(str, result.plan.operators)) == ["(see b)", "(see c)"]
     # negated: seeing everything makes everything reachable
@@ -132,8 +132,8 @@ def test_a_cartesian_product_is_never_enumerated() -> None:
         :precondition (and (edge ?w ?x) (edge ?x ?y) (edge ?y ?z) (not (= ?w ?z)) (at ?w)) :effect (at ?z))"""
     many = " ".join(f"n{i}" for i in range(200))
     init = "(at n0) (edge n0 n1) (edge n1 n2) (edge n2 n3) (edge n3 n4)"
-    grounded = ground(body, init, "(at n3)", many + " - node")
-    assert names(grounded) == ["(go n0 n1 n2 n3)"]
+    instantiated = ground(body, init, "(at n3)", many + " - node")
+    assert names(instantiated) == ["(go n0 n1 n2 n3)"]
 
 
 def test_quantified_disjunctive_and_negative_conditions() -> None:

@@ -101,9 +101,9 @@ def test_nothing_is_instantiated_of_bindings_that_no_condition_asks_for() -> Non
     objects = " ".join(f"o{i}" for i in range(60))
     text = f"(define (problem p) (:domain d) (:objects {objects}) (:init (obj o0) (fits o1 o0 o2)) (:goal (at o0 o1)))"
     task = parse_task(text, parse_domain(DOMAIN.format(body=FREE, more="")))
-    grounded = instantiate(task)
-    assert [str(operator) for operator in grounded.operators] == ["(put o0 o1 o2)"]
-    assert grounded.axioms == ()
+    instantiated = instantiate(task)
+    assert [str(operator) for operator in instantiated.operators] == ["(put o0 o1 o2)"]
+    assert instantiated.axioms == ()
 
 
 def test_types_of_the_head_are_kept() -> None:

@@ -1,6 +1,8 @@
-"""The loops compiled by numba: importing this takes half a second, and compiles where that has not been done before.
+"""The loops compiled by numba: importing this takes half a second, and compiles where that has not
+been done before.
 
-Each is compiled from a copy that sees the compiled ones by their names, and numba's arrays instead of lists.
+Each is compiled from a copy that sees the compiled ones by their names, and numba's arrays instead
+of lists.
 """
 
 # pyright: basic
@@ -15,11 +17,11 @@ import numpy as np
 from numba import types
 
 from tamp.symbolic.search.heuristics.loops import kernels, rows
-from tamp.symbolic.search.heuristics.loops.selection import Loops
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.system.compilation import njit
 
 _I, _F, _N, _C = types.int64[::1], types.float64[::1], types.float64, types.int64
-_ROWS = types.NamedUniTuple(_I, 2, rows.Rows)
+_ROWS = types.NamedUniTuple(_I, 2, rows.CsrRows)
 _INNER = {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -47,7 +49,11 @@ _names: dict[str, Any] = {**vars(rows), **vars(kernels), "full": _full, "count_u
 def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..., Any]:
     """Compile a function; without a signature it serves other compiled ones only."""
     copy = FunctionType(function.__code__, _names, function.__name__)
-    made = njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True) if signature else njit(**_INNER)
+    made = (
+        njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True)
+        if signature
+        else njit(**_INNER)
+    )
     _names[function.__name__] = result = made(copy)
     return result
 
@@ -55,13 +61,19 @@ def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..
 for _inner in (kernels._before, kernels._push, kernels._pop, kernels._levels, kernels._find_cut):
     _compile(_inner)
 
-LOOPS = Loops(
-    explore=_compile(kernels.explore, types.Tuple((_F, _I))(_ROWS, _ROWS, _ROWS, _F, _I, _F, _I, types.boolean)),
-    relaxed_plan=_compile(kernels.relaxed_plan, types.Tuple((_N, _I))(_F, _I, _ROWS, _ROWS, _F, _I, _C, _I, _C)),
-    landmark_cut=_compile(kernels.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)),
+COMPILED = Kernels(
+    explore=_compile(
+        kernels.explore, types.Tuple((_F, _I))(_ROWS, _ROWS, _ROWS, _F, _I, _F, _I, types.boolean)
+    ),
+    relaxed_plan=_compile(
+        kernels.relaxed_plan, types.Tuple((_N, _I))(_F, _I, _ROWS, _ROWS, _F, _I, _C, _I, _C)
+    ),
+    landmark_cut=_compile(
+        kernels.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)
+    ),
     transposed=_compile(rows.transposed, _ROWS(_ROWS, _C)),
     appended=_compile(rows.appended, _ROWS(_ROWS, _I, _I, _C)),
-    raised=_compile(rows.raised, _F(_F, _I, _F, _C)),
+    incremented=_compile(rows.incremented, _F(_F, _I, _F, _C)),
     integers=_integers,
     reals=_reals,
 )

@@ -1,14 +1,15 @@
-"""The inner loops of the heuristics, in Python that numba can compile: `selection` has them run either way.
+"""The inner loops of the heuristics, in Python that numba can compile: `selection` has them run
+either way.
 
-All in one file, since numba's cache watches one file only. Operators and facts are those of `heuristics.relaxation`.
-Compiled, all lists are arrays.
+All in one file, since numba's cache watches one file only. Operators and facts are those of
+`heuristics.relaxation`. Compiled, all lists are arrays.
 """
 
 from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows, count_up, full
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, count_up, full
 
 ZERO = 1e-9
 """Costs below are nothing: what rounding leaves of a cost that cuts have used up."""
@@ -18,8 +19,12 @@ def _before(fact: int, other: int, keys: Reals, ranks: Integers) -> bool:
     return keys[fact] < keys[other] or (keys[fact] == keys[other] and ranks[fact] < ranks[other])
 
 
-def _push(fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers) -> int:
-    """Put a fact into the heap, or move it up after its key fell; the new size. `places` is -1 for those not inside."""
+def _push(
+    fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers
+) -> int:
+    """Push a fact into the heap, or move it up after its key fell; return the new size. `places`
+    is -1 for facts outside.
+    """
     k = places[fact]
     if k < 0:
         k = size
@@ -36,7 +41,7 @@ def _push(fact: int, heap: list[int], places: list[int], size: int, keys: Reals,
 
 
 def _pop(heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers) -> int:
-    """Take out the fact with the lowest key, among equals that with the lowest rank."""
+    """Pop the fact with the lowest key, among equals that with the lowest rank."""
     top = heap[0]
     places[top] = -1
     size -= 1
@@ -58,10 +63,11 @@ def _pop(heap: list[int], places: list[int], size: int, keys: Reals, ranks: Inte
 
 
 def explore(
-    before: Rows, effects: Rows, needs: Rows, costs: Reals, here: Integers, prices: Reals, goals: Integers,
-    additive: bool,
+    before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers, prices: Reals,
+    goals: Integers, additive: bool,
 ) -> tuple[list[float], list[int]]:  # fmt: skip
-    """What `Relaxation.explore` promises: the facts' costs and supporters. Among equals the first found goes first.
+    """Compute what `Relaxation.explore` promises: the facts' costs and best supporters. Among
+    equals the first found goes first.
 
     `here`: the facts to begin with, and what each costs.
     """
@@ -114,10 +120,12 @@ def explore(
 
 
 def relaxed_plan(
-    reached: Reals, supporters: Integers, before: Rows, effects: Rows, costs: Reals, owners: Integers, operators: int,
-    goals: Integers, guards: int,
+    reached: Reals, supporters: Integers, before: CsrRows, effects: CsrRows, costs: Reals,
+    owners: Integers, operators: int, goals: Integers, guards: int,
 ) -> tuple[float, list[int]]:  # fmt: skip
-    """What `Relaxation.plan` promises: the cost and the operators, ascending. Facts from `guards` on are guards."""
+    """Extract what `Relaxation.plan` promises: the cost and the operators, ascending. Facts from
+    `guards` on are guards.
+    """
     facts = len(reached)
     keys, ranks = full(facts, 0.0), count_up(facts)
     for fact in range(facts):
@@ -162,10 +170,12 @@ def relaxed_plan(
 
 
 def _levels(
-    before: Rows, effects: Rows, needs: Rows, costs: Reals, here: Integers, heap: list[int], places: list[int],
-    ranks: Integers,
+    before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers,
+    heap: list[int], places: list[int], ranks: Integers,
 ) -> tuple[list[float], list[int], list[float]]:  # fmt: skip
-    """The cost of all facts by hmax, and for each operator its dearest precondition and what that costs."""
+    """Compute the cost of all facts by hmax, and for each operator its dearest precondition and
+    what that costs.
+    """
     reached = full(len(needs.starts) - 1, math.inf)
     dearest, levels = full(len(costs), -1), full(len(costs), math.inf)
     left = full(len(costs), 0)
@@ -192,10 +202,12 @@ def _levels(
 
 
 def _find_cut(
-    effects: Rows, needs: Rows, adders: Rows, costs: Reals, here: Integers, dearest: Integers, goal: int,
-    stack: list[int], cut: list[int],
+    effects: CsrRows, needs: CsrRows, adders: CsrRows, costs: Reals, here: Integers,
+    dearest: Integers, goal: int, stack: list[int], cut: list[int],
 ) -> int:  # fmt: skip
-    """Fill `cut` with the operators that lead into the facts from which the goal costs nothing more; how many."""
+    """Fill `cut` with the operators that lead into the goal zone, the facts from which the goal
+    costs nothing more; return how many.
+    """
     zone, seen = full(len(stack), False), full(len(stack), False)
     zone[goal] = True
     stack[0] = goal
@@ -237,10 +249,12 @@ def _find_cut(
 
 
 def landmark_cut(
-    before: Rows, effects: Rows, needs: Rows, adders: Rows, prices: Reals, here: Integers, owners: Integers,
-    groups: Rows, goal: int,
+    before: CsrRows, effects: CsrRows, needs: CsrRows, adders: CsrRows, prices: Reals,
+    here: Integers, owners: Integers, groups: CsrRows, goal: int,
 ) -> float:  # fmt: skip
-    """What `LandmarkCut.value` promises. The row of an owner in `groups`: its operators, which get cheaper together."""
+    """Compute what `LandmarkCut.value` promises. The row of an owner in `groups`: its operators,
+    which get cheaper together.
+    """
     facts, operators = len(needs.starts) - 1, len(prices)
     costs = full(operators, 0.0)
     for i in range(operators):

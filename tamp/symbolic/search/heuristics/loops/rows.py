@@ -1,6 +1,8 @@
-"""Lists of lists as two lists, the form that compiled code takes; and what makes new ones of them.
+"""Compressed sparse rows (CSR): lists of lists as two lists, the form that compiled code takes; and
+what makes new ones.
 
-The functions are Python that numba can compile, as those in kernels.py. Compiled, all lists are arrays.
+The functions are Python that numba can compile, as those in kernels.py. Compiled, all lists are
+arrays.
 """
 
 from __future__ import annotations
@@ -14,35 +16,37 @@ Reals = Sequence[float]
 T = TypeVar("T")
 
 
-class Rows(NamedTuple):
+class CsrRows(NamedTuple):
     """Row i is values[starts[i] : starts[i + 1]]."""
 
     starts: Integers
     values: Integers
 
     def lists(self) -> list[list[int]]:
-        """As lists."""
+        """Return the rows as lists."""
         values, starts = list(map(int, self.values)), self.starts
         return [values[starts[i] : starts[i + 1]] for i in range(len(starts) - 1)]
 
 
-def rows_of(lists: Sequence[Sequence[int]]) -> Rows:
-    """From lists."""
-    return Rows(list(accumulate(map(len, lists), initial=0)), list(chain.from_iterable(lists)))
+def csr_rows(lists: Sequence[Sequence[int]]) -> CsrRows:
+    """Build compressed rows from lists."""
+    return CsrRows(list(accumulate(map(len, lists), initial=0)), list(chain.from_iterable(lists)))
 
 
 def full(size: int, value: T) -> list[T]:
-    """So many times the value. Compiled it makes an array, so does `count_up`."""
+    """Return so many times the value. Compiled it makes an array, so does `count_up`."""
     return [value] * size
 
 
 def count_up(size: int) -> list[int]:
-    """0, 1, 2, ..."""
+    """Return 0, 1, 2, ..."""
     return list(range(size))
 
 
-def transposed(rows: Rows, size: int) -> Rows:
-    """Row j of the result, of so many, lists the rows that contain j, in ascending order."""
+def transposed(rows: CsrRows, size: int) -> CsrRows:
+    """Transpose: row j of the result, of so many, lists the rows that contain j, in ascending
+    order.
+    """
     ends = full(size + 1, 0)
     for j in rows.values:
         ends[j + 1] += 1
@@ -54,11 +58,13 @@ def transposed(rows: Rows, size: int) -> Rows:
             j = rows.values[k]
             listed[places[j]] = i
             places[j] += 1
-    return Rows(ends, listed)
+    return CsrRows(ends, listed)
 
 
-def appended(rows: Rows, at: Integers, what: Integers, size: int) -> Rows:
-    """what[k] appended to row at[k], in this order, in so many rows; those beyond the given ones start empty."""
+def appended(rows: CsrRows, at: Integers, what: Integers, size: int) -> CsrRows:
+    """Append what[k] to row at[k], in this order, in so many rows; those beyond the given ones
+    start empty.
+    """
     ends = full(size + 1, 0)
     known = len(rows.starts) - 1
     for i in range(known):
@@ -75,11 +81,11 @@ def appended(rows: Rows, at: Integers, what: Integers, size: int) -> Rows:
     for k in range(len(at)):
         joined[places[at[k]]] = what[k]
         places[at[k]] += 1
-    return Rows(ends, joined)
+    return CsrRows(ends, joined)
 
 
-def raised(values: Reals, at: Integers, by: Reals, more: int) -> list[float]:
-    """The values with by[k] added at at[k], and so many zeros behind them."""
+def incremented(values: Reals, at: Integers, by: Reals, more: int) -> list[float]:
+    """Return the values with by[k] added at at[k], and so many zeros behind them."""
     result = full(len(values) + more, 0.0)
     for i in range(len(values)):
         result[i] = values[i]

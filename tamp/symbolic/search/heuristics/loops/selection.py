@@ -1,58 +1,42 @@
-"""Which loops run: plain Python at first, compiled ones once they pay, or where they are loaded anyway.
+"""Selection of the kernels: plain Python at first, compiled ones once they pay, or where they are
+loaded anyway.
 
-numba takes longer to load than a small task to solve, and much longer to compile. Both give the same numbers.
+numba takes longer to load than a small task to solve, and much longer to compile. Both give the
+same numbers.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.symbolic.search.heuristics.loops import kernels, rows
-from tamp.symbolic.search.heuristics.loops.rows import Integers, Reals, Rows
+from tamp.symbolic.search.heuristics.loops.interface import Kernels
 
-ENOUGH = 2_000_000
-"""Entries that plain Python goes through before the compiled loops are loaded: about as long as loading takes."""
+LOAD_THRESHOLD = 2_000_000
+"""Entries that plain Python goes through before the compiled loops are loaded: about as long as
+loading takes.
+"""
 
-MANY = 10_000_000
-"""Entries before they are compiled, where that has not been done yet: as long as compiling takes."""
+COMPILE_THRESHOLD = 10_000_000
+"""Entries before they are compiled, where that has not been done yet: as long as compiling takes.
+"""
 
 CACHED = (
     (kernels, ("explore", "relaxed_plan", "landmark_cut")),
-    (rows, ("transposed", "appended", "raised")),
+    (rows, ("transposed", "appended", "incremented")),
 )
 """The functions that numba keeps on disk, by module."""
 
 
-@dataclass(frozen=True, slots=True)
-class Loops:
-    """The loops, and what makes the lists that they take."""
-
-    explore: Callable[[Rows, Rows, Rows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]]
-    relaxed_plan: Callable[[Reals, Integers, Rows, Rows, Reals, Integers, int, Integers, int], tuple[float, Integers]]
-    landmark_cut: Callable[[Rows, Rows, Rows, Rows, Reals, Integers, Integers, Rows, int], float]
-    transposed: Callable[[Rows, int], Rows]
-    appended: Callable[[Rows, Integers, Integers, int], Rows]
-    raised: Callable[[Reals, Integers, Reals, int], Reals]
-    integers: Callable[[Sequence[int]], Integers]
-    reals: Callable[[Sequence[float]], Reals]
-
-    def rows(self, lists: Sequence[Sequence[int]]) -> Rows:
-        """Rows from lists."""
-        made = rows.rows_of(lists)
-        return Rows(self.integers(made.starts), self.integers(made.values))
-
-
-PLAIN = Loops(
+PLAIN = Kernels(
     explore=kernels.explore,
     relaxed_plan=kernels.relaxed_plan,
     landmark_cut=kernels.landmark_cut,
     transposed=rows.transposed,
     appended=rows.appended,
-    raised=rows.raised,
+    incremented=rows.incremented,
     integers=list,
     reals=list,
 )
@@ -60,7 +44,9 @@ PLAIN = Loops(
 
 
 class _Meter:
-    """What plain Python has gone through in this process. It decides about time alone, never about a result."""
+    """What plain Python has gone through in this process. It decides about time alone, never about
+    a result.
+    """
 
     entries = 0
     enough: int | None = None
@@ -69,27 +55,31 @@ class _Meter:
 _METER = _Meter()
 
 
-def load() -> Loops:
-    """The compiled loops, loaded now, and compiled where that has not been done."""
-    from tamp.symbolic.search.heuristics.loops.compiled import LOOPS
+def load() -> Kernels:
+    """Load the compiled kernels now, and compile them where that has not been done."""
+    from tamp.symbolic.search.heuristics.loops.compiled import COMPILED
 
-    return LOOPS
+    return COMPILED
 
 
 def load_kept() -> None:
-    """Load the compiled loops where that is all there is to do: for who has numba loaded anyway."""
+    """Load the compiled kernels where that is all there is to do: for who has numba loaded
+    anyway.
+    """
     if compiled_before():
         load()
 
 
 def prepare() -> None:
-    """Compile the loops where that has not been done, before processes start that would each do it."""
+    """Compile the kernels where that has not been done, before processes start that would each
+    do it.
+    """
     if not compiled_before():
         load()
 
 
 def compiled_before() -> bool:
-    """Whether numba's cache beside the sources has all loops, none older than its source."""
+    """Check that numba's cache beside the sources has all kernels, none older than its source."""
     if "NUMBA_CACHE_DIR" in os.environ:
         return False
     for module, names in CACHED:
@@ -101,13 +91,13 @@ def compiled_before() -> bool:
     return True
 
 
-def choose(entries: int) -> Loops:
-    """The loops for a piece of work that goes through so many entries."""
+def choose(entries: int) -> Kernels:
+    """Choose the kernels for a piece of work that goes through so many entries."""
     _METER.entries += entries
     if "tamp.symbolic.search.heuristics.loops.compiled" in sys.modules:
         return load()
-    if _METER.entries <= ENOUGH:
+    if _METER.entries <= LOAD_THRESHOLD:
         return PLAIN
     if _METER.enough is None:
-        _METER.enough = ENOUGH if compiled_before() else MANY
+        _METER.enough = LOAD_THRESHOLD if compiled_before() else COMPILE_THRESHOLD
     return load() if _METER.entries > _METER.enough else PLAIN
