@@ -3,44 +3,30 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from tamp.errors import InputError
 from tamp.geometric.samplers.choice import Registry
-from tamp.system.command_line import Parser
+from tamp.system.command_line import Parser, as_command
 from tamp.system.progress import Progress, say
 
-REACHED, NOT_REACHED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+REACHED, NOT_REACHED = 0, 1
 
 
-def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
+@as_command()
+def main(shown: Progress, arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     """Exit with 0 when the goal holds at the end, 1 when it does not, 2 for bad input, 130 when interrupted."""
-    try:
-        given = _parser().parse_args(arguments)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
+    given = _parser().parse_args(arguments)
     from tamp.execution.command import Options, carry_out  # after --help
 
+    shown.quiet = given.quiet or given.json
+    shown.begin("executing")
     options = Options(
         given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, tuple(given.sampler)
     )
-    shown = Progress(quiet=given.quiet or given.json)
-    shown.begin("executing")
-    try:
-        done = carry_out(given.plan, options, registry())
-    except InputError as error:
-        shown.end()
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        shown.end()
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
-    finally:
-        shown.end()
+    done = carry_out(given.plan, options, registry())
+    shown.end()
+
     if given.json:
         say(json.dumps(done.json(), indent=1))
     elif not given.quiet:

@@ -7,23 +7,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tamp.errors import InputError
-from tamp.system.command_line import Parser
+from tamp.system.command_line import Parser, as_command
 from tamp.system.outputs import check_outputs, check_writable, write_whole
-from tamp.system.progress import say
-from tamp.system.terminal import spoken
+from tamp.system.progress import Progress, say
 
 
-@spoken
-def main(arguments: Sequence[str] | None = None) -> int:
+@as_command(interrupted="")
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the trajectories are written, 2 for bad input."""
-    try:
-        options = _parser().parse_args(arguments)
-        _export(options.plan, options.format, options.out)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
+    options = _parser().parse_args(arguments)
+    _export(options.plan, options.format, options.out)
     return 0
 
 

@@ -7,36 +7,27 @@ import json
 import sys
 from collections.abc import Sequence
 
-from tamp.errors import InputError
-from tamp.system.command_line import Parser
+from tamp.system.command_line import Parser, as_command
 from tamp.system.progress import Progress
-from tamp.system.terminal import spoken
 from tamp.verification.classifiers import classifiers_of
 from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 
-@spoken
-def main(arguments: Sequence[str] | None = None) -> int:
+@as_command(interrupted="")
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the plan holds, 1 when it does not, 2 when it cannot be read, 130 when interrupted.
 
     With --strict also with 1 when it holds but for what could not be checked.
     """
-    shown = Progress(quiet=True)
-    try:
-        options = _parser().parse_args(arguments)
-        shown = Progress(quiet=options.quiet or options.json)
-        shown.begin("judging")
-        classifiers = classifiers_of(options.sampler)
-        report = verify(options.plan, options.problem, options.domain, streams=options.streams, classifiers=classifiers)
-    except InputError as error:
-        shown.end()
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    finally:
-        shown.end()
+    options = _parser().parse_args(arguments)
+    shown.quiet = options.quiet or options.json
+
+    shown.begin("judging")
+    classifiers = classifiers_of(options.sampler)
+    report = verify(options.plan, options.problem, options.domain, streams=options.streams, classifiers=classifiers)
+    shown.end()
+
     accepted = report.holds and (report.checked or not options.strict)
     if options.json:
         print(json.dumps({**report.json(), "accepted": accepted}, indent=1))

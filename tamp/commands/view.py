@@ -9,24 +9,17 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.system import guard
-from tamp.system.command_line import Parser
+from tamp.system.command_line import INTERRUPTED, Parser, as_command
 from tamp.system.outputs import check_outputs
-from tamp.system.progress import say
-from tamp.system.terminal import spoken
+from tamp.system.progress import Progress, say
 from tamp.view.outputs import Wishes, fulfil
 
 
-@spoken
-def main(arguments: Sequence[str] | None = None) -> int:
+@as_command(interrupted="")
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when it was written, 2 for bad input, 130 or 143 when a signal ended it, as it ends the server."""
-    try:
-        _view(_parser().parse_args(arguments))
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    return 130 if guard.asked() else 0
+    _view(_parser().parse_args(arguments))
+    return INTERRUPTED if guard.asked() else 0
 
 
 def _view(options: argparse.Namespace) -> None:
