@@ -20,8 +20,6 @@ from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_co
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
-load_compiled_loops()
-
 CLOSER_LOOK = 500
 """Draws after which a plan that no stream promises is given up, when none of them brought facts besides its outputs."""
 
@@ -96,6 +94,7 @@ def solve(
         what = f"a problem is a tuple of {len(PDDLProblem._fields)} parts: {', '.join(PDDLProblem._fields)}"
         raise InputError(what, remedy="See PDDLProblem")
     task, warnings, uncalled, names = bind(PDDLProblem(*parts), unit_costs=unit_costs)
+    load_compiled_loops()  # before the clock starts
     deadline = Deadline(max_time)
     try:
         result = Alarm(deadline, strangers=STRANGERS).run(lambda: _run(task, algorithm, seed, deadline))
