@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
 import functools
 import sys
 from collections.abc import Callable
-from typing import Concatenate, NoReturn, ParamSpec
+from typing import Concatenate, ParamSpec
 
 from tamp.errors import InputError
 from tamp.system.progress import Progress
@@ -26,43 +25,42 @@ def as_command(
     What is framed gets a `Progress` before its own arguments, silent until the command sets
     `quiet`; it has ended when an error is printed and when the function returns. An `InputError`
     is printed as one line and becomes 2, Ctrl-C becomes 130, and output that cannot be printed
-    is as in `tamp.system.terminal.spoken`.
+    is as in `tamp.system.terminal.spoken`. After the help it is left by SystemExit.
 
     Args:
         interrupted: What is said after a Ctrl-C; nothing when it is empty.
     """
 
     def frame(work: Callable[Concatenate[Progress, P], int]) -> Callable[P, int]:
-        @spoken
         @functools.wraps(work)
         def framed(*args: P.args, **kwargs: P.kwargs) -> int:
-            shown = Progress(quiet=True)
-            try:
-                return work(shown, *args, **kwargs)
-            except InputError as error:
-                shown.end()
-                sys.stderr.write(f"error: {error}\n")
-                return BAD_INPUT
-            except KeyboardInterrupt:
-                shown.end()
-                if interrupted:
-                    sys.stderr.write(f"{interrupted}\n")
-                return INTERRUPTED
-            finally:
-                shown.end()
+            left: list[SystemExit] = []
+
+            @spoken
+            def speaking(*args: P.args, **kwargs: P.kwargs) -> int:
+                shown = Progress(quiet=True)
+                try:
+                    return work(shown, *args, **kwargs)
+                except InputError as error:
+                    shown.end()
+                    sys.stderr.write(f"error: {error}\n")
+                    return BAD_INPUT
+                except KeyboardInterrupt:
+                    shown.end()
+                    if interrupted:
+                        sys.stderr.write(f"{interrupted}\n")
+                    return INTERRUPTED
+                except SystemExit as end:
+                    left.append(end)
+                    raise
+                finally:
+                    shown.end()
+
+            code = speaking(*args, **kwargs)
+            if left:  # after the help
+                raise SystemExit(code)
+            return code
 
         return framed
 
     return frame
-
-
-class Parser(argparse.ArgumentParser):
-    """Argparse's, but that it raises InputError instead of printing how the command is used."""
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong.
-
-        Raises:
-            InputError: Always.
-        """
-        raise InputError(message, remedy=f"See {self.prog} --help")

@@ -156,7 +156,7 @@ def read_command(commands: Mapping[str, type[Options]], program: str, arguments:
     """
     name, *words = arguments
     if name in commands:
-        _check_names(commands[name], words)
+        _check_names(commands[name], words, f"See {program} {name} --help")
     return one_line_errors(
         lambda: tyro.extras.subcommand_cli_from_dict(
             dict(commands), prog=program, args=list(arguments), config=CONFIG, sort_subcommands=False
@@ -202,7 +202,7 @@ def sentence(box: str) -> str:
                 break
             continue
         paragraph.append(line)
-    return " ".join(paragraph).rstrip(".") or title
+    return " ".join(paragraph).removesuffix(" (required)").rstrip(".") or title
 
 
 @dataclass(frozen=True)
@@ -233,10 +233,10 @@ def _names(kind: type) -> Iterator[str]:
             yield option.name
 
 
-def _check_names(kind: type, words: Sequence[str]) -> None:
+def _check_names(kind: type, words: Sequence[str], remedy: str = "") -> None:
     """Refuse an option that there is not, with the one that was probably meant."""
     known = [*_names(kind), "--help"]
     for word in words:
         name = word.partition("=")[0].replace("_", "-")
         if name.startswith("--") and name not in known:
-            raise InputError(f"unknown option '{name}'", found=name, choices=known)
+            raise InputError(f"unknown option '{name}'", found=name, choices=known, remedy=remedy)
