@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,8 +10,8 @@ from typing import Annotated
 import tyro
 
 from grounding.registry import RELATIONS
-from tamp.commands.solve_options import sentence, unread
 from tamp.errors import InputError
+from tamp.system.options import read_command
 
 
 @dataclass(frozen=True)
@@ -171,23 +169,7 @@ def parsed(arguments: list[str]) -> Arguments:
             found=command,
             choices=COMMANDS,
         )
-
-    complaint = io.StringIO()
-
-    try:
-        with contextlib.redirect_stderr(complaint):
-            chosen = tyro.extras.subcommand_cli_from_dict(
-                COMMANDS, prog="tamp-learn", args=arguments
-            )
-    except SystemExit as end:
-        if not end.code:  # --help
-            raise
-        raise InputError(
-            sentence(complaint.getvalue()), remedy=f"See tamp-learn {command} --help"
-        ) from None
-    except BrokenPipeError:
-        raise unread() from None
-
+    chosen = read_command(COMMANDS, "tamp-learn", arguments)
     _check(chosen)
     return chosen
 

@@ -6,8 +6,10 @@ import json
 import subprocess
 import sys
 from dataclasses import asdict, replace
+from functools import partial
 from itertools import islice
 from pathlib import Path
+from typing import NoReturn, Protocol
 
 from grounding.arguments import (
     Collect,
@@ -35,83 +37,77 @@ from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
+from tamp.system.command_line import BAD_INPUT as BAD_INPUT
+from tamp.system.command_line import INTERRUPTED as INTERRUPTED
+from tamp.system.command_line import as_command
 from tamp.system.distribution import install_command
 from tamp.system.progress import Progress
-from tamp.system.terminal import spoken
 
-DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+DONE = 0
 
 SHOWN = 5
 """Contradicting pairs of rows that are named."""
 
 
-@spoken
-def main(arguments: list[str] | None = None) -> None:
+class Show(Protocol):
+    """Says how far the work is; the last time that it is done."""
+
+    def __call__(self, text: str, *, last: bool = False) -> None:
+        """Show a text."""
+        ...
+
+
+def main(arguments: list[str] | None = None) -> NoReturn:
     """Run tamp-learn and leave the process with 0, 2 for bad input, 130 interrupted."""
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 
-def run(arguments: list[str]) -> int:
+@as_command()
+def run(shown: Progress, arguments: list[str]) -> int:
     """Run tamp-learn and return its exit code."""
-    try:
-        return _run(arguments)
-    finally:
-        _SHOWN.end()
-
-
-def _run(arguments: list[str]) -> int:
-    try:
-        chosen = parsed(arguments)
-        if isinstance(chosen, Generate):
-            _generate(chosen)
-        elif isinstance(chosen, Explore):
-            _explore(chosen)
-        elif isinstance(chosen, Collect):
-            _collect(chosen)
-        elif isinstance(chosen, Encoder):
-            _encoder(chosen)
-        elif isinstance(chosen, Train):
-            _train(chosen)
-        else:
-            _evaluate(chosen)
-    except InputError as error:
-        _SHOWN.end()
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        _SHOWN.end()
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
-
+    chosen = parsed(arguments)
+    shown.quiet = False
+    show = partial(_show, shown=shown)
+    if isinstance(chosen, Generate):
+        _generate(chosen, show)
+    elif isinstance(chosen, Explore):
+        _explore(chosen, show)
+    elif isinstance(chosen, Collect):
+        _collect(chosen)
+    elif isinstance(chosen, Encoder):
+        _encoder(chosen, show)
+    elif isinstance(chosen, Train):
+        _train(chosen, show)
+    else:
+        _evaluate(chosen, show)
     return DONE
 
 
-def _generate(chosen: Generate) -> None:
+def _generate(chosen: Generate, show: Show) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split)
     check_out(out, DATA, mesh_files(chosen))
     job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
     data = generate(
-        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+        job, out, chosen.workers, lambda done, total: show(f"{done:,} of {total:,} scenes")
     )
-    _show("", last=True)
+    show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _explore(chosen: Explore) -> None:
+def _explore(chosen: Explore, show: Show) -> None:
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
     check_out(out, DATA, [*mesh_files(chosen), *with_card(chosen.model)])
     job = Exploration(chosen.relation, chosen.count, chosen.seed, chosen.model, _meshes(chosen))
     data = explore(
-        job, out, chosen.workers, lambda done, total: _show(f"{done:,} of {total:,} scenes")
+        job, out, chosen.workers, lambda done, total: show(f"{done:,} of {total:,} scenes")
     )
-    _show("", last=True)
+    show("", last=True)
     print(
-        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, "
-        f"{data.card['by type']}"
+        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}"
     )
 
 
@@ -129,7 +125,7 @@ def _collect(chosen: Collect) -> None:
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _encoder(chosen: Encoder) -> None:
+def _encoder(chosen: Encoder, show: Show) -> None:
     out = chosen.out or encoder_file(chosen.relation)
     check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
     data = read_data(chosen.data, chosen.relation, "train")
@@ -142,8 +138,8 @@ def _encoder(chosen: Encoder) -> None:
     args = replace(
         args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
     )
-    arrays, score = train_encoder(data, chosen.kind, chosen.scaling, args, _show)
-    _show("", last=True)
+    arrays, score = train_encoder(data, chosen.kind, chosen.scaling, args, show)
+    show("", last=True)
     card = {
         "model": "encoder",
         "kind": chosen.kind,
@@ -158,7 +154,7 @@ def _encoder(chosen: Encoder) -> None:
     print(f"{out} written, validation Chamfer distance {score:.3e}")
 
 
-def _train(chosen: Train) -> None:
+def _train(chosen: Train, show: Show) -> None:
     from grounding.train import OPTIONS, TrainArgs, check, train
 
     out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
@@ -189,10 +185,10 @@ def _train(chosen: Train) -> None:
         what = f"rows {first} and {second} are the same situation, labelled both ways"
         print(f"warning: {file}: array 'holds', {what}", file=sys.stderr)
     try:
-        weights = train(data, chosen.model, args, _show)
+        weights = train(data, chosen.model, args, show)
     except ImportError as error:
         raise _missing(error) from None
-    _show("", last=True)
+    show("", last=True)
     write_weights(out, weights)
     out.with_suffix(".state").unlink(missing_ok=True)
     why = cannot_tell(weights.card)
@@ -202,7 +198,7 @@ def _train(chosen: Train) -> None:
     print(f"{out} written. Judge it: tamp-learn evaluate {out}")
 
 
-def _evaluate(chosen: Evaluate) -> None:
+def _evaluate(chosen: Evaluate, show: Show) -> None:
     from grounding.evaluate import evaluate, wilson
     from grounding.registry import load_model, shipped_model
     from grounding.weights import read_weights
@@ -219,9 +215,9 @@ def _evaluate(chosen: Evaluate) -> None:
         data,
         chosen.scenes,
         chosen.seed,
-        lambda done, total: _show(f"{done} of {total} scenes"),
+        lambda done, total: show(f"{done} of {total} scenes"),
     )
-    _show("", last=True)
+    show("", last=True)
     for name, share in (
         ("settled", found.settled),
         ("MCA", found.mca),
@@ -264,16 +260,12 @@ def _commit() -> str:
     return said.stdout.strip()
 
 
-_SHOWN = Progress(quiet=False)
-"""What says how far the work is."""
-
-
-def _show(text: str, *, last: bool = False) -> None:
-    """Show progress, on a line that a terminal rewrites; elsewhere printed now and then."""
+def _show(text: str, *, last: bool = False, shown: Progress) -> None:
+    """How far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
     if last:
-        _SHOWN.clear()
+        shown.clear()
     else:
-        _SHOWN.news(text)  # the first one starts the clock
+        shown.news(text)  # the first one starts the clock
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Pictures of results: the only place that draws (matplotlib, `pip install 'tamp-planner[bench]'`)."""
+"""Pictures of results: the only place that draws, with matplotlib (the extra `bench`)."""
 
 from __future__ import annotations
 

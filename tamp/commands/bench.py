@@ -8,12 +8,14 @@ import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from tamp.commands.bench_options import Draw, Fig8, Run, Tabulate, parsed
 from tamp.errors import InputError
+from tamp.system.command_line import BAD_INPUT as BAD_INPUT
+from tamp.system.command_line import as_command
 from tamp.system.outputs import check_outputs
-from tamp.system.terminal import spoken
+from tamp.system.progress import Progress
 
 if TYPE_CHECKING:
     from tamp.benchmark.worker_pool import Crew
@@ -22,33 +24,26 @@ if TYPE_CHECKING:
 BASELINE = "uniform"
 """The sampler that others are compared with unless another one is named."""
 
-DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+DONE = 0
 
 
-@spoken
-def main(arguments: list[str] | None = None) -> None:
+def main(arguments: list[str] | None = None) -> NoReturn:
     """Run tamp-bench and leave the process with 0, 2 for bad input, 130 interrupted."""
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 
-def run(arguments: list[str]) -> int:
+@as_command(interrupted="\ninterrupted; the same command goes on where this one was")
+def run(shown: Progress, arguments: list[str]) -> int:
     """Run tamp-bench and return its exit code."""
-    try:
-        chosen = parsed(arguments)
-        if isinstance(chosen, Tabulate):
-            _print_tables(_read(chosen.log), chosen.against)
-        elif isinstance(chosen, Draw):
-            _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""), chosen.log)
-        elif isinstance(chosen, Fig8):
-            _draw(_fig8(chosen), chosen.out.with_suffix(""), chosen.out)
-        else:
-            _run(chosen)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        print("\ninterrupted; the same command goes on where this one was", file=sys.stderr)
-        return INTERRUPTED
+    chosen = parsed(arguments)
+    if isinstance(chosen, Tabulate):
+        _print_tables(_read(chosen.log), chosen.against)
+    elif isinstance(chosen, Draw):
+        _draw(_read(chosen.log), chosen.out or chosen.log.with_suffix(""), chosen.log)
+    elif isinstance(chosen, Fig8):
+        _draw(_fig8(chosen), chosen.out.with_suffix(""), chosen.out)
+    else:
+        _run(chosen)
     return DONE
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +9,8 @@ from typing import Annotated
 
 import tyro
 
-from tamp.commands.solve_options import sentence, unread
 from tamp.errors import InputError
+from tamp.system.options import read_command
 
 
 @dataclass(frozen=True)
@@ -101,20 +99,7 @@ def parsed(arguments: list[str]) -> Command:
         raise InputError(f"unknown command '{arguments[0]}'", found=arguments[0], choices=COMMANDS)
     if not arguments:
         raise InputError("no command", choices=COMMANDS, remedy="See tamp-bench --help")
-    complaint = io.StringIO()
-    try:
-        with contextlib.redirect_stderr(complaint):
-            config = (tyro.conf.FlagCreatePairsOff,)
-            chosen = tyro.extras.subcommand_cli_from_dict(
-                COMMANDS, prog="tamp-bench", args=arguments, config=config, sort_subcommands=False
-            )
-    except SystemExit as end:
-        if not end.code:  # --help
-            raise
-        remedy = f"See tamp-bench {arguments[0]} --help"
-        raise InputError(sentence(complaint.getvalue()), remedy=remedy) from None
-    except BrokenPipeError:
-        raise unread() from None
+    chosen = read_command(COMMANDS, "tamp-bench", arguments)
     if isinstance(chosen, Run | Fig8):
         _check(chosen)
     return chosen

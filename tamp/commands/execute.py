@@ -3,91 +3,71 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from tamp.errors import InputError
+import tyro
+
 from tamp.geometric.samplers.choice import Registry
-from tamp.system.command_line import Parser
+from tamp.system.command_line import as_command
+from tamp.system.options import read_options
 from tamp.system.progress import Progress, say
 
-REACHED, NOT_REACHED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+REACHED, NOT_REACHED = 0, 1
 
 
-def main(arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
+@dataclass(frozen=True)
+class Execute:
+    """Carry out a plan file in physics (pybullet) and say for each action how it went, and what of the goal holds.
+
+    Motors follow the plan's trajectories, fingers close with force and friction, bodies have mass.
+
+    Exit status: 0 the goal holds at the end, 1 it does not, 2 bad input. docs/watch-export-execute.md says more.
+    """
+
+    plan: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN")]
+    """The plan file that tamp-solve wrote."""
+    grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
+    """friction, or constraint: a fixed joint holds what the fingers close on."""
+    replan: bool = False
+    """After an action that came out differently, keep the rest of the plan if it still holds, else plan anew from what
+    is seen."""
+    disturb: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="")] = None
+    """Do something to the scene on the way: object-moved, object-dropped, grasp-slips, object-removed,
+    surface-blocked."""
+    seed: Annotated[int, tyro.conf.arg(metavar="NUMBER")] = 0
+    """Of the disturbance and of planning anew."""
+    time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
+    """For each new plan."""
+    sampler: Annotated[
+        tyro.conf.UseAppendAction[tuple[str, ...]],
+        tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
+    ] = ()
+    """As for tamp-solve, over the plan's own: what says whether a relation of your own holds, and for planning anew."""
+    problem: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """The problem, instead of the one the plan names."""
+    json: bool = False
+    """Print one JSON document instead of text."""
+    quiet: bool = False
+    """Print nothing: the exit status says it."""
+
+
+@as_command()
+def main(shown: Progress, arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
     """Exit with 0 when the goal holds at the end, 1 when it does not, 2 for bad input, 130 when interrupted."""
-    try:
-        given = _parser().parse_args(arguments)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
+    given = read_options(Execute, "tamp-execute", arguments)
     from tamp.execution.command import Options, carry_out  # after --help
 
-    options = Options(
-        given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, tuple(given.sampler)
-    )
-    shown = Progress(quiet=given.quiet or given.json)
+    shown.quiet = given.quiet or given.json
     shown.begin("executing")
-    try:
-        done = carry_out(given.plan, options, registry())
-    except InputError as error:
-        shown.end()
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        shown.end()
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
-    finally:
-        shown.end()
+    options = Options(given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, given.sampler)
+    done = carry_out(given.plan, options, registry())
+    shown.end()
+
     if given.json:
         say(json.dumps(done.json(), indent=1))
     elif not given.quiet:
         say(done.text())
     return REACHED if done.reached else NOT_REACHED
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="tamp-execute",
-        description="Carry out a plan file in physics (pybullet): motors follow its trajectories, fingers close with "
-        "force and friction, bodies have mass. Says for each action how it went, and which parts of the goal hold.",
-        epilog="Exit status: 0 the goal holds at the end, 1 it does not, 2 bad input. "
-        "docs/watch-export-execute.md says more.",
-    )
-    parser.add_argument("plan", type=Path, help="the plan file that tamp-solve wrote")
-    parser.add_argument(
-        "--grasp",
-        metavar="NAME",
-        default="friction",
-        help="friction (the default), or constraint: a fixed joint holds what the fingers close on",
-    )
-    parser.add_argument(
-        "--replan",
-        action="store_true",
-        help="after an action that came out differently, keep the rest of the plan if it still holds, "
-        "else plan anew from what is seen",
-    )
-    parser.add_argument(
-        "--disturb",
-        metavar="NAME",
-        help="do something to the scene on the way: object-moved, object-dropped, grasp-slips, "
-        "object-removed, surface-blocked",
-    )
-    parser.add_argument(
-        "--seed", type=int, default=0, metavar="NUMBER", help="of the disturbance and of planning anew (0)"
-    )
-    parser.add_argument("--time", type=float, default=30.0, metavar="SECONDS", help="for each new plan (30)")
-    parser.add_argument(
-        "--sampler",
-        action="append",
-        default=[],
-        metavar="RELATION=NAME",
-        help="as for tamp-solve, over the plan's own: what says whether a relation of your own holds, and for planning "
-        "anew (repeatable)",
-    )
-    parser.add_argument("--problem", type=Path, metavar="FILE", help="the problem, instead of the one the plan names")
-    parser.add_argument("--json", action="store_true", help="print one JSON document instead of text")
-    parser.add_argument("--quiet", action="store_true", help="print nothing: the exit status says it")
-    return parser

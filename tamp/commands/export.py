@@ -4,26 +4,41 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
+
+import tyro
 
 from tamp.errors import InputError
-from tamp.system.command_line import Parser
+from tamp.system.command_line import as_command
+from tamp.system.options import read_options
 from tamp.system.outputs import check_outputs, check_writable, write_whole
-from tamp.system.progress import say
-from tamp.system.terminal import spoken
+from tamp.system.progress import Progress, say
 
 
-@spoken
-def main(arguments: Sequence[str] | None = None) -> int:
+@dataclass(frozen=True)
+class Export:
+    """Write the trajectories of a plan file for another program: names of joints, times, positions and velocities.
+
+    They are those of base, arm and fingers.
+
+    Exit status: 0 written, 2 bad input. docs/watch-export-execute.md describes the formats.
+    """
+
+    plan: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN")]
+    """The plan file that tamp-solve wrote."""
+    format: Annotated[str, tyro.conf.arg(metavar="NAME")] = "json"
+    """json, csv (a row a sample, all joints), or ros (JointTrajectory messages as JSON)."""
+    out: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Where to write; else to the standard output (-)."""
+
+
+@as_command(interrupted="")
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when the trajectories are written, 2 for bad input."""
-    try:
-        options = _parser().parse_args(arguments)
-        _export(options.plan, options.format, options.out)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
+    options = read_options(Export, "tamp-export", arguments)
+    _export(options.plan, options.format, options.out)
     return 0
 
 
@@ -50,24 +65,6 @@ def _export(file: Path, name: str, out: Path | None) -> None:
         write_whole(out, text.encode())
     except OSError as error:
         raise InputError(f"cannot write the trajectories: {error.strerror}", file=out) from error
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="tamp-export",
-        description="Write the trajectories of a plan file for another program: joint names, times, positions and "
-        "velocities of base, arm and fingers.",
-        epilog="Exit status: 0 written, 2 bad input. docs/watch-export-execute.md describes the formats.",
-    )
-    parser.add_argument("plan", type=Path, help="the plan file that tamp-solve wrote")
-    parser.add_argument(
-        "--format",
-        metavar="NAME",
-        default="json",
-        help="json (the default), csv (a row a sample, all joints), or ros (JointTrajectory messages as JSON)",
-    )
-    parser.add_argument("--out", metavar="FILE", type=Path, help="where to write; else to the standard output (-)")
-    return parser
 
 
 if __name__ == "__main__":

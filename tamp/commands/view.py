@@ -2,41 +2,74 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
+
+import tyro
 
 from tamp.errors import InputError
 from tamp.system import guard
-from tamp.system.command_line import Parser
+from tamp.system.command_line import INTERRUPTED, as_command
+from tamp.system.options import read_options
 from tamp.system.outputs import check_outputs
-from tamp.system.progress import say
-from tamp.system.terminal import spoken
+from tamp.system.progress import Progress, say
 from tamp.view.outputs import Wishes, fulfil
 
 
-@spoken
-def main(arguments: Sequence[str] | None = None) -> int:
+@dataclass(frozen=True)
+class View:
+    """Show a plan, or a scene without one.
+
+    In the browser (the default), as a page that plays offline, as a picture, as a moving picture.
+
+    Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. docs/watch-export-execute.md says what is to be seen.
+    """
+
+    what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN|PROBLEM")]
+    """A plan.json of tamp-solve, a problem.yaml, or a shipped one."""
+    problem: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """The problem, instead of the file that the plan names."""
+    html: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write one HTML file that needs no network."""
+    allow_outside: bool = False
+    """Let the page show meshes from outside of the problem's folder."""
+    png: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write a picture: start, middle and end of a plan."""
+    video: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
+    """Write a moving picture (.gif or .webp) of a plan."""
+    at: Annotated[
+        tyro.conf.UseAppendAction[tuple[float, ...]],
+        tyro.conf.arg(metavar="SECONDS", help_behavior_hint="(repeatable)"),
+    ] = ()
+    """A time for the picture."""
+    size: Annotated[str | None, tyro.conf.arg(metavar="WxH", help_behavior_hint="")] = None
+    """Of a picture, in pixels (800x600; moving ones 480x360)."""
+    speed: Annotated[float, tyro.conf.arg(metavar="FACTOR")] = 6.0
+    """Of a moving picture, times the robot's."""
+    port: Annotated[int, tyro.conf.arg(metavar="NUMBER", help_behavior_hint="(default: any free one)")] = 0
+    """Where to serve the page."""
+    no_browser: bool = False
+    """Serve the page without opening a browser."""
+
+
+@as_command(interrupted="")
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
     """Exit with 0 when it was written, 2 for bad input, 130 or 143 when a signal ended it, as it ends the server."""
-    try:
-        _view(_parser().parse_args(arguments))
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    return 130 if guard.asked() else 0
+    _view(read_options(View, "tamp-view", arguments))
+    return INTERRUPTED if guard.asked() else 0
 
 
-def _view(options: argparse.Namespace) -> None:
+def _view(options: View) -> None:
     files = (options.html, options.png, options.video)
     wishes = Wishes(
         html=options.html,
         png=options.png,
         video=options.video,
         view=all(file is None for file in files),
-        at=tuple(options.at),
+        at=options.at,
         size=_size(options.size),
         speed=options.speed,
         port=options.port,
@@ -62,34 +95,6 @@ def _size(text: str | None) -> tuple[int, int] | None:
     if not (columns.isdecimal() and rows.isdecimal()):
         raise InputError(f"--size wants WIDTHxHEIGHT, not '{text}'", remedy="For example: --size 1200x800")
     return int(columns), int(rows)
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="tamp-view",
-        description="Show a plan, or a scene without one: in the browser (the default), as a page that plays offline, "
-        "as a picture, as a moving picture.",
-        epilog="Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. "
-        "docs/watch-export-execute.md says what is to be seen.",
-    )
-    parser.add_argument(
-        "what", metavar="PLAN|PROBLEM", help="a plan.json of tamp-solve, a problem.yaml, or a shipped one"
-    )
-    parser.add_argument("--problem", metavar="FILE", help="the problem, instead of the file that the plan names")
-    parser.add_argument("--html", metavar="FILE", type=Path, help="write one HTML file that needs no network")
-    parser.add_argument(
-        "--allow-outside", action="store_true", help="let the page show meshes from outside of the problem's folder"
-    )
-    parser.add_argument("--png", metavar="FILE", type=Path, help="write a picture: start, middle and end of a plan")
-    parser.add_argument("--video", metavar="FILE", type=Path, help="write a moving picture (.gif or .webp) of a plan")
-    parser.add_argument(
-        "--at", metavar="SECONDS", type=float, action="append", default=[], help="a time for the picture (repeatable)"
-    )
-    parser.add_argument("--size", metavar="WxH", help="of a picture, in pixels (800x600; moving ones 480x360)")
-    parser.add_argument("--speed", metavar="FACTOR", type=float, default=6.0, help="of a moving picture (6 times)")
-    parser.add_argument("--port", metavar="NUMBER", type=int, default=0, help="where to serve the page (any free one)")
-    parser.add_argument("--no-browser", action="store_true", help="serve the page without opening a browser")
-    return parser
 
 
 if __name__ == "__main__":

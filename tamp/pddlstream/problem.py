@@ -83,20 +83,14 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     check_parts(problem)
     domain_text, domain_file = _text(problem.domain_pddl)
     listed = problem.stream_pddl
-    sources = [
-        _text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())
-    ]
+    sources = [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
     undeclared: dict[str, Predicate] = {}
     for text, file in sources:
         for name, size, _ in facts_of(read(text, file)):
-            undeclared.setdefault(
-                name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size)))
-            )
+            undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     computed = _used(initial_functions(problem.init), domain_text)
-    declared = {
-        name: one for text, file in sources for name, one in stream_functions(read(text, file))
-    }
+    declared = {name: one for text, file in sources for name, one in stream_functions(read(text, file))}
     domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed, declared))
     files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
     streams = _joined(files)
@@ -121,24 +115,16 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     decided = {predicate.name: predicate for predicate in streams.predicates}
     bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
     bound += [_bound(rule, domain, _always) for rule in streams.rules]
-    bound += [
-        test
-        for predicate in decided.values()
-        for test in _tests(predicate, domain, functions[predicate.name])
-    ]
+    bound += [test for predicate in decided.values() for test in _tests(predicate, domain, functions[predicate.name])]
     negated = negated_tests(streams.streams, domain, goal)
     bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
     rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
     if unit_costs:
         actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
         rewritten = replace(rewritten, actions=actions)
-    objects = {
-        name: types.get(name, ("object",)) for name in names.values if name not in domain.constants
-    }
+    objects = {name: types.get(name, ("object",)) for name in names.values if name not in domain.constants}
     task = Task(domain.name, rewritten, objects, facts, goal, costs)
-    computed = tuple(
-        BoundFunction(function, functions[function.name]) for function in streams.functions
-    )
+    computed = tuple(BoundFunction(function, functions[function.name]) for function in streams.functions)
     stream_task = StreamTask(task, tuple(bound), names.values, computed, by_value=True)
     return Bound(stream_task, tuple(warnings), streams.uncalled, started.names)
 
@@ -153,9 +139,7 @@ def _always(*inputs: Any) -> bool:
     return True
 
 
-def _tests(
-    predicate: Function, domain: Domain, function: Callable[..., Any]
-) -> tuple[BoundStream, BoundStream]:
+def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) -> tuple[BoundStream, BoundStream]:
     """Build the streams that promise a decided predicate, and its complement."""
 
     def holds(*inputs: Any, call: Any) -> bool:
@@ -170,9 +154,7 @@ def _tests(
         (complement_name(predicate.name, domain), does_not_hold),
     ):
         certified = (Atom(name, predicate.inputs, predicate.place),)
-        stream = Stream(
-            f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place
-        )
+        stream = Stream(f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place)
         made.append(BoundStream(stream, test, (), may_advise=False))
     return made[0], made[1]
 
@@ -190,9 +172,7 @@ def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
 
     name = complement_name(atom.predicate, domain)
     certified = (Atom(name, atom.terms, atom.place),)
-    return BoundStream(
-        replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False
-    )
+    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False)
 
 
 def _joined(files: Sequence[StreamFile]) -> StreamFile:
@@ -211,16 +191,10 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
 def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]:
     """Select those that a domain's text calls."""
     lower = text.lower()
-    return {
-        name: one
-        for name, one in functions.items()
-        if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)
-    }
+    return {name: one for name, one in functions.items() if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)}
 
 
-def _check_map(
-    functions: Mapping[str, Any], declared: Sequence[Stream | Function]
-) -> Iterator[str]:
+def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> Iterator[str]:
     """Warn of each function that no stream is called, unless it is a misspelt one: that is an
     error.
     """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,24 +15,19 @@ from tamp.geometric.robot.robot import ROBOTS
 from tamp.geometric.samplers.choice import Grounding, Registry, mix
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
-from tamp.geometric.streams.registry import STREAMS
 from tamp.geometric.values import Grasp
-from tamp.planner.initial_state import initial_state
-from tamp.planner.missing_function import without_function
+from tamp.planner.initial_state import Initial, initial_state
 from tamp.planner.own_relations import decided
-from tamp.planner.served import Served, line_of
-from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.algorithms.costs import BoundFunction
+from tamp.planner.served import Served
+from tamp.planner.stream_binding import bind, bind_costs, unused_functions
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.lint import lint
-from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.symbolic.pddl.relations import Relation
-from tamp.symbolic.pddl.structs import StreamFile, Task
+from tamp.symbolic.pddl.structs import Domain, Formula, StreamFile, Task
 from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
 from tamp.system.files import find_domain
-
-load_compiled_loops()
 
 METRIC = "minimize total-cost"
 """The metric that a problem may name."""
@@ -108,63 +102,103 @@ def load_problem(
     """
     if steering not in STEERINGS:
         raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
-    loaded = load_scene(problem)
-    if scene is not None:
-        loaded = replace(loaded, scene=scene)
-    domain_path = _domain_path(loaded, domain)
-    parsed = parse_domain(read_pddl(domain_path), domain_path)
-    streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
-    declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
-    start = initial_state(loaded.scene, parsed, holding)
-    goal = parse_goal(
-        loaded.goal.text, parsed, start.objects, loaded.path,
-        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
-    )  # fmt: skip
-    for passage in loaded.init:
-        start.facts |= parse_facts(
-            passage.text, parsed, start.objects, loaded.path,
-            line_offset=passage.line - 1, column_offset=passage.column - 1,
-        )  # fmt: skip
-    _check_metric(loaded)
-    served = Served.of(loaded, samplers or {}, groundings or {}, registry or {})
-    mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
-    context = Context(loaded.scene, ROBOTS[loaded.scene.robot.model](), mixtures, steering, holding)
+    load_compiled_loops()  # numba is loaded anyway
+
+    files = _read(problem, domain, streams, scene)
+    start, goal = _task(files, holding)
+
+    served = Served.of(files.loaded, samplers or {}, groundings or {}, registry or {})
+    context = _context(files, served, steering, holding)
     if scene is None:  # what is seen may touch
-        check_overlaps(loaded)
-    _check_start(loaded, context)
-    bound = _bind(declared, parsed, context, {**served.functions(declared, parsed), **(functions or {})})
-    _refuse_decided(declared)
-    known = decided(served, declared, parsed, goal, start.objects, start.facts, context)
-    costs = tuple(
-        BoundFunction(function, partial((functions or {})[function.name], context))
-        for function in declared.functions
-        if function.name in (functions or {})
-    )
-    initial = frozenset(start.facts) | known.facts
-    task = Task(loaded.scene.name, known.domain, start.objects, initial, known.goal, {})
+        check_overlaps(files.loaded)
+    _check_start(files.loaded, context)
+
+    given = functions or {}
+    known_functions = {**served.functions(files.streams, files.domain), **given}
+    bound = bind(files.streams, files.domain, context, known_functions)
+    known = decided(served, files.streams, files.domain, goal, start.objects, start.facts, context)
+    costs = bind_costs(files.streams, context, given)
+
+    name = files.loaded.scene.name
+    task = Task(name, known.domain, start.objects, frozenset(start.facts) | known.facts, known.goal, {})
     return Problem(
-        name=loaded.scene.name,
-        scene=loaded.scene,
+        name=name,
+        scene=files.loaded.scene,
         context=context,
         stream_task=StreamTask(task, (*bound, *known.streams), start.values, costs),
-        goal=" ".join(loaded.goal.text.split()),
-        files={
-            "problem": (loaded.path.resolve(),),
-            "domain": (domain_path.resolve(),),
-            "streams": (streams_path.resolve(),),
-            "meshes": tuple(path.resolve() for path in loaded.meshes),
-        },
+        goal=" ".join(files.loaded.goal.text.split()),
+        files=files.by_role(),
         samplers={relation: choice.text for relation, choice in served.choices.items()},
         warnings=(
-            *loaded.warnings,
-            *_unused(functions or {}, declared),
-            *lint(parsed, declared, goal, start.facts),
+            *files.loaded.warnings,
+            *unused_functions(files.streams, given),
+            *lint(files.domain, files.streams, goal, start.facts),
             *known.warnings,
         ),
         classifiers=known.classifiers,
         relations=known.relations,
         complements=known.complements,
     )
+
+
+@dataclass(frozen=True)
+class _Files:
+    """What the files of a problem say, as far as each can be understood by itself."""
+
+    loaded: LoadedProblem
+    domain: Domain
+    domain_path: Path
+    streams: StreamFile
+    streams_path: Path
+
+    def by_role(self) -> dict[str, tuple[Path, ...]]:
+        """List the files as `Problem.files` has them."""
+        return {
+            "problem": (self.loaded.path.resolve(),),
+            "domain": (self.domain_path.resolve(),),
+            "streams": (self.streams_path.resolve(),),
+            "meshes": tuple(path.resolve() for path in self.loaded.meshes),
+        }
+
+
+def _read(problem: str | Path, domain: str | Path | None, streams: str | Path | None, scene: Scene | None) -> _Files:
+    """Read the problem, its domain and the domain's streams; take the scene as it is by now."""
+    loaded = load_scene(problem)
+    if scene is not None:
+        loaded = replace(loaded, scene=scene)
+
+    domain_path = _domain_path(loaded, domain)
+    parsed = parse_domain(read_pddl(domain_path), domain_path)
+
+    streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
+    declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
+    return _Files(loaded, parsed, domain_path, declared, streams_path)
+
+
+def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
+    """Say the scene in the domain's words, with the facts that the file adds; parse the goal."""
+    loaded, domain = files.loaded, files.domain
+    start = initial_state(loaded.scene, domain, holding)
+
+    goal = parse_goal(
+        loaded.goal.text, domain, start.objects, loaded.path,
+        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+    )  # fmt: skip
+    for passage in loaded.init:
+        start.facts |= parse_facts(
+            passage.text, domain, start.objects, loaded.path,
+            line_offset=passage.line - 1, column_offset=passage.column - 1,
+        )  # fmt: skip
+
+    _check_metric(loaded)
+    return start, goal
+
+
+def _context(files: _Files, served: Served, steering: str, holding: Grasp | None) -> Context:
+    """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
+    scene = files.loaded.scene
+    mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
+    return Context(scene, ROBOTS[scene.robot.model](), mixtures, steering, holding)
 
 
 def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
@@ -177,7 +211,7 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
     try:
         return find_domain(loaded.domain, loaded.path.parent)
     except InputError as error:
-        raise error.at(loaded.path, line_of(loaded, "domain")) from None
+        raise error.at(loaded.path, loaded.line_of("domain")) from None
 
 
 def _check_metric(loaded: LoadedProblem) -> None:
@@ -185,41 +219,6 @@ def _check_metric(loaded: LoadedProblem) -> None:
     if metric is not None and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC:
         remedy = "The one that there is: (minimize (total-cost))"
         raise InputError(f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy)
-
-
-def _bind(
-    declared: StreamFile, domain: Any, context: Context, functions: Mapping[str, Callable[..., Any]]
-) -> tuple[BoundStream, ...]:
-    known = {**STREAMS, **functions}
-    bound: list[BoundStream] = []
-    for stream in declared.streams:
-        if stream.name not in known:
-            raise without_function(stream, declared.file, known)
-        types = output_types(stream, domain)
-        outputs = tuple(types[name] for name in stream.outputs)
-        bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
-    return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
-
-
-def _always(*inputs: Any, call: Any) -> bool:
-    return True
-
-
-def _refuse_decided(declared: StreamFile) -> None:
-    for predicate in declared.predicates:
-        place = predicate.place
-        raise InputError(
-            f"'{predicate.name}' is a :predicate, which scenes do not have",
-            file=declared.file,
-            line=place.line if place else None,
-            column=place.column if place else None,
-            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
-        )
-
-
-def _unused(functions: Mapping[str, Any], declared: StreamFile) -> list[str]:
-    names = [one.name for one in (*declared.streams, *declared.functions)]
-    return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
 
 
 def _check_start(loaded: LoadedProblem, context: Context) -> None:

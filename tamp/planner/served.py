@@ -9,7 +9,6 @@ from typing import Any
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem
-from tamp.geometric.loading.yaml_nodes import read_yaml
 from tamp.geometric.samplers.choice import GIVEN, Choice, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
@@ -58,7 +57,7 @@ class Served:
             try:
                 choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
             except InputError as error:
-                raise error.at(loaded.path, line_of(loaded, "samplers", relation)) from None
+                raise error.at(loaded.path, loaded.line_of("samplers", relation)) from None
         choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
         for relation, item in groundings.items():
             if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
@@ -106,14 +105,6 @@ class Served:
             return None
         inputs = relation.stream.inputs
         return self.classifiers[name], tuple(inputs.index(variable) for variable in relation.arguments)
-
-
-def line_of(loaded: LoadedProblem, *keys: str) -> int:
-    """Where an entry of the problem file stands: read again, for an error's sake only."""
-    node = read_yaml(loaded.path)
-    for key in keys:
-        node = node.mapping()[key]
-    return node.line
 
 
 def _same(item: Grounding) -> Grounding:

@@ -34,6 +34,7 @@ class LoadedProblem:
         drawn: The mesh files that are only drawn, which no plan depends on.
         warnings: What was repaired or looks odd, one sentence each.
         lines: 1-based line of each body and of `robot`, for later errors about them.
+        entry_lines: The same of all entries of the file and of each of the `samplers`, by the keys that lead there.
     """
 
     path: Path
@@ -47,10 +48,15 @@ class LoadedProblem:
     warnings: tuple[str, ...]
     drawn: tuple[Path, ...]
     lines: Mapping[str, int]
+    entry_lines: Mapping[tuple[str, ...], int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
         """An error about this problem, or about one of its bodies or its `robot`, with file and line."""
         return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
+
+    def line_of(self, *keys: str) -> int | None:
+        """Find where an entry stands, such as ("samplers", "on"); None where it is not known."""
+        return self.entry_lines.get(keys)
 
 
 def load_scene(problem: str | Path) -> LoadedProblem:
@@ -87,6 +93,10 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
         drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
         warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
+        entry_lines={
+            **{(key,): node.line for key, node in entries.items()},
+            **{("samplers", relation): node.line for relation, node in samplers.items()},
+        },
         lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
     )
 

@@ -22,9 +22,7 @@ def headline(problem: SymbolicProblem) -> str:
     task = problem.task
     goals = len(task.goal.parts) if isinstance(task.goal, And) else 1
     objects = _count(len(task.objects), "object")
-    return (
-        f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
-    )
+    return f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
 
 
 def summary(solution: SymbolicSolution) -> str:
@@ -35,8 +33,7 @@ def summary(solution: SymbolicSolution) -> str:
         lines += [f"warning: {line}" for line in solution.explanation]
         optimal = " (optimal)" if solution.optimal else ""
         lines += [
-            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, "
-            f"cost {solution.cost:g}{optimal}",
+            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, cost {solution.cost:g}{optimal}",
             "",
             *(f"  {number:2d}  {operator}" for number, operator in enumerate(solution.plan, 1)),
         ]
@@ -124,9 +121,7 @@ def write_symbolic_plan(solution: SymbolicSolution, path: Path) -> Path:
 
 
 def _plan(solution: SymbolicSolution) -> dict[str, Any]:
-    actions = [
-        {"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan
-    ]
+    actions = [{"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan]
     return {"actions": actions, "cost": solution.cost, "optimal": solution.optimal}
 
 

@@ -149,9 +149,7 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
         raise error(head, f"unknown connective '{head.written}'", found=name, choices=CONNECTIVES)
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
-    words = dict.fromkeys(
-        (*domain.predicates, *(type_ for type_ in domain.types if type_ != "object"))
-    )
+    words = dict.fromkeys((*domain.predicates, *(type_ for type_ in domain.types if type_ != "object")))
     raise error(head, f"unknown predicate '{head.written}'", found=name, choices=words)
 
 
@@ -187,8 +185,7 @@ def _applied(group: Group, predicate: Predicate, scope: Scope) -> Atom:
         raise error(group, message, remedy=f"Its form is ({predicate.name}{names})")
     terms = zip(group.items[1:], predicate.parameters, strict=True)
     checked = tuple(
-        _term(as_symbol(node, "a variable or an object"), parameter.types, scope)
-        for node, parameter in terms
+        _term(as_symbol(node, "a variable or an object"), parameter.types, scope) for node, parameter in terms
     )
     return Atom(predicate.name, checked, group.place)
 
@@ -197,9 +194,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     if symbol.text.startswith("?"):
         if symbol.text not in scope.variables:
             choices = scope.variables
-            raise error(
-                symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices
-            )
+            raise error(symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices)
         return scope.variables[symbol.text].name
     name = _object(symbol, scope)
     if name is not None and scope.domain.fits(scope.objects[name], types):
@@ -207,9 +202,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     fitting = [other for other, own in scope.objects.items() if scope.domain.fits(own, types)]
     if name is None:
         choices = (*scope.variables, *(fitting or scope.objects))
-        message = f"unknown object '{symbol.written}'" + (
-            "" if choices else "; there are no objects"
-        )
+        message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
         raise error(symbol, message, found=symbol.written, choices=choices)
     own = " and ".join(scope.objects[name])
     general = _more_general(scope.objects[name], types, scope.domain)
@@ -259,8 +252,7 @@ def _count(group: Group, head: Symbol, wanted: int, what: str) -> None:
         found = len(group.items) - 1
         raise error(
             group,
-            f"'{head.text}' takes {what}, "
-            f"found {found} part{'' if found == 1 else 's'}: {show(group)}",
+            f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}",
         )
 
 

@@ -162,9 +162,7 @@ class Domain:
     @property
     def fluent_predicates(self) -> frozenset[str]:
         """Name the predicates that some action changes."""
-        return frozenset(
-            effect.atom.predicate for action in self.actions for effect in action.effects
-        )
+        return frozenset(effect.atom.predicate for action in self.actions for effect in action.effects)
 
     @property
     def derived_predicates(self) -> frozenset[str]:

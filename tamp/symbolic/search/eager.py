@@ -18,9 +18,7 @@ def astar(search: SearchSpace) -> Plan | None:
     """
     s = search.successors
     estimates: dict[State, float] = {}
-    queue: list[tuple[float, float, int, float, State, State]] = [
-        (0.0, 0.0, 0, 0.0, s.initial, s.initial)
-    ]
+    queue: list[tuple[float, float, int, float, State, State]] = [(0.0, 0.0, 0, 0.0, s.initial, s.initial)]
     number = 0
     while queue:
         f, guess, _, cost, state, parent = heappop(queue)

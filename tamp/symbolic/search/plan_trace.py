@@ -100,9 +100,7 @@ def trace(
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
-def replayed(
-    instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]
-) -> bool:
+def replayed(instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
     """Check that actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
     for operator in instantiated.operators:
@@ -152,9 +150,7 @@ def _applied(
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
     after = (state - deleted) | added
     gone = state - after
-    return Step(
-        operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
-    ), after
+    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:

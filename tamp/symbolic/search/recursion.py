@@ -11,10 +11,7 @@ def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozens
     """Return for each derived predicate those that rest on it and it on them, and itself; and
     which rest on themselves.
     """
-    below = {
-        name: {p for rule in those for p in _used(rule.body) if p in rules}
-        for name, those in rules.items()
-    }
+    below = {name: {p for rule in those for p in _used(rule.body) if p in rules} for name, those in rules.items()}
     reached: dict[str, set[str]] = {}
     for name in below:
         seen: set[str] = set()
@@ -25,10 +22,7 @@ def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozens
                 seen.add(at)
                 stack.extend(below[at])
         reached[name] = seen
-    kinds = {
-        name: frozenset((name, *(other for other in reached[name] if name in reached[other])))
-        for name in below
-    }
+    kinds = {name: frozenset((name, *(other for other in reached[name] if name in reached[other]))) for name in below}
     return kinds, {name for name in below if name in reached[name]}
 
 

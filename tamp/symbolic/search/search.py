@@ -99,9 +99,7 @@ def search(
     if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(instantiated, price if price is not None else {})
-    run = SearchSpace(
-        successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit
-    )
+    run = SearchSpace(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
@@ -125,8 +123,6 @@ def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:
     goal = instantiated.goal
     never = sorted(goal.positive - instantiated.reachable - instantiated.initial)
     deleted = {fact for o in instantiated.operators for fact in o.deleted}
-    deleted |= {
-        fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted
-    }
+    deleted |= {fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted}
     kept = sorted(("not", *fact) for fact in (goal.negative & instantiated.initial) - deleted)
     return (*never, *kept)

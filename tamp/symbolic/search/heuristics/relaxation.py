@@ -104,9 +104,7 @@ class Relaxation:
         self._ends = kernels.integers(self.goals)
         self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
 
-    def _add(
-        self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]
-    ) -> None:
+    def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
         number = len(self._owners)
         self._owners.append(owner)
         self._before.append(before)
@@ -195,17 +193,11 @@ class Relaxation:
             kernels.integers([*waiters, *added]),
             kernels.integers([*guards, *removers]),
         )
-        paid = [
-            (guard, price)
-            for guard, (_, price) in enumerate(waiting, start=first)
-            if price < math.inf
-        ]
+        paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
         return RelaxedState(
             kernels,
             before=kernels.appended(base.before, behind, sources, last),
-            costs=kernels.incremented(
-                base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)
-            ),
+            costs=kernels.incremented(base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)),
             effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
             needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),

@@ -36,18 +36,13 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
                         f"the derived fact ({' '.join(head)}) depends on the negation of "
                         f"({' '.join(fact)}), "
                         "which depends on it",
-                        remedy="Derived predicates must be stratified: "
-                        "no predicate may depend on its own negation",
+                        remedy="Derived predicates must be stratified: no predicate may depend on its own negation",
                     )
-        level = 1 + max(
-            (stratum[f] for head in component for f in below[head] if f not in members), default=-1
-        )
+        level = 1 + max((stratum[f] for head in component for f in below[head] if f not in members), default=-1)
         for head in component:
             stratum[head] = level
     ordered = sorted(by_head, key=lambda head: (stratum[head], head))
-    return tuple(
-        replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head]
-    )
+    return tuple(replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head])
 
 
 def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
@@ -90,9 +85,7 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     return found
 
 
-def derive(
-    axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None
-) -> dict[Fact, Axiom]:
+def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None) -> dict[Fact, Axiom]:
     """Derive the facts of a state, each with the axiom that gave it; in the order of derivation.
 
     Args:

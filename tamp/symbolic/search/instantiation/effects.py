@@ -32,15 +32,9 @@ def lifted_effects(action: Action, normalizer: Normalizer) -> tuple[LiftedEffect
         names = {parameter.name: f"{parameter.name} of effect" for parameter in effect.parameters}
         scope = {parameter.name: parameter.types for parameter in action.parameters}
         scope |= {names[parameter.name]: parameter.types for parameter in effect.parameters}
-        atom = Atom(
-            effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms)
-        )
+        atom = Atom(effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms))
         simple = not effect.parameters and effect.condition == And(())
-        effects.append(
-            LiftedEffect(
-                atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple
-            )
-        )
+        effects.append(LiftedEffect(atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple))
     return tuple(effects)
 
 
@@ -90,20 +84,12 @@ class Effects:
         mentions.
         """
         body = self._predicates.body(condition)
-        used = {
-            term
-            for atom in (effect.atom, *condition.positive, *condition.negative)
-            for term in atom.terms
-        }
+        used = {term for atom in (effect.atom, *condition.positive, *condition.negative) for term in atom.terms}
         used |= {term for left, right, _ in condition.equalities for term in (left, right)}
         shared = tuple(name for name in self._known if name in used)
         # Types of the action's own parameters have been checked already; only what exists can be
         # deleted.
-        atoms = [
-            a
-            for a in body.positive
-            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
-        ]
+        atoms = [a for a in body.positive if not (a.predicate.startswith("type ") and a.terms[0] in self._known)]
         if not effect.adds and effect.atom not in atoms:
             atoms.append(effect.atom)
         own = tuple(name for name in condition.names if name not in self._known)
@@ -138,9 +124,7 @@ class Effects:
         width = len(shared)
         for row in sorted(found):
             needs = Needs([fill(row) for fill in fills["positive"]])
-            needs.negative += [
-                f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])
-            ]
+            needs.negative += [f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])]
             for fill in fills["refuted"]:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if needs.impossible:
@@ -152,9 +136,7 @@ class Effects:
             positive = frozenset(needs.positive)
             if not effect.adds:
                 positive -= {changed}  # deleting what is absent changes nothing
-            instances.setdefault(row[:width], []).append(
-                (positive, frozenset(needs.negative), static, changed)
-            )
+            instances.setdefault(row[:width], []).append((positive, frozenset(needs.negative), static, changed))
         self._expanded.append((effect.adds, key, instances))
 
     def of(self, row: Row, before: Facts) -> tuple[Facts, Facts, tuple[ConditionalEffect, ...]]:
@@ -166,11 +148,7 @@ class Effects:
             before: The operator's positive precondition: conditions need not repeat it.
         """
         added = [fill(row) for fill in self._adds]
-        deleted = [
-            fact(row)
-            for predicate, fill, fact in self._deletes
-            if fill(row) in self._rows(predicate)
-        ]
+        deleted = [fact(row) for predicate, fill, fact in self._deletes if fill(row) in self._rows(predicate)]
         universal: list[Facts] = []
         conditional: dict[tuple[Facts, Facts, Facts], tuple[list[Fact], list[Fact]]] = {}
         for number, (adds, key, instances) in enumerate(self._expanded):
@@ -203,18 +181,14 @@ class Effects:
             ),
         )
 
-    def _split(
-        self, number: int, key: Row, instances: list[_Instance]
-    ) -> tuple[Facts, list[_Instance]]:
+    def _split(self, number: int, key: Row, instances: list[_Instance]) -> tuple[Facts, list[_Instance]]:
         """Split off the facts changed in any case, one set for all operators with this key, from
         the conditional instances.
         """
         table = self._shared.setdefault(number, {})
         if key not in table:
             always = frozenset(
-                fact
-                for positive, negative, static, fact in instances
-                if not (positive or negative or static)
+                fact for positive, negative, static, fact in instances if not (positive or negative or static)
             )
             table[key] = (always, [i for i in instances if i[0] or i[1] or i[2]])
         return table[key]

@@ -19,9 +19,7 @@ def _before(fact: int, other: int, keys: Reals, ranks: Integers) -> bool:
     return keys[fact] < keys[other] or (keys[fact] == keys[other] and ranks[fact] < ranks[other])
 
 
-def _push(
-    fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers
-) -> int:
+def _push(fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers) -> int:
     """Push a fact into the heap, or move it up after its key fell; return the new size. `places`
     is -1 for facts outside.
     """
