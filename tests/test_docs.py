@@ -89,6 +89,19 @@ def test_modules_that_a_page_names_exist(page: Path) -> None:
             assert words[-1] in source.read_text(encoding="utf-8"), f"{dotted}: {source} has no {words[-1]}"
 
 
+def test_tests_stand_in_the_folders_of_what_they_test() -> None:
+    shared = {"random_streams"}
+    """Helpers of several folders' tests."""
+    folders = {path.parent.relative_to(ROOT / "tests") for path in (ROOT / "tests").rglob("*.py")}
+    strange = {
+        str(folder)
+        for folder in folders
+        if not ((ROOT / "tamp" / folder).is_dir() or (ROOT / folder).is_dir() or str(folder) in shared)
+    }
+    assert strange == set()
+    assert (ROOT / "tests" / "geometric" / "robot").is_dir()
+
+
 def test_readme_and_contributing_lead_to_the_map() -> None:
     for page in ("README.md", "CONTRIBUTING.md"):
         assert "docs/how-it-works.md#the-map" in (ROOT / page).read_text(encoding="utf-8")
