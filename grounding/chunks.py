@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from grounding.dataset import Dataset, write_dataset
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
-from grounding.scenes import OTHERS, Made
+from grounding.scenes import OTHERS, LabelledScene
 from grounding.supports import support_templates
 from tamp.errors import InputError
 from tamp.system import guard
@@ -81,7 +81,7 @@ class Job(Protocol):
         """
         ...
 
-    def chunk(self, number: int, start: int, size: int) -> Sequence[Made]:
+    def chunk(self, number: int, start: int, size: int) -> Sequence[LabelledScene]:
         """Make `size` scenes of one chunk, which is the `number`-th and begins with scene `start`.
 
         They depend on nothing else but the job, and not on the size: it only says after how many to
@@ -202,7 +202,7 @@ def _packed(job: Job, number: int, start: int, size: int) -> bytes:
 
 
 def _arrays(
-    made: Sequence[Made], names: dict[str, int], kinds: tuple[str, ...]
+    made: Sequence[LabelledScene], names: dict[str, int], kinds: tuple[str, ...]
 ) -> dict[str, NDArray[Any]]:
     count = len(made)
     arrays: dict[str, NDArray[Any]] = {

@@ -112,14 +112,14 @@ def _explore(chosen: Explore, show: Show) -> None:
 
 
 def _collect(chosen: Collect) -> None:
-    from grounding.collect import collect, read_demonstrations, unsteady
+    from grounding.collect import collect, read_demonstrations, unstable
 
     out = chosen.out or data_file(chosen.relation, "train")
     check_out(
         out, DATA, [file for path in chosen.files for file in (path, *files_below(path, "*.yaml"))]
     )
     data = collect(chosen.relation, read_demonstrations(chosen.relation, chosen.files))
-    for text in (*unsteady(data), *monotony(data)):
+    for text in (*unstable(data), *monotony(data)):
         print(f"warning: {text}", file=sys.stderr)
     write_dataset(out, data)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.dataset import Dataset
-from grounding.relational.measures import View
-from grounding.situation import Region, region_of
+from grounding.relation_scene import Region, region_of
+from grounding.relational.measures import RegionFrame
 from grounding.variety import contradictions
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
@@ -98,7 +98,7 @@ def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
     return data
 
 
-def unsteady(data: Dataset) -> list[str]:
+def unstable(data: Dataset) -> list[str]:
     """Return warnings of bodies for which the relation holds where no plan will put them, each with
     its first place.
 
@@ -109,7 +109,7 @@ def unsteady(data: Dataset) -> list[str]:
     for row, example in enumerate(data):
         if not example.holds:
             continue
-        view = View(example.situation)
+        view = RegionFrame(example.situation)
         measured = view.measure((view.T_region_world @ example.situation.body.matrix)[None])
         low, nearest = float(measured.low[0, 2]), float(measured.nearest[0])
         wrong: list[str] = []

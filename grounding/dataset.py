@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grounding.body_geometry import BodyGeometry
 from grounding.checks import check_arrays, check_card
-from grounding.form import Form
 from grounding.npz import MOST_BYTES, read_npz
 from grounding.pair import read_pair, write_pair
-from grounding.situation import Placed, Region, Situation, near
+from grounding.relation_scene import Placed, Region, RelationScene, near
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
@@ -44,7 +44,7 @@ class Example:
         scales: Of those bodies, in the same order.
     """
 
-    situation: Situation
+    situation: RelationScene
     holds: bool
     kind: str
     names: tuple[str, ...]
@@ -82,7 +82,7 @@ class Dataset:
         )
         self.sources: tuple[str, ...] = ()
         self._names = tuple(templates)
-        self._forms: dict[str, Form] = {}
+        self._forms: dict[str, BodyGeometry] = {}
 
     @property
     def relation(self) -> str:
@@ -127,7 +127,7 @@ class Dataset:
             {k: v[chosen] for k, v in self.arrays.items()}, self.templates, self.kinds, self.card
         )
 
-    def form(self, row: int, body: int) -> Form:
+    def form(self, row: int, body: int) -> BodyGeometry:
         """Return the geometry of a scene's body: 0 for what the place is of, 1 for the relation's
         body, then the others.
         """
@@ -135,9 +135,9 @@ class Dataset:
             self._names[self.arrays["body"][row, body]], float(self.arrays["scale"][row, body])
         )
 
-    def _form(self, name: str, scale: float) -> Form:
+    def _form(self, name: str, scale: float) -> BodyGeometry:
         if name not in self._forms:
-            self._forms[name] = Form(self.templates[name])
+            self._forms[name] = BodyGeometry(self.templates[name])
         return self._forms[name].scaled(scale)
 
 

@@ -13,7 +13,7 @@ from numpy.random import Generator as Random
 from grounding.mesh_folder import MeshFolder
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import afloat, on_ground, random_rest, random_turn
-from grounding.scenes import Drawn, Made, Scenes, free, resting
+from grounding.scenes import LabelledScene, SampledScene, Scenes, free, resting
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.stability.stable_poses import resting_pose
@@ -55,7 +55,7 @@ TUMBLED = 0.15
 """The share of positive samples that are dropped in any orientation instead of put down."""
 
 
-class Maker:
+class DemonstrationGenerator:
     """Makes scenes of one relation and split; keep it, for its shapes are made once.
 
     Args:
@@ -70,14 +70,14 @@ class Maker:
     ) -> None:
         self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
 
-    def make(self, kind: str, rng: Random) -> Made:
+    def make(self, kind: str, rng: Random) -> LabelledScene:
         """Sample a scene of this kind; tries until one is found."""
         while True:
             made = self._try(kind, rng)
             if made is not None:
                 return made
 
-    def _try(self, kind: str, rng: Random) -> Made | None:
+    def _try(self, kind: str, rng: Random) -> LabelledScene | None:
         scene = self._scenes.draw(rng, crowded=kind != "alone")
         pose = (
             self._positive(scene, rng) if kind in POSITIVE else _NEGATIVES[kind](self, scene, rng)
@@ -96,7 +96,7 @@ class Maker:
 
     # The argument
 
-    def _positive(self, scene: Drawn, rng: Random) -> Array | None:
+    def _positive(self, scene: SampledScene, rng: Random) -> Array | None:
         if rng.random() < TUMBLED:
             pose = random_turn(rng)
             low = float((scene.body.vertices @ pose[2, :3]).min())
@@ -111,49 +111,49 @@ class Maker:
                 return self._drops.drop(pose, 2.5)
         return None
 
-    def _feasible(self, scene: Drawn, rng: Random) -> bool:
+    def _feasible(self, scene: SampledScene, rng: Random) -> bool:
         poses = free(np.concatenate([resting(scene, rng) for _ in range(16)]), scene)[:8]
         verdicts = settled(scene.situation(np.eye(4)), poses, self._drops, self._scenes.items)
         return any(verdict is Verdict.HOLDS for verdict in verdicts)
 
     # Samples that do not hold
 
-    def _floating(self, scene: Drawn, rng: Random) -> Array | None:
+    def _floating(self, scene: SampledScene, rng: Random) -> Array | None:
         return afloat(scene.stand, rng)
 
-    def _grounded(self, scene: Drawn, rng: Random) -> Array | None:
+    def _grounded(self, scene: SampledScene, rng: Random) -> Array | None:
         return on_ground(scene.body, scene.stand, rng)
 
-    def _lifted(self, scene: Drawn, rng: Random) -> Array | None:
+    def _lifted(self, scene: SampledScene, rng: Random) -> Array | None:
         return self._shifted(scene, rng.uniform(0.035, 0.25), rng)
 
-    def _sunken(self, scene: Drawn, rng: Random) -> Array | None:
+    def _sunken(self, scene: SampledScene, rng: Random) -> Array | None:
         return self._shifted(scene, -rng.uniform(0.005, 0.12), rng)
 
-    def _shifted(self, scene: Drawn, by: float, rng: Random) -> Array | None:
+    def _shifted(self, scene: SampledScene, by: float, rng: Random) -> Array | None:
         poses = free(resting(scene, rng), scene)
         if not len(poses):
             return None
         poses[0, 2, 3] += by
         return poses[0]
 
-    def _centred(self, scene: Drawn, rng: Random) -> Array | None:
+    def _centred(self, scene: SampledScene, rng: Random) -> Array | None:
         pose = random_turn(rng)
         low, high = scene.stand.box
         pose[:3, 3] = (low + high) / 2 + rng.uniform(-0.15, 0.15, 3) * (high - low)
         return pose
 
-    def _elsewhere(self, scene: Drawn, rng: Random) -> Array | None:
+    def _elsewhere(self, scene: SampledScene, rng: Random) -> Array | None:
         return self._scenes.on_other(scene.body, scene.others[0], rng)
 
-    def _colliding(self, scene: Drawn, rng: Random) -> Array | None:
+    def _colliding(self, scene: SampledScene, rng: Random) -> Array | None:
         poses = resting(scene, rng)
         if not len(poses) or not scene.others:
             return None
         hit = poses[(separations(scene.body, poses, scene.obstacles) < -0.002).any(axis=1)]
         return hit[0] if len(hit) else None
 
-    def _sticking(self, scene: Drawn, rng: Random) -> Array | None:
+    def _sticking(self, scene: SampledScene, rng: Random) -> Array | None:
         region, body = scene.support.region, scene.body
         tall = [face for face in body.faces if face.extent > region.size[2] + 0.005]
         if tall and rng.random() < 0.5:
@@ -173,13 +173,13 @@ class Maker:
         return scene.T_world_region @ pose
 
 
-_NEGATIVES: Mapping[str, Callable[[Maker, Drawn, Random], Array | None]] = {
-    "afloat": Maker._floating,
-    "on the ground": Maker._grounded,
-    "above": Maker._lifted,
-    "sunken": Maker._sunken,
-    "in the middle": Maker._centred,
-    "on another support": Maker._elsewhere,
-    "colliding": Maker._colliding,
-    "sticking out": Maker._sticking,
+_NEGATIVES: Mapping[str, Callable[[DemonstrationGenerator, SampledScene, Random], Array | None]] = {
+    "afloat": DemonstrationGenerator._floating,
+    "on the ground": DemonstrationGenerator._grounded,
+    "above": DemonstrationGenerator._lifted,
+    "sunken": DemonstrationGenerator._sunken,
+    "in the middle": DemonstrationGenerator._centred,
+    "on another support": DemonstrationGenerator._elsewhere,
+    "colliding": DemonstrationGenerator._colliding,
+    "sticking out": DemonstrationGenerator._sticking,
 }

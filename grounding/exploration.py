@@ -28,7 +28,7 @@ from grounding.model import Model
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import random_turn
 from grounding.registry import load_model
-from grounding.scenes import Drawn, Made, Scenes, free
+from grounding.scenes import LabelledScene, SampledScene, Scenes, free
 from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import GROWTH
@@ -101,7 +101,7 @@ class Exploration:
             ["explored", self.relation, self.seed, self.folder and self.folder.key, digest]
         )
 
-    def chunk(self, number: int, start: int, size: int) -> list[Made]:
+    def chunk(self, number: int, start: int, size: int) -> list[LabelledScene]:
         """Make the first `size` scenes of chunk `number`."""
         explorer = _explorer(self.relation, self.weights, self.folder)
         rng = np.random.default_rng([self.seed, RELATIONS.index(self.relation), number, len(KINDS)])
@@ -146,7 +146,7 @@ class Explorer:
     def __init__(self, scenes: Scenes, drops: Drops, model: Model | None = None) -> None:
         self._scenes, self._drops, self._model = scenes, drops, model
 
-    def make(self, holds: bool, rng: Random) -> Made:
+    def make(self, holds: bool, rng: Random) -> LabelledScene:
         """Make a scene where the relation came to hold, or where it did not; explores until there
         is one.
         """
@@ -168,7 +168,9 @@ class Explorer:
                 kind, pose, _ = kept[int(rng.integers(len(kept)))]
                 return scene.made(pose, kind, holds, True, {"trials": trials})
 
-    def explore(self, scene: Drawn, rng: Random) -> tuple[list[tuple[str, Array, bool]], int]:
+    def explore(
+        self, scene: SampledScene, rng: Random
+    ) -> tuple[list[tuple[str, Array, bool]], int]:
         """Explore a scene: return what happened in it, and how often the body was let go.
 
         Returns:
@@ -191,7 +193,7 @@ class Explorer:
             trials += len(poses)
         return tried, trials
 
-    def _try(self, scene: Drawn, poses: Array) -> list[tuple[str, Array]]:
+    def _try(self, scene: SampledScene, poses: Array) -> list[tuple[str, Array]]:
         """Let the body go at each pose: the failures, and where it came to rest so that the
         relation holds.
 
@@ -232,7 +234,7 @@ class Explorer:
         return failed + found
 
 
-def uniform(scene: Drawn, rng: Random) -> Array:
+def uniform(scene: SampledScene, rng: Random) -> Array:
     """Sample T_world_body uniformly: anywhere in argument 0's box, grown by half its largest half
     extent, turned in any way; (4, 4).
     """
@@ -243,7 +245,7 @@ def uniform(scene: Drawn, rng: Random) -> Array:
     return scene.stand.matrix @ pose
 
 
-def slid(scene: Drawn, pose: Array, rng: Random) -> Array:
+def slid(scene: SampledScene, pose: Array, rng: Random) -> Array:
     """Sample T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned
     by any angle; (4, 4).
     """

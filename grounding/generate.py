@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from grounding.chunks import Progress, make_dataset
 from grounding.dataset import Dataset
-from grounding.demonstrations import KINDS, POSITIVE, Maker
+from grounding.demonstrations import KINDS, POSITIVE, DemonstrationGenerator
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS
-from grounding.scenes import Made
+from grounding.scenes import LabelledScene
 from tamp.simulation.drop import Drops
 
 
@@ -50,7 +50,7 @@ class Job:
         """Return the key of all but the count."""
         return json.dumps([self.relation, self.split, self.seed, self.folder and self.folder.key])
 
-    def chunk(self, number: int, start: int, size: int) -> list[Made]:
+    def chunk(self, number: int, start: int, size: int) -> list[LabelledScene]:
         """Make the first `size` scenes of chunk `number`."""
         maker = _maker(self.relation, self.split, self.folder)
         kinds = kinds_of(self.relation, start + size)[start:]
@@ -92,5 +92,5 @@ def kinds_of(relation: str, count: int) -> list[str]:
 
 
 @lru_cache(maxsize=2)
-def _maker(relation: str, split: str, folder: MeshFolder | None) -> Maker:
-    return Maker(relation, split, Drops(), folder)
+def _maker(relation: str, split: str, folder: MeshFolder | None) -> DemonstrationGenerator:
+    return DemonstrationGenerator(relation, split, Drops(), folder)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
 from tamp.errors import InputError
 from tamp.geometric.loading.meshes import load_mesh
 from tamp.geometric.scene.scene import Part
@@ -102,7 +102,7 @@ def unusable(parts: tuple[Part, ...]) -> str | None:
     """Return why no data are made with a body of these parts; None when it is of a hand's size and
     rests on some face.
     """
-    form = Form(parts)
+    form = BodyGeometry(parts)
     size = float(np.ptp(form.corners, axis=0).max())
     if not SMALLEST < size < LARGEST:
         return (

@@ -6,7 +6,7 @@ from typing import Protocol
 
 from numpy.random import Generator as Random
 
-from grounding.situation import Situation
+from grounding.relation_scene import RelationScene
 from tamp.geometric.scene.pose import Array
 
 
@@ -15,7 +15,7 @@ class Model(Protocol):
     4, 4).
     """
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose at most `count` poses, the best first, shape (n, 4, 4); none when it knows of no
         way.
 
@@ -27,7 +27,7 @@ class Model(Protocol):
         """
         ...
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the probability that the relation holds with argument 1 at each of the poses,
         shape (n,).
 

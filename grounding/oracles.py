@@ -8,9 +8,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
+from grounding.relation_scene import Placed, Region, RelationScene, gap
 from grounding.separation import Obstacles, separations
-from grounding.situation import Placed, Region, Situation, gap
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drop import Drops, Item
 
@@ -46,7 +46,7 @@ class Verdict(StrEnum):
     TIPS = "tips over"
 
 
-def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
+def paper_oracle(situation: RelationScene, poses: Array) -> NDArray[np.bool_]:
     """Judge poses T_world_body, shape (n, 4, 4), by the paper's manual classification accuracy
     (section IV-B).
 
@@ -60,7 +60,7 @@ def paper_oracle(situation: Situation, poses: Array) -> NDArray[np.bool_]:
     )
 
 
-def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
+def paper_verdicts(situation: RelationScene, poses: Array) -> list[Verdict]:
     """Judge as `paper_oracle` does, with the type of each failure (the paper's figure 6): the first
     that is true of too low, too high, outside (with or without overlap, seen from above), collides.
     """
@@ -100,7 +100,7 @@ def paper_verdicts(situation: Situation, poses: Array) -> list[Verdict]:
     ]
 
 
-def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
+def settled(situation: RelationScene, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
     """Judge by a physics simulation whether the relation holds with the body at each of the poses,
     shape (n, 4, 4), and goes on holding.
     """
@@ -115,7 +115,7 @@ def settled(situation: Situation, poses: Array, drops: Drops, items: ItemOf) -> 
     return [_judge(situation, pose, drops) for pose in poses]
 
 
-def place_verdict(region: Region, form: Form, T_region_body: Array) -> Verdict:
+def place_verdict(region: Region, form: BodyGeometry, T_region_body: Array) -> Verdict:
     """Judge a body's place by geometry alone, contacts left out: HOLDS, or what is wrong with the
     place.
     """
@@ -141,9 +141,9 @@ class ItemOf:
     """The engine's item of a form, made once for each form's parts and scale."""
 
     def __init__(self) -> None:
-        self._items: dict[tuple[int, float], tuple[Form, Item]] = {}
+        self._items: dict[tuple[int, float], tuple[BodyGeometry, Item]] = {}
 
-    def __call__(self, form: Form) -> Item:
+    def __call__(self, form: BodyGeometry) -> Item:
         """Return the same item for the same unit form and scale."""
         key = id(form.unit), form.scale
         if key not in self._items:
@@ -151,7 +151,7 @@ class ItemOf:
         return self._items[key][1]
 
 
-def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
+def _judge(situation: RelationScene, pose: Array, drops: Drops) -> Verdict:
     if not np.isfinite(pose).all() or np.abs(pose).max() > 100.0:
         return Verdict.OUTSIDE
     region, form = situation.region, situation.body.form
@@ -171,7 +171,7 @@ def _judge(situation: Situation, pose: Array, drops: Drops) -> Verdict:
     return Verdict.HOLDS if holds else Verdict.TIPS
 
 
-def moved(form: Form, before: Array, after: Array) -> float:
+def moved(form: BodyGeometry, before: Array, after: Array) -> float:
     """Return how far the centre of mass went, metres."""
     centre = form.centre_of_mass
     return float(

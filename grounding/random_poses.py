@@ -8,15 +8,15 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.random import Generator as Random
 
-from grounding.form import Form
-from grounding.situation import Placed
+from grounding.body_geometry import BodyGeometry
+from grounding.relation_scene import Placed
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP
 from tamp.geometric.stability.stable_poses import resting_pose
 
 
 def random_rest(
-    form: Form, size: Array | tuple[float, ...], overhang: bool, rng: Random
+    form: BodyGeometry, size: Array | tuple[float, ...], overhang: bool, rng: Random
 ) -> Array | None:
     """Sample T_region_body at rest: whole above the rectangle, or only its centre of mass, 2 cm
     inside, with `overhang`.
@@ -44,7 +44,7 @@ def random_rest(
     return resting_pose(face, yaw, float(x), float(y)).matrix.copy()
 
 
-def on_ground(form: Form, stand: Placed, rng: Random) -> Array | None:
+def on_ground(form: BodyGeometry, stand: Placed, rng: Random) -> Array | None:
     """Sample a pose at rest on the ground around a support."""
     low, high = stand.box
     size = high - low

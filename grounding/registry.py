@@ -65,17 +65,17 @@ MODELS: Mapping[str, Callable[[Weights], Model]] = {
 }
 """Model name to what makes it of weights."""
 
-BORROWED: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
+SHARED_WEIGHTS: Mapping[str, str] = {"uniform+mlp": "mlp-bb", "uniform+gnn": "gnn-bb"}
 """Model name to the one whose weights it uses, of which it takes the classifier."""
 
-VARIANTS: Mapping[str, str] = {
+TRAINING_VARIANTS: Mapping[str, str] = {
     f"{model}-{scheme}": model
     for model in ("mlp-bb", "gnn-bb")
     for scheme in ("discriminator", "classifier")
 }
 """Name of what ships of another training scheme than "both" to the model that it is."""
 
-UNTRAINED: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
+PARAMETER_FREE: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
 """Model name to what makes it of nothing."""
 
 RELATIONS = ("on", "inside")
@@ -94,8 +94,8 @@ def load_model(path: Path, model: str | None = None) -> Model:
     """
     weights = read_weights(path)
     trained = str(weights.card.get("model"))
-    if trained not in MODELS or trained in BORROWED:
-        choices = [name for name in MODELS if name not in BORROWED]
+    if trained not in MODELS or trained in SHARED_WEIGHTS:
+        choices = [name for name in MODELS if name not in SHARED_WEIGHTS]
         raise InputError(
             f"unknown model '{trained}'",
             file=path.with_suffix(".json"),
@@ -104,9 +104,9 @@ def load_model(path: Path, model: str | None = None) -> Model:
         )
 
     name = model or trained
-    if name not in MODELS and name not in UNTRAINED:
+    if name not in MODELS and name not in PARAMETER_FREE:
         raise InputError(f"unknown model '{name}'", found=name, choices=MODELS)
-    if BORROWED.get(name, name) != trained:
+    if SHARED_WEIGHTS.get(name, name) != trained:
         raise InputError(
             f"these are weights of '{trained}'; '{name}' is not made of them", file=path
         )
@@ -128,17 +128,19 @@ def shipped_model(relation: str, name: str) -> Model:
     """
     if relation not in RELATIONS:
         raise InputError(f"unknown relation '{relation}'", found=relation, choices=RELATIONS)
-    if name in UNTRAINED:
-        return UNTRAINED[name]()
-    if name not in MODELS and name not in VARIANTS:
+    if name in PARAMETER_FREE:
+        return PARAMETER_FREE[name]()
+    if name not in MODELS and name not in TRAINING_VARIANTS:
         raise InputError(
-            f"unknown model '{name}'", found=name, choices=[*MODELS, *VARIANTS, *UNTRAINED]
+            f"unknown model '{name}'",
+            found=name,
+            choices=[*MODELS, *TRAINING_VARIANTS, *PARAMETER_FREE],
         )
     path = shipped_weights(relation, name)
-    model = VARIANTS.get(name, name)
+    model = TRAINING_VARIANTS.get(name, name)
     if not path.is_file():
-        scheme = f" --scheme {name.rpartition('-')[2]}" if name in VARIANTS else ""
-        trained = BORROWED.get(model, model)
+        scheme = f" --scheme {name.rpartition('-')[2]}" if name in TRAINING_VARIANTS else ""
+        trained = SHARED_WEIGHTS.get(model, model)
         remedy = f"Train it: tamp-learn train {relation} --model {trained}{scheme} --out {path}"
         raise InputError(f"no weights of '{name}' for '{relation}' are shipped", remedy=remedy)
     return load_model(path, model)
@@ -171,22 +173,25 @@ def shipped_grounding(relation: str, name: str) -> Grounding:
 
 
 def _grounding(model: Model) -> Grounding:
-    from grounding.paper.moving import Moving
+    from grounding.paper.planner_adapter import SnappingSampler
     from grounding.paper.runtime import PaperModel
 
-    return Moving(model) if isinstance(model, PaperModel) else Grounding(model)
+    return SnappingSampler(model) if isinstance(model, PaperModel) else Grounding(model)
 
 
 def shipped_weights(relation: str, name: str) -> Path:
     """Return the path of the shipped weights of a model, if they are there."""
-    return SHIPPED / f"{relation}_{BORROWED.get(name, name)}.safetensors"
+    return SHIPPED / f"{relation}_{SHARED_WEIGHTS.get(name, name)}.safetensors"
 
 
 GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
     **{
         relation: {
             **SAMPLERS[relation],
-            **{name: partial(shipped_grounding, relation, name) for name in (*MODELS, *VARIANTS)},
+            **{
+                name: partial(shipped_grounding, relation, name)
+                for name in (*MODELS, *TRAINING_VARIANTS)
+            },
         }
         for relation in RELATIONS
     },

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from grounding.model import Model
-from grounding.situation import situation_of
+from grounding.relation_scene import relation_scene_of
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 
@@ -31,12 +31,12 @@ class Grounding:
         """Propose at most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the
         best first.
         """
-        poses = self.model.propose(situation_of(scene, arguments), count, rng)
+        poses = self.model.propose(relation_scene_of(scene, arguments), count, rng)
         return [Pose.from_matrix(pose) for pose in poses]
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
         """Return the probability that the relation holds where the body is."""
-        situation = situation_of(scene, arguments)
+        situation = relation_scene_of(scene, arguments)
         return float(
             np.clip(self.model.classify(situation, situation.body.matrix[None])[0], 0.0, 1.0)
         )

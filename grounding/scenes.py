@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.random import Generator as Random
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
 from grounding.oracles import REACH, ItemOf
@@ -24,8 +24,8 @@ from grounding.random_poses import (
     solids,
     upright,
 )
+from grounding.relation_scene import Placed, RelationScene, gap, near
 from grounding.separation import Obstacles, separations
-from grounding.situation import Placed, Situation, gap, near
 from grounding.supports import Support, scaled_region, support_templates
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drop import Item
@@ -45,7 +45,7 @@ GAP = 0.001
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class LabelledScene:
     """One labelled scene: what `Dataset` keeps of it. Index 0 is argument 0, index 1 the body.
 
     Attributes:
@@ -63,7 +63,7 @@ class Made:
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class SampledScene:
     """A scene without a pose for its body.
 
     Attributes:
@@ -78,7 +78,7 @@ class Drawn:
     scales: tuple[float, float]
     stand: Placed
     support: Support
-    body: Form
+    body: BodyGeometry
     others: tuple[tuple[str, float, Placed], ...]
     obstacles: Obstacles
     T_world_region: Array
@@ -88,7 +88,7 @@ class Drawn:
         """Return the other bodies."""
         return [item for _, _, item in self.others]
 
-    def situation(self, pose: Array) -> Situation:
+    def situation(self, pose: Array) -> RelationScene:
         """Return the situation with the body at T_world_body, shape (4, 4)."""
         return near(self.stand, self.support.region, Placed(self.body, pose), self.placed)
 
@@ -99,12 +99,14 @@ class Drawn:
         holds: bool,
         feasible: bool,
         columns: Mapping[str, int] | None = None,
-    ) -> Made:
+    ) -> LabelledScene:
         """Label this scene, with the body at T_world_body, shape (4, 4)."""
         names = [*self.names, *(name for name, _, _ in self.others)]
         scales = [*self.scales, *(scale for _, scale, _ in self.others)]
         poses = [self.stand.matrix, pose, *(item.matrix for item in self.placed)]
-        return Made(names, scales, poses, self.support, kind, holds, feasible, columns or {})
+        return LabelledScene(
+            names, scales, poses, self.support, kind, holds, feasible, columns or {}
+        )
 
 
 class Scenes:
@@ -119,16 +121,17 @@ class Scenes:
     def __init__(self, relation: str, split: str, folder: MeshFolder | None = None) -> None:
         self.split, self.items = split, ItemOf()
         self._objects = {
-            name: Form(parts) for name, parts in object_templates(split, folder).items()
+            name: BodyGeometry(parts) for name, parts in object_templates(split, folder).items()
         }
         self._supports = dict(support_templates(relation, split))
         self._tables = dict(support_templates("on", split))
         self._forms = {
-            name: Form(support.parts) for name, support in (self._supports | self._tables).items()
+            name: BodyGeometry(support.parts)
+            for name, support in (self._supports | self._tables).items()
         }
-        self._scaled: dict[tuple[str, float], Form] = {}
+        self._scaled: dict[tuple[str, float], BodyGeometry] = {}
 
-    def draw(self, rng: Random, *, crowded: bool = True) -> Drawn:
+    def draw(self, rng: Random, *, crowded: bool = True) -> SampledScene:
         """Sample a scene; `crowded` has bodies on or in argument 0."""
         name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         support = self._supports[name]
@@ -144,7 +147,7 @@ class Scenes:
             if found is not None:
                 others.append(found)
 
-        return Drawn(
+        return SampledScene(
             (name, body_name),
             (scale, body_scale),
             stand,
@@ -155,7 +158,7 @@ class Scenes:
             stand.matrix @ support.region.matrix,
         )
 
-    def around(self, scene: Drawn, pose: Array) -> list[tuple[Item, Array]]:
+    def around(self, scene: SampledScene, pose: Array) -> list[tuple[Item, Array]]:
         """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
         their matrices.
         """
@@ -163,7 +166,9 @@ class Scenes:
         bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
         return [(self.items(item.form), item.matrix) for item in bodies]
 
-    def on_other(self, form: Form, other: tuple[str, float, Placed], rng: Random) -> Array | None:
+    def on_other(
+        self, form: BodyGeometry, other: tuple[str, float, Placed], rng: Random
+    ) -> Array | None:
         """Sample a pose at rest on the other support."""
         name, scale, item = other
         region = scaled_region(self._tables[name].region, scale)
@@ -207,13 +212,13 @@ class Scenes:
                 return name, scale, Placed(form, pose)
         return None
 
-    def _form(self, name: str, scale: float) -> Form:
+    def _form(self, name: str, scale: float) -> BodyGeometry:
         if (name, scale) not in self._scaled:
             self._scaled[name, scale] = (self._objects.get(name) or self._forms[name]).scaled(scale)
         return self._scaled[name, scale]
 
 
-def free(poses: Array, scene: Drawn) -> Array:
+def free(poses: Array, scene: SampledScene) -> Array:
     """Select those of the poses T_world_body, shape (n, 4, 4), at which the body is clear of the
     other bodies.
     """
@@ -222,7 +227,7 @@ def free(poses: Array, scene: Drawn) -> Array:
     return poses[(separations(scene.body, poses, scene.obstacles) > GAP).all(axis=1)]
 
 
-def resting(scene: Drawn, rng: Random) -> Array:
+def resting(scene: SampledScene, rng: Random) -> Array:
     """Sample world poses at rest in the region, up to TRIES: any face, any yaw, the body or its
     centre inside.
     """

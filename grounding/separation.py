@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from grounding.form import Form
-from grounding.situation import Placed
+from grounding.body_geometry import BodyGeometry
+from grounding.relation_scene import Placed
 from tamp.geometric.scene.pose import Array
 from tamp.system.compilation import njit
 
@@ -52,7 +52,7 @@ class Obstacles:
         self.spans = origin + np.array([item.form.outer_box for item in placed]).transpose(0, 2, 1)
 
 
-def separations(form: Form, poses: Array, obstacles: Obstacles) -> Array:
+def separations(form: BodyGeometry, poses: Array, obstacles: Obstacles) -> Array:
     """Compute signed distances along the best of some axes, metres: a lower bound of the distance,
     negative when hulls overlap.
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from grounding.objects import SPLITS
-from grounding.situation import Region, region_of
+from grounding.relation_scene import Region, region_of
 from tamp.geometric.loading.furniture import FURNITURE, Options
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Surface

@@ -9,8 +9,8 @@ import math
 import numpy as np
 from numpy.random import Generator as Random
 
+from grounding.relation_scene import RelationScene
 from grounding.separation import Obstacles, separations
-from grounding.situation import Situation
 from tamp.geometric.samplers.placements import KEEP_FACE, position_inside
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
@@ -25,7 +25,7 @@ class SurfaceModel:
     judges by geometry.
     """
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, in no order: a stable face down, flush, whole inside the region
         where it fits; bodies around are not looked at. None when no stable
         face fits under the ceiling.
@@ -44,7 +44,7 @@ class SurfaceModel:
             poses.append(resting_pose(face, yaw, x, y).matrix)
         return situation.T_world_region @ np.stack(poses)
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return 1 or 0, shape (n,): near the floor of the region with a stable face down, above it
         (`on`: the centre of mass; `inside`: the whole body), in none of the bodies around.
         """
@@ -66,7 +66,7 @@ class SurfaceModel:
         return (above.all(axis=1) & upright & free & fits).astype(np.float64)
 
 
-def _faces(situation: Situation) -> list[Face]:
+def _faces(situation: RelationScene) -> list[Face]:
     """Return the stable faces, the one that is down where the body is first, then the steadiest."""
     down = -situation.body.matrix[2, :3]
     return sorted(

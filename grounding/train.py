@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from grounding.certainty import MANY, REASON, Labels, chance, no_better_than_chance, too_few
 from grounding.dataset import Dataset, Example
-from grounding.registry import BORROWED, MODELS, UNTRAINED
-from grounding.relational.chart import Chart
-from grounding.relational.measures import Measures, View
+from grounding.registry import MODELS, PARAMETER_FREE, SHARED_WEIGHTS
+from grounding.relational.coordinates import RelationalCoordinates
+from grounding.relational.measures import Measures, RegionFrame
 from grounding.relational.model import relational_weights
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
@@ -101,13 +101,13 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
     Raises:
         InputError: An unknown model or one that is not trained, or an option that it has not.
     """
-    if model in BORROWED:
-        remedy = f"Train that: tamp-learn train {relation} --model {BORROWED[model]}"
+    if model in SHARED_WEIGHTS:
+        remedy = f"Train that: tamp-learn train {relation} --model {SHARED_WEIGHTS[model]}"
         raise InputError(
-            f"'{model}' is not trained: it judges by the classifier of '{BORROWED[model]}'",
+            f"'{model}' is not trained: it judges by the classifier of '{SHARED_WEIGHTS[model]}'",
             remedy=remedy,
         )
-    if model in UNTRAINED:
+    if model in PARAMETER_FREE:
         raise InputError(f"'{model}' needs no training")
     if model not in TRAINERS:
         raise InputError(f"unknown model '{model}'", found=model, choices=TRAINERS)
@@ -138,7 +138,7 @@ def train_relational(
     positive = [one for one, good in zip(measured, holds & usable, strict=True) if good]
     if not positive:
         raise InputError(f"none of the {count} scenes is a positive one", remedy="More --samples")
-    chart = Chart.fit(positive)
+    chart = RelationalCoordinates.fit(positive)
     if flow:
         from grounding.relational import flow_training
 
@@ -216,13 +216,13 @@ def _certainty(
 
 def measure(example: Example) -> Measures:
     """Measure an example's one pose in its region's frame."""
-    view = View(example.situation)
+    view = RegionFrame(example.situation)
     return view.measure((view.T_region_world @ example.situation.body.matrix)[None])
 
 
 def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> Weights:
     """Train one of the paper's networks, on as many scenes in the order of
-    `grounding.paper.table.order`.
+    `grounding.paper.feature_table.order`.
     """
     from grounding.paper.training import train as train_networks
 

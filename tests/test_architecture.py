@@ -132,7 +132,16 @@ def test_torch_stays_where_training_is() -> None:
         *(f"grounding/relational/{name}.py" for name in ("training", "flow_training")),
         *(
             f"grounding/paper/{name}.py"
-            for name in ("codes", "critic", "encoders", "networks", "trainer", "tree_training")
+            for name in (
+                "cloud_embeddings",
+                "critic",
+                "encoders",
+                "networks",
+                "random_streams",
+                "trainer",
+                "trainer_state",
+                "tree_training",
+            )
         ),
     }
 

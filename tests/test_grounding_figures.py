@@ -15,7 +15,7 @@ from benchmarks.groundings.case import FAILING, FIGURES, Case, Plan, cases
 from benchmarks.groundings.journal import Journal
 from benchmarks.groundings.summary import failures, share
 from grounding.generate import Job, generate
-from grounding.registry import BORROWED, MODELS, UNTRAINED, VARIANTS
+from grounding.registry import MODELS, PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
 from tamp.errors import InputError
 
 pytestmark = pytest.mark.timeout(300)
@@ -103,7 +103,7 @@ def test_a_line_that_was_cut_off_is_measured_again(tmp_path: Path) -> None:
 
 
 def test_the_cases_of_the_figures() -> None:
-    assert {*FAILING} == {*MODELS, *VARIANTS, *UNTRAINED}
+    assert {*FAILING} == {*MODELS, *TRAINING_VARIANTS, *PARAMETER_FREE}
     plan = Plan(("on", "inside"), FAILING, (10, 100), seeds=3, scenes=500, cloud_scenes=200)
     for figure in FIGURES:
         found = cases(figure, plan)
@@ -111,9 +111,9 @@ def test_the_cases_of_the_figures() -> None:
         assert {case.seed for case in found} == ({0} if figure == "fig7" else {0, 1, 2})
         times = {"fig4": 2, "fig7": 0.1}.get(figure, 1)
         assert {case.scenes for case in found} == {500 * times, 200 * times}
-    assert {case for case in cases("fig6", plan) if case.model not in VARIANTS} < {*cases("fig5", plan)}
+    assert {case for case in cases("fig6", plan) if case.model not in TRAINING_VARIANTS} < {*cases("fig5", plan)}
     borrowed = Case("success", "on", "uniform+gnn", 100, 2, 5)
-    assert borrowed.weights == replace(borrowed, model=BORROWED["uniform+gnn"]).weights == "on-gnn-bb-100-2"
+    assert borrowed.weights == replace(borrowed, model=SHARED_WEIGHTS["uniform+gnn"]).weights == "on-gnn-bb-100-2"
 
 
 def test_means_over_seeds_and_the_interval_of_one_seeds_scenes() -> None:

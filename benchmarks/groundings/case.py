@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from grounding.registry import BORROWED, UNTRAINED, VARIANTS
+from grounding.registry import PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
 
 SIZES = (10, 50, 100, 500, 1_000, 5_000, 20_000)
 """Training scenes; the last one is the whole set."""
@@ -20,7 +20,7 @@ GENERATORS = (
 )  # fmt: skip
 """Of figures 5 and 7: the paper's, the hand-made one, ours."""
 
-FAILING = (*GENERATORS[:9], *VARIANTS, *GENERATORS[9:])
+FAILING = (*GENERATORS[:9], *TRAINING_VARIANTS, *GENERATORS[9:])
 """Of figure 6: also the networks taught by the discriminator or the classifier alone."""
 
 FIGURES = ("fig4", "fig5", "fig6", "fig7")
@@ -54,7 +54,7 @@ class Case:
     @property
     def weights(self) -> str:
         """The name of its weights, of those of the model that it borrows them from."""
-        return f"{self.relation}-{BORROWED.get(self.model, self.model)}-{self.samples}-{self.seed}"
+        return f"{self.relation}-{SHARED_WEIGHTS.get(self.model, self.model)}-{self.samples}-{self.seed}"
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,9 @@ def cases(figure: str, plan: Plan) -> list[Case]:
     """
     measure, names = _MEASURED[figure]
     return [
-        Case(measure, relation, model, *((0, 0) if model in UNTRAINED else training), _scenes(measure, model, plan))
+        Case(
+            measure, relation, model, *((0, 0) if model in PARAMETER_FREE else training), _scenes(measure, model, plan)
+        )
         for training in _trainings(figure, plan)
         for relation in plan.relations
         for model in names

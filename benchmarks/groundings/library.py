@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.groundings.case import Case
 from grounding.dataset import Dataset, read_dataset
 from grounding.model import Model
-from grounding.registry import BORROWED, UNTRAINED, VARIANTS, load_model
+from grounding.registry import PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS, load_model
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
 
@@ -57,25 +57,25 @@ class Library:
         Raises:
             InputError: There are no data to train it on.
         """
-        if case.model in UNTRAINED:
-            return UNTRAINED[case.model]()
+        if case.model in PARAMETER_FREE:
+            return PARAMETER_FREE[case.model]()
         path = self.weights / f"{case.weights}.safetensors"
         if not path.is_file():
             if not self.train:
                 return None
             self._train(case, path)
-        return load_model(path, VARIANTS.get(case.model, case.model))
+        return load_model(path, TRAINING_VARIANTS.get(case.model, case.model))
 
     def _train(self, case: Case, path: Path) -> None:
         from grounding.train import NETWORKS, TrainArgs, train
 
-        borrowed = BORROWED.get(case.model, case.model)
-        model = VARIANTS.get(borrowed, borrowed)
+        borrowed = SHARED_WEIGHTS.get(case.model, case.model)
+        model = TRAINING_VARIANTS.get(borrowed, borrowed)
         network = model in NETWORKS
         args = TrainArgs(
             samples=case.samples,
             seed=case.seed,
-            scheme=borrowed.removeprefix(f"{model}-") if borrowed in VARIANTS else None,
+            scheme=borrowed.removeprefix(f"{model}-") if borrowed in TRAINING_VARIANTS else None,
             iterations=self.iterations if network else None,
             encoder=self._encoder(case.relation) if model.endswith("-pc") else None,
             state=path.with_suffix(".state") if network else None,

@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks.groundings.case import GENERATORS
 from benchmarks.groundings.measure import BATCHES
 from benchmarks.groundings.summary import JUDGES, Share, failures, feasible, grouped, share
-from grounding.registry import VARIANTS
+from grounding.registry import TRAINING_VARIANTS
 from tamp.benchmark.picture import COLOURS, STYLES
 from tamp.errors import InputError
 from tamp.system.distribution import install_command
@@ -183,7 +183,7 @@ def _legend(sheet: Any, panels: Sequence[Any], columns: int) -> None:
 
 def _style(model: str) -> dict[str, str]:
     """The same model looks the same everywhere."""
-    index = [*reversed(GENERATORS), *VARIANTS].index(model)
+    index = [*reversed(GENERATORS), *TRAINING_VARIANTS].index(model)
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": STYLES[index // len(COLOURS)]}
 
 

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.hulls import body_hull
@@ -15,7 +15,7 @@ POINTS = 2048
 """Points of a cloud (paper, section III-B)."""
 
 
-def cloud(form: Form) -> Array:
+def cloud(form: BodyGeometry) -> Array:
     """Sample a cloud of POINTS points on the surfaces of the form's parts, uniform by area, shape
     (POINTS, 3); metres, its own frame.
 
@@ -25,7 +25,7 @@ def cloud(form: Form) -> Array:
 
 
 @lru_cache(maxsize=1024)
-def _unit_cloud(form: Form) -> Array:
+def _unit_cloud(form: BodyGeometry) -> Array:
     rng = np.random.default_rng(0)
     meshes = [body_hull(Body("cloud", (part,), Pose(), movable=True)) for part in form.parts]
     corners = np.concatenate(

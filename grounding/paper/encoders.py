@@ -12,8 +12,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
-from grounding.form import Form
 from grounding.paper.clouds import POINTS, cloud
 from grounding.paper.features import CODE
 from grounding.torch_layers import dense_layers, run_layers
@@ -199,7 +199,9 @@ class PosedClouds:
     @classmethod
     def of(cls, data: Dataset, device: str, points: int = POINTS) -> PosedClouds:
         """Collect the clouds of all bodies of all scenes."""
-        unit = np.stack([centred(Form(parts))[0][:points] for parts in data.templates.values()])
+        unit = np.stack(
+            [centred(BodyGeometry(parts))[0][:points] for parts in data.templates.values()]
+        )
         there = data.arrays["body"] >= 0
         turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
         return cls(
@@ -223,7 +225,7 @@ class PosedClouds:
         return self.unit[self.template[rows]] @ self.turn[rows].transpose(1, 2)
 
 
-def centred(form: Form) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def centred(form: BodyGeometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre a form's cloud about its centroid; return both."""
     points = cloud(form)
     centroid = points.mean(axis=0)

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from grounding.paper.clouds import cloud
 from grounding.paper.kernels import describe_boxes, move
-from grounding.paper.turns import quaternions, rotations
-from grounding.situation import Placed, Situation
+from grounding.paper.rotations import quaternions, rotations
+from grounding.relation_scene import Placed, RelationScene
 from tamp.geometric.scene.pose import Array
 
 BB = 19
@@ -61,13 +61,13 @@ class Features(Protocol):
 
     size: int
 
-    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
         """Compute the features of a situation as it is; without its surroundings for a network that
         does not see them.
         """
         ...
 
-    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
         """Compute the features that argument 1 would have at T_world_body, shape (n, 4, 4); returns
         (n, f).
         """
@@ -81,7 +81,7 @@ class BoxFeatures:
 
     size = BB
 
-    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
         """See Features."""
         support, body = situation.support, situation.body
         others = situation.others if surroundings else ()
@@ -96,7 +96,7 @@ class BoxFeatures:
             features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2
         )
 
-    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
         """See Features."""
         corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
         return box_features(
@@ -117,7 +117,7 @@ class CloudFeatures:
         self._encode = encoder
         self._known: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
-    def observe(self, situation: Situation, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
         """See Features."""
         placed = (situation.support, situation.body, *(situation.others if surroundings else ()))
         features = np.stack([self._features(item) for item in placed])
@@ -127,7 +127,7 @@ class CloudFeatures:
         centre = cloud(situation.body.form).mean(axis=0)
         return Observation(features[:2], features[2:], origin, centre, (high - low) / 2)
 
-    def at(self, seen: Observation, situation: Situation, poses: Array) -> Array:
+    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
         """See Features. Each pose's cloud is encoded, unless argument 1 is turned as it was."""
         features = np.empty((len(poses), PC))
         features[:, :3] = _moved(poses, seen.centre) - seen.origin

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from grounding.paper.features import BB, CODE
-from grounding.paper.turns import QUADRATIC
+from grounding.paper.rotations import QUADRATIC
 
 NOISE = 4
 """Gaussian numbers that the generator is given."""

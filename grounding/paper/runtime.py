@@ -20,7 +20,7 @@ from grounding.paper.features import (
     poses_of,
 )
 from grounding.paper.kernels import normalize
-from grounding.situation import Situation
+from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
@@ -55,7 +55,7 @@ class PaperModel:
         _check_generator(self.generator, self._features.size)
         self._sees = bool(self.classifier.scene or self.generator.scene)
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, in no order: the generator moves argument 1 from where it is, each
         time by other noise.
         """
@@ -64,7 +64,7 @@ class PaperModel:
         positions, turns = generated(self.generator, seen, noise)
         return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the probability that the relation holds with argument 1 at each of the poses,
         shape (n,).
         """
@@ -211,7 +211,7 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
 
 
 def classified(
-    network: Network, features: Features, seen: Observation, situation: Situation, poses: Array
+    network: Network, features: Features, seen: Observation, situation: RelationScene, poses: Array
 ) -> Array:
     """Classify poses: probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4,
     4).

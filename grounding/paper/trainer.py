@@ -22,9 +22,9 @@ from torch.nn.functional import binary_cross_entropy_with_logits, softplus
 
 from grounding.paper import networks
 from grounding.paper.critic import critic_gradient
+from grounding.paper.feature_table import FeatureTable
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
 from grounding.paper.random_streams import random_stream, stacked_draws
-from grounding.paper.table import Table
 from grounding.paper.trainer_options import Args
 from grounding.paper.trainer_state import load_state, save_state
 
@@ -54,7 +54,7 @@ class Trainer:
         args: How to train.
     """
 
-    table: Table
+    table: FeatureTable
     scene: bool
     scheme: str
     sizes: Sequence[int]

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from grounding.dataset import Dataset
-from grounding.paper.codes import coded_table
+from grounding.paper.cloud_embeddings import embedding_table
+from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import NumpyEncoder
-from grounding.paper.table import Table, table_of
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import Args
 from grounding.weights import Weights
@@ -28,7 +28,7 @@ def train(
     seeds: Sequence[int],
     iterations: int = 30_000,
     encoder: Weights | None = None,
-    table: Table | None = None,
+    table: FeatureTable | None = None,
     state: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Weights]:
@@ -91,11 +91,11 @@ def features_of(
     encoder: Weights | None,
     progress: Callable[[str], None],
     count: int | None = None,
-) -> Table:
+) -> FeatureTable:
     """Compute the features that a model is trained on, of the first `count` scenes or of all."""
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
-        return coded_table(
+        return embedding_table(
             data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around
         )
     return table_of(data, BoxFeatures(), progress, count)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from grounding.certainty import MANY, REASON, Labels, no_better_than_chance, too_few
 from grounding.dataset import Dataset
-from grounding.paper.table import Table
+from grounding.paper.feature_table import FeatureTable
 from grounding.paper.training import features_of
 from grounding.paper.trees import LEAF
 from grounding.weights import Weights
@@ -81,7 +81,7 @@ def train_tree(
     )
 
 
-def _chance(table: Table, samples: int, seed: int) -> str | None:
+def _chance(table: FeatureTable, samples: int, seed: int) -> str | None:
     """Return why trees of halves of the examples know no more than chance of the other halves."""
     from sklearn.tree import DecisionTreeClassifier
 
@@ -94,7 +94,7 @@ def _chance(table: Table, samples: int, seed: int) -> str | None:
     return too_few(holds) or no_better_than_chance(holds, fit)
 
 
-def grown(table: Table, samples: int, seed: int) -> dict[str, np.ndarray]:
+def grown(table: FeatureTable, samples: int, seed: int) -> dict[str, np.ndarray]:
     """Grow the tree of the table's first examples, as `trees.TreeModel` wants its arrays."""
     from sklearn.tree import DecisionTreeClassifier
 

@@ -19,9 +19,9 @@ from grounding.paper.features import (
     Observation,
     poses_of,
 )
+from grounding.paper.rotations import rotations
 from grounding.paper.runtime import Arrays, NumpyEncoder, unit
-from grounding.paper.turns import rotations
-from grounding.situation import Situation
+from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
@@ -52,7 +52,7 @@ class TreeModel:
         self._features = _features(weights.arrays)
         self.tree = Tree(weights.arrays, self._features.size)
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, each from a random positive leaf; none when the tree has none."""
         if not len(self.tree.leaves):
             return np.zeros((0, 4, 4))
@@ -64,13 +64,13 @@ class TreeModel:
         low, high = position_limits(low, high, turns, seen)
         return poses_of(seen, rng.uniform(low, high), turns)
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the share of positive examples in each pose's leaf, shape (n,)."""
         seen = self._observe(situation)
         argument = self._features.at(seen, situation, poses)
         return self.tree.positive[self.tree.leaf(_rows(seen, argument))]
 
-    def _observe(self, situation: Situation) -> Observation:
+    def _observe(self, situation: RelationScene) -> Observation:
         return self._features.observe(replace(situation, others=()))
 
 

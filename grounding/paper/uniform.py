@@ -9,7 +9,7 @@ from numpy.random import Generator as Random
 
 from grounding.paper.features import BB, BoxFeatures, Observation, completed, poses_of
 from grounding.paper.runtime import Network, classified, features_in, judged, unit
-from grounding.situation import Situation
+from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import GROWTH
@@ -38,7 +38,7 @@ class UniformModel:
         self._features = BoxFeatures()
         self.classifier = None if weights is None else _box_classifier(weights)
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, in no order: the first accepted, or the last of 500 tries."""
         seen = self._features.observe(situation)
         if self.classifier is None:
@@ -48,7 +48,7 @@ class UniformModel:
             positions[row], turns[row] = _accepted(self.classifier, seen, rng)
         return poses_of(seen, positions, turns)
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the classifier's probabilities, shape (n,); not a number where there is none."""
         if self.classifier is None:
             return np.full(len(poses), np.nan)

@@ -12,8 +12,8 @@ from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
 from grounding.layers import dense, layers_of
-from grounding.relational.chart import FLAT, LEVEL, Chart
-from grounding.relational.measures import Measures, View
+from grounding.relational.coordinates import FLAT, LEVEL, RelationalCoordinates
+from grounding.relational.measures import Measures, RegionFrame
 from tamp.geometric.scene.pose import Array
 
 STEPS = 4
@@ -39,7 +39,7 @@ class Flow:
         ValueError: A network has other numbers of inputs or outputs.
     """
 
-    def __init__(self, chart: Chart, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def __init__(self, chart: RelationalCoordinates, arrays: Mapping[str, NDArray[Any]]) -> None:
         self.chart, self._scale = chart, arrays["scale"]
         if self._scale.shape != (COORDINATES,) or not (self._scale > 0.0).all():
             raise ValueError(
@@ -52,7 +52,7 @@ class Flow:
             arrays, "velocity", COORDINATES + 1 + CONDITION + POOLED, COORDINATES
         )
 
-    def draw(self, view: View, count: int, rng: Random) -> Measures:
+    def draw(self, view: RegionFrame, count: int, rng: Random) -> Measures:
         """Draw `count` poses, measured."""
         conditions = condition(view)
         logits = dense(self._face, conditions)[:, 0].astype(float)
@@ -102,7 +102,7 @@ def settled_coordinates(coordinates: Array) -> Array:
     return coordinates
 
 
-def condition(view: View) -> NDArray[np.float32]:
+def condition(view: RegionFrame) -> NDArray[np.float32]:
     """Compute the condition, what is known before a pose is, for each face that may be down, shape
     (f, CONDITION).
     """
@@ -113,7 +113,7 @@ def condition(view: View) -> NDArray[np.float32]:
     return np.concatenate([view.faces.descriptors, 4 * extents, constant], axis=1, dtype=np.float32)
 
 
-def surroundings(view: View) -> NDArray[np.float32]:
+def surroundings(view: RegionFrame) -> NDArray[np.float32]:
     """Describe the surroundings: centre x, y, half extents x, y, bottom and top of what is around,
     metres, shape (m, AROUND).
     """

@@ -11,7 +11,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from grounding.relational.chart import Chart
+from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.flow import (
     AROUND,
     CONDITION,
@@ -98,7 +98,7 @@ class Scenes:
 
 
 def train_flow(
-    chart: Chart,
+    chart: RelationalCoordinates,
     positive: Sequence[Measures],
     args: Args = Args(),
     progress: Callable[[int, int, float], None] = lambda step, steps, loss: None,

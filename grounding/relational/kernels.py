@@ -59,9 +59,9 @@ def describe_poses(poses, low, high, centre, nearest, downs, steady, size, hollo
     f"UniTuple(float64, 4), float64, {_COLUMN})",
     cache=True,
 )
-def fall_short(low, high, centre, nearest, size, bounds, slack, missing):
-    """Compute `Chart.shortfall` into `missing` (n,); bounds are those of sides, balance, ceiling
-    and distance.
+def constraint_violations(low, high, centre, nearest, size, bounds, slack, missing):
+    """Compute `RelationalCoordinates.constraint_violation` into `missing` (n,); bounds are those
+    of sides, balance, ceiling and distance.
     """
     for n in range(len(missing)):
         sides, balance = math.inf, math.inf

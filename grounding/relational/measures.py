@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
+from grounding.relation_scene import Placed, Region, RelationScene
 from grounding.separation import Obstacles, separations
-from grounding.situation import Placed, Region, Situation
 from tamp.geometric.scene.pose import Array
 
 REACH = 0.4
@@ -22,14 +22,14 @@ WALL = 0.002
 """Parts of the support that rise so far above the region's plane are in the way, metres."""
 
 
-class View:
+class RegionFrame:
     """A situation in the region's frame, prepared once for many poses.
 
     Args:
         situation: What is to be looked at.
     """
 
-    def __init__(self, situation: Situation) -> None:
+    def __init__(self, situation: RelationScene) -> None:
         self.form, self.region = situation.body.form, situation.region
         self.T_world_region = situation.T_world_region
         self.T_region_world = inverse(self.T_world_region)
@@ -76,7 +76,7 @@ class View:
 
 
 @lru_cache(maxsize=256)
-def _walls(support: Form, region: Region) -> tuple[Placed, ...]:
+def _walls(support: BodyGeometry, region: Region) -> tuple[Placed, ...]:
     """Return the support's parts that rise above the region's plane, in the region's frame."""
     matrix = inverse(region.matrix)
     boxes = support.piece_boxes
@@ -92,7 +92,7 @@ def _walls(support: Form, region: Region) -> tuple[Placed, ...]:
 class Measures:
     """The measures of poses in a region's frame; metres and radians, first axis n."""
 
-    view: View
+    view: RegionFrame
     poses: Array
 
     def moved(self, positions: Array) -> Measures:
@@ -226,7 +226,7 @@ class Resting:
 
 
 @lru_cache(maxsize=1024)
-def resting(form: Form) -> Resting:
+def resting(form: BodyGeometry) -> Resting:
     """Return the stable faces of a form of scale 1."""
     if not form.faces:
         return Resting(np.zeros((0, 3, 3)), np.zeros(0), np.zeros((0, 4)))

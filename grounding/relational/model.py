@@ -12,12 +12,12 @@ from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
 from grounding.layers import sigmoid
-from grounding.relational.chart import Chart
+from grounding.relation_scene import RelationScene
+from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.flow import Flow
-from grounding.relational.measures import Measures, View
+from grounding.relational.measures import Measures, RegionFrame
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
-from grounding.situation import Situation
 from grounding.weights import Weights
 from tamp.geometric.scene.pose import Array
 
@@ -46,7 +46,7 @@ class RelationalModel:
     def __init__(self, weights: Weights) -> None:
         arrays = weights.arrays
         self.card = weights.card
-        self.chart = Chart.from_card(weights.card["chart"])
+        self.chart = RelationalCoordinates.from_card(weights.card["chart"])
         flow, ranks = _named(arrays, "flow."), _named(arrays, "rank.")
         self.proposals: Transfer | Flow = (
             Flow(self.chart, flow)
@@ -56,11 +56,11 @@ class RelationalModel:
         self.ranker = Ranker(ranks) if ranks else None
         self._ranks, self._classifies = bool(self.card["ranks"]), bool(self.card["classifies"])
 
-    def propose(self, situation: Situation, count: int, rng: Random) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose at most `count` poses T_world_body, the best first; none for a body that rests on
         no face.
         """
-        view = View(situation)
+        view = RegionFrame(situation)
         if not len(view.faces):
             return np.zeros((0, 4, 4))
         poses, scores = np.zeros((0, 4, 4)), np.zeros(0)
@@ -73,26 +73,28 @@ class RelationalModel:
         best = np.argsort(-scores, kind="stable")[:count]
         return view.T_world_region @ poses[best]
 
-    def classify(self, situation: Situation, poses: Array) -> NDArray[np.float64]:
+    def classify(self, situation: RelationScene, poses: Array) -> NDArray[np.float64]:
         """Return the probability that the relation holds with the body at each pose T_world_body,
         shape (n,).
         """
-        view = View(situation)
+        view = RegionFrame(situation)
         if not len(view.faces) or not len(poses):
             return np.zeros(len(poses))
         measured = view.measure(view.T_region_world @ poses)
         if self.ranker is not None and self._classifies:
             return sigmoid(self.ranker.logits(measured)).astype(float)
-        return np.exp(-200.0 * self.chart.shortfall(measured)) * (np.abs(measured.low[:, 2]) < 0.03)
+        return np.exp(-200.0 * self.chart.constraint_violation(measured)) * (
+            np.abs(measured.low[:, 2]) < 0.03
+        )
 
     def _scores(self, measured: Measures) -> Array:
-        shortfall = self.chart.shortfall(measured)
+        constraint_violation = self.chart.constraint_violation(measured)
         steady = np.minimum(measured.view.steadiness[measured.face], STEADY) / STEADY
         overhang = np.clip(measured.sides.min(axis=1), -OVERHANG, 0.0) / OVERHANG
         scores = steady + 2.0 * overhang + np.minimum(measured.nearest, CLEAR) / CLEAR
         if self.ranker is not None and self._ranks:
             scores = scores + np.clip(self.ranker.logits(measured), 0.5 * HOPELESS, SURE)
-        return np.where(shortfall > 0.0, HOPELESS - 1e3 * shortfall, scores)
+        return np.where(constraint_violation > 0.0, HOPELESS - 1e3 * constraint_violation, scores)
 
 
 STEADY, CLEAR, OVERHANG, SURE = 0.35, 0.01, 0.04, 4.0
@@ -109,7 +111,7 @@ DEMONSTRATIONS = ("coordinates", "faces", "sizes")
 
 
 def relational_weights(
-    chart: Chart,
+    chart: RelationalCoordinates,
     proposals: Transfer | Mapping[str, NDArray[Any]],
     rank: Mapping[str, NDArray[Any]],
     card: Mapping[str, Any],

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.relational.chart import Chart, Demonstration
-from grounding.relational.measures import Measures, View
+from grounding.relational.coordinates import Demonstration, RelationalCoordinates
+from grounding.relational.measures import Measures, RegionFrame
 from tamp.geometric.scene.pose import Array
 
 JITTER = 0.35
@@ -36,7 +36,7 @@ class Transfer:
         sizes: Logarithms of the bodies' extents, (n, 3).
     """
 
-    chart: Chart
+    chart: RelationalCoordinates
     coordinates: Array
     faces: Array
     sizes: Array
@@ -48,19 +48,19 @@ class Transfer:
             raise ValueError(f"demonstrations of shapes {shapes}")
 
     @classmethod
-    def of(cls, chart: Chart, demonstrations: list[Demonstration]) -> Transfer:
+    def of(cls, chart: RelationalCoordinates, demonstrations: list[Demonstration]) -> Transfer:
         """Build the transfer from encoded demonstrations."""
         columns = zip(
             *((one.coordinates, one.face, one.size) for one in demonstrations), strict=True
         )
         return cls(chart, *(np.stack(column) for column in columns))
 
-    def draw(self, view: View, count: int, rng: Random) -> Measures:
+    def draw(self, view: RegionFrame, count: int, rng: Random) -> Measures:
         """Draw `count` poses, measured."""
         faces, coordinates = self.choose(view, count, rng)
         return self.chart.decode(view, faces, coordinates)
 
-    def choose(self, view: View, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
+    def choose(self, view: RegionFrame, count: int, rng: Random) -> tuple[NDArray[np.intp], Array]:
         """Choose faces (n,) and coordinates (n, 7) from demonstrations."""
         weights = _weights(self, tuple(view.size.tolist()))
         chosen = np.searchsorted(weights, rng.random(count) * weights[-1], side="right")

@@ -14,9 +14,9 @@ from grounding.exploration import KINDS, RESTED, STAYED, Exploration, Explorer, 
 from grounding.model import Model
 from grounding.oracles import ItemOf, Verdict, settled
 from grounding.registry import load_model
+from grounding.relation_scene import RelationScene
 from grounding.scenes import Scenes
 from grounding.separation import Obstacles, separations
-from grounding.situation import Situation
 from grounding.train import train
 from grounding.weights import write_weights
 from tamp.errors import InputError
@@ -68,13 +68,13 @@ class Nowhere(Model):
 
     asked = 0
 
-    def propose(self, situation: Situation, count: int, rng: np.random.Generator) -> Array:
+    def propose(self, situation: RelationScene, count: int, rng: np.random.Generator) -> Array:
         self.asked += 1
         below = np.eye(4)
         below[2, 3] = -9.0
         return np.tile(below, (count, 1, 1))
 
-    def classify(self, situation: Situation, poses: Array) -> Array:
+    def classify(self, situation: RelationScene, poses: Array) -> Array:
         return np.zeros(len(poses))
 
 

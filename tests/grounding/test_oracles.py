@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
 from grounding.oracles import ItemOf, Verdict, paper_oracle, paper_verdicts, settled
-from grounding.situation import Placed, Region, Situation
+from grounding.relation_scene import Placed, Region, RelationScene
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part
 from tamp.simulation.drop import Drops
 
-TABLE = Form((Part(Box((0.8, 0.6, 0.4))),))
-BRICK = Form((Part(Box((0.1, 0.06, 0.04))),))
+TABLE = BodyGeometry((Part(Box((0.8, 0.6, 0.4))),))
+BRICK = BodyGeometry((Part(Box((0.1, 0.06, 0.04))),))
 WALLS = (
     Part(Box((0.4, 0.3, 0.02)), Pose((0.0, 0.0, 0.01))),
     *(Part(Box((0.02, 0.3, 0.2)), Pose((x, 0.0, 0.1))) for x in (-0.19, 0.19)),
@@ -31,7 +31,7 @@ def at(x: float, y: float, z: float, tilt: float = 0.0) -> np.ndarray:
     return matrix
 
 
-def on() -> Situation:
+def on() -> RelationScene:
     """A brick, a table whose top is at 0.4 m, another brick on it at x = 0.2 m."""
     region = Region(
         False,
@@ -40,15 +40,15 @@ def on() -> Situation:
         np.array([[-0.4, -0.3, -0.2], [0.4, 0.3, 0.2]]),
     )
     others = (Placed(BRICK, at(0.2, 0, 0.42)),)
-    return Situation(Placed(TABLE, at(0, 0, 0.2)), region, Placed(BRICK, at(0, 0, 1.0)), others)
+    return RelationScene(Placed(TABLE, at(0, 0, 0.2)), region, Placed(BRICK, at(0, 0, 1.0)), others)
 
 
-def inside() -> Situation:
+def inside() -> RelationScene:
     """A brick, a box open above on the ground with walls of 2 cm, another brick in it at x = 0.1 m."""
     box = np.array([[-0.2, -0.15, 0.0], [0.2, 0.15, 0.2]])
     region = Region(True, at(0, 0, 0.02), np.array([0.36, 0.26, 0.18]), box)
     others = (Placed(BRICK, at(0.1, 0, 0.04)),)
-    return Situation(Placed(Form(WALLS), np.eye(4)), region, Placed(BRICK, at(0, 0, 1.0)), others)
+    return RelationScene(Placed(BodyGeometry(WALLS), np.eye(4)), region, Placed(BRICK, at(0, 0, 1.0)), others)
 
 
 ON = [

@@ -9,12 +9,12 @@ import pytest
 
 from grounding import registry
 from grounding.registry import (
-    BORROWED,
     GROUNDINGS,
     MODELS,
+    PARAMETER_FREE,
     RELATIONS,
-    UNTRAINED,
-    VARIANTS,
+    SHARED_WEIGHTS,
+    TRAINING_VARIANTS,
     load_model,
     shipped_model,
     shipped_weights,
@@ -27,23 +27,23 @@ from tamp.geometric.samplers.sampler import Generator
 
 
 def test_every_name_is_a_grounding_and_every_trained_one_has_a_trainer() -> None:
-    assert {*MODELS} == {*TRAINERS, *BORROWED}
+    assert {*MODELS} == {*TRAINERS, *SHARED_WEIGHTS}
     assert all(models and {*models} <= {*TRAINERS} for models in OPTIONS.values())
     for relation in RELATIONS:
-        assert {*GROUNDINGS[relation]} == {*MODELS, *VARIANTS, *UNTRAINED}
+        assert {*GROUNDINGS[relation]} == {*MODELS, *TRAINING_VARIANTS, *PARAMETER_FREE}
         assert isinstance(GROUNDINGS[relation]["surface"](), SurfacePlacements)  # the planner's own
 
 
 @pytest.mark.parametrize("relation", RELATIONS)
-@pytest.mark.parametrize("name", [*MODELS, *VARIANTS, *UNTRAINED])
+@pytest.mark.parametrize("name", [*MODELS, *TRAINING_VARIANTS, *PARAMETER_FREE])
 def test_every_name_ships(relation: str, name: str) -> None:
     assert shipped_model(relation, name)
     assert isinstance(GROUNDINGS[relation][name](), Generator)
-    if name not in UNTRAINED:
+    if name not in PARAMETER_FREE:
         card = read_weights(shipped_weights(relation, name)).card
         assert card["relation"] == relation
         assert card["commit"] and card["data"]["split"] == "train"
-        assert card.get("scheme", "both") == (name.rpartition("-")[2] if name in VARIANTS else "both")
+        assert card.get("scheme", "both") == (name.rpartition("-")[2] if name in TRAINING_VARIANTS else "both")
 
 
 def test_what_ships_is_small() -> None:

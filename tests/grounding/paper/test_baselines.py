@@ -10,12 +10,12 @@ from sklearn.tree import DecisionTreeClassifier
 from grounding.oracles import paper_oracle
 from grounding.paper import networks, uniform
 from grounding.paper.encoders import Args, train_encoder
+from grounding.paper.feature_table import table_of
 from grounding.paper.features import BB, BoxFeatures, poses_of
 from grounding.paper.networks import Ensemble
-from grounding.paper.table import table_of
+from grounding.paper.rotations import quaternions
 from grounding.paper.tree_training import grown, train_tree
 from grounding.paper.trees import Tree, TreeModel, position_limits
-from grounding.paper.turns import quaternions
 from grounding.paper.uniform import TRIES, UniformModel
 from grounding.surface import SurfaceModel
 from grounding.weights import Weights

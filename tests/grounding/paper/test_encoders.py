@@ -9,11 +9,11 @@ import pytest
 import torch
 
 from grounding.dataset import Dataset
-from grounding.paper.codes import coded_table
+from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.encoders import ENCODERS, SCALINGS, Args, PosedClouds, chamfer, scaled, train_encoder
+from grounding.paper.feature_table import table_of
 from grounding.paper.features import CloudFeatures
 from grounding.paper.runtime import NumpyEncoder
-from grounding.paper.table import table_of
 from tamp.errors import InputError
 
 FEW = Args(iterations=2, batch=4, validation=4, points=128, validate_every=1)
@@ -37,14 +37,14 @@ def test_it_learns(data: Dataset) -> None:
 def test_codes_of_a_data_set_are_the_runtimes(data: Dataset, scaling: str) -> None:
     some = data.take(range(12))
     encoder = NumpyEncoder(train_encoder(data, "conv", scaling, FEW)[0])
-    fast, slow = coded_table(some, encoder), table_of(some, CloudFeatures(encoder))
+    fast, slow = embedding_table(some, encoder), table_of(some, CloudFeatures(encoder))
     for name in ("arguments", "others", "share", "holds"):
         assert getattr(fast, name) == pytest.approx(getattr(slow, name), abs=1e-5), name
 
 
 def test_codes_of_few_scenes_without_their_surroundings(data: Dataset) -> None:
     encoder = NumpyEncoder(train_encoder(data, "conv", "one", FEW)[0])
-    whole, part = coded_table(data, encoder), coded_table(data, encoder, count=8, surroundings=False)
+    whole, part = embedding_table(data, encoder), embedding_table(data, encoder, count=8, surroundings=False)
     assert len(part.holds) == len(part.others) == 8
     assert not part.others.any() and not part.share.any()
     assert part.arguments == pytest.approx(whole.arguments[:8], abs=1e-5)

@@ -7,8 +7,8 @@ import torch
 from grounding.paper import networks
 from grounding.paper.features import BB, PC, BoxFeatures, completed
 from grounding.paper.networks import Batch, Ensemble, generate, score
+from grounding.paper.rotations import rotations
 from grounding.paper.runtime import NOISE, Network, PaperModel, generated, judged, unit
-from grounding.paper.turns import rotations
 from grounding.weights import Weights
 from tamp.errors import InputError
 

@@ -14,10 +14,10 @@ from grounding.dataset import Dataset
 from grounding.layers import dense, layers_of
 from grounding.oracles import ItemOf, Verdict, settled
 from grounding.registry import load_model
-from grounding.relational.chart import Chart
+from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.flow import COORDINATES, Flow, condition, surroundings
 from grounding.relational.flow_training import FlowNet, Scenes
-from grounding.relational.measures import View
+from grounding.relational.measures import RegionFrame
 from grounding.relational.model import RelationalModel
 from grounding.relational.ranker import Ranker, features
 from grounding.relational.training import RankerNet
@@ -33,7 +33,7 @@ Trained = dict[tuple[str, str], Weights]
 @pytest.mark.parametrize("relation", ["on", "inside"])
 def test_a_chart_finds_poses_again(scenes: dict[str, Dataset], relation: str) -> None:
     measured = [measure(example) for example in scenes[relation] if example.holds]
-    chart = Chart.fit(measured)
+    chart = RelationalCoordinates.fit(measured)
     found = []
     for one in measured:
         again = chart.decode(one.view, one.face, chart.encode(one).coordinates[None])
@@ -73,7 +73,7 @@ def test_same_draws_same_poses_the_best_first(scenes: dict[str, Dataset], traine
         grounding, situation = RelationalModel(weights), scenes["on"][0].situation
         first, again = (grounding.propose(situation, 8, np.random.default_rng(3)) for _ in range(2))
         assert np.array_equal(first, again)
-        view = View(situation)
+        view = RegionFrame(situation)
         scores = grounding._scores(view.measure(view.T_region_world @ first))
         assert np.all(np.diff(scores) <= 1e-9)
 
@@ -89,7 +89,7 @@ def test_numpy_ranks_as_torch_does(scenes: dict[str, Dataset]) -> None:
     net = RankerNet(64, 16)
     ranker = Ranker(net.arrays())
     for example in scenes["on"].take(range(20)):
-        view = View(example.situation)
+        view = RegionFrame(example.situation)
         poses = np.repeat(view.T_region_world @ example.situation.body.matrix[None], 5, axis=0)
         poses[:, :2, 3] += np.random.default_rng(0).normal(scale=0.1, size=(5, 2))
         measured = view.measure(poses)
@@ -101,10 +101,10 @@ def test_numpy_ranks_as_torch_does(scenes: dict[str, Dataset]) -> None:
 
 def test_numpy_flows_as_torch_does(scenes: dict[str, Dataset]) -> None:
     net, rng = FlowNet(32), np.random.default_rng(0)
-    chart = Chart.fit([measure(example) for example in scenes["on"] if example.holds])
+    chart = RelationalCoordinates.fit([measure(example) for example in scenes["on"] if example.holds])
     flow = Flow(chart, {**net.arrays(), "scale": np.ones(COORDINATES, np.float32)})
     for example in scenes["on"].take(range(20)):
-        view = View(example.situation)
+        view = RegionFrame(example.situation)
         known = np.repeat(condition(view)[:1], 3, axis=0)
         around, half = surroundings(view), np.asarray(view.region.size[:2] / 2, np.float32)
         x, time = rng.normal(size=(3, COORDINATES)).astype(np.float32), np.full((3, 1), 0.5, np.float32)

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.random import Generator as Random
 
-from grounding.form import Form
+from grounding.body_geometry import BodyGeometry
 from grounding.random_poses import afloat
+from grounding.relation_scene import relation_scene_of
 from grounding.runtime import Grounding
-from grounding.situation import situation_of
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 
@@ -20,7 +20,7 @@ TOGETHER = 4
 """Proposals from one start: a network takes as long for these as for one."""
 
 
-class Moving(Grounding):
+class SnappingSampler(Grounding):
     """A network that moves a body from where it is, and was taught with bodies around their
     support.
 
@@ -35,16 +35,16 @@ class Moving(Grounding):
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
         """Propose `count` world poses of body `arguments[0]` on or in `arguments[1]`, unordered."""
-        support = situation_of(scene, arguments).support
+        support = relation_scene_of(scene, arguments).support
         poses: list[Pose] = []
         while len(poses) < count:
-            situation = situation_of(scene, arguments, afloat(support, rng))
+            situation = relation_scene_of(scene, arguments, afloat(support, rng))
             proposed = self.model.propose(situation, min(TOGETHER, count - len(poses)), rng)
-            poses += [Pose.from_matrix(laid(situation.body.form, pose)) for pose in proposed]
+            poses += [Pose.from_matrix(snapped(situation.body.form, pose)) for pose in proposed]
         return poses
 
 
-def laid(form: Form, pose: Array) -> Array:
+def snapped(form: BodyGeometry, pose: Array) -> Array:
     """Turn the pose about the body's middle onto the nearest stable face, the lowest point as high
     as it was.
 

@@ -24,12 +24,12 @@ FEW = 42
 
 
 @lru_cache(maxsize=512)
-def form_of(parts: tuple[Part, ...]) -> Form:
+def geometry_of(parts: tuple[Part, ...]) -> BodyGeometry:
     """Return the form of these parts, worked out once."""
-    return Form(parts)
+    return BodyGeometry(parts)
 
 
-class Form:
+class BodyGeometry:
     """A body's geometry at its size. Metres, in the body's frame.
 
     Args:
@@ -39,20 +39,22 @@ class Form:
     def __init__(self, parts: tuple[Part, ...]) -> None:
         self.parts = parts
         self.scale = 1.0
-        self._unit: Form = self
+        self._unit: BodyGeometry = self
 
-    def scaled(self, factor: float) -> Form:
+    def scaled(self, factor: float) -> BodyGeometry:
         """Scale the form about its frame's origin; what is known of this one is not worked out
         again.
         """
         if factor == 1.0:
             return self
-        form = Form(tuple(scale_part(part, factor * self.scale) for part in self._unit.parts))
+        form = BodyGeometry(
+            tuple(scale_part(part, factor * self.scale) for part in self._unit.parts)
+        )
         form.scale, form._unit = factor * self.scale, self._unit
         return form
 
     @property
-    def unit(self) -> Form:
+    def unit(self) -> BodyGeometry:
         """Return the form of scale 1 that this one was made of."""
         return self._unit
 
@@ -137,11 +139,11 @@ class Form:
         return np.array([piece.corners for piece in self.pieces]).reshape(-1, 2, 3)
 
     @cached_property
-    def pieces(self) -> tuple[Form, ...]:
+    def pieces(self) -> tuple[BodyGeometry, ...]:
         """Return each part as a form of its own."""
         if self._unit is not self:
             return tuple(piece.scaled(self.scale) for piece in self._unit.pieces)
-        return tuple(Form((part,)) for part in self.parts)
+        return tuple(BodyGeometry((part,)) for part in self.parts)
 
     @cached_property
     def _body(self) -> Body:

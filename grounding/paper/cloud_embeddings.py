@@ -12,19 +12,19 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
-from grounding.form import Form
 from grounding.paper.encoders import centred, scaled
+from grounding.paper.feature_table import FeatureTable, order
 from grounding.paper.features import PC
+from grounding.paper.rotations import quaternions
 from grounding.paper.runtime import NumpyEncoder
-from grounding.paper.table import Table, order
-from grounding.paper.turns import quaternions
 
 BATCH = {"cpu": 16, "cuda": 512}
 """Clouds that are encoded at once."""
 
 
-def coded_table(
+def embedding_table(
     data: Dataset,
     encoder: NumpyEncoder,
     progress: Callable[[str], None] = lambda _: None,
@@ -32,7 +32,7 @@ def coded_table(
     *,
     count: int | None = None,
     surroundings: bool = True,
-) -> Table:
+) -> FeatureTable:
     """Compute the table of `table_of` with `CloudFeatures(encoder)` by torch; agrees to 1e-5.
 
     Args:
@@ -51,7 +51,7 @@ def coded_table(
         for scene, others in zip(scenes, around, strict=True)
         for item in (scene.support, scene.body, *others)
     ]
-    numbers: dict[Form, int] = {}
+    numbers: dict[BodyGeometry, int] = {}
     template = np.array([numbers.setdefault(item.form.unit, len(numbers)) for item in placed])
     clouds = [centred(form) for form in numbers]
     centroids = np.stack([centroid for _, centroid in clouds])
@@ -80,7 +80,7 @@ def coded_table(
     others[there] = features[np.setdiff1d(np.arange(len(placed)), [first, first + 1])]
     share = np.where(there, 1 / np.maximum(sizes[:, None] - 2, 1), 0).astype(np.float32)
     arguments = np.concatenate([features[first], features[first + 1]], axis=1)
-    return Table(arguments, others, share, data.holds[indices])
+    return FeatureTable(arguments, others, share, data.holds[indices])
 
 
 class _TorchEncoder:

@@ -16,7 +16,7 @@ Floats = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class FeatureTable:
     """Features of n scenes, in the order in which a training set of any size takes its first ones.
 
     Attributes:
@@ -43,7 +43,7 @@ def table_of(
     features: Features,
     progress: Callable[[str], None] = lambda _: None,
     count: int | None = None,
-) -> Table:
+) -> FeatureTable:
     """Compute the features of the first `count` scenes of `order`, or of all."""
     indices = order(data.holds)[:count]
     arguments = np.zeros((len(indices), 2 * features.size), np.float32)
@@ -59,7 +59,9 @@ def table_of(
         if (row + 1) % 2000 == 0:
             progress(f"features of {row + 1} of {len(indices)} scenes")
     most = max(1, int((share > 0).sum(axis=1).max(initial=0)))
-    return Table(arguments, others[:, :most].copy(), share[:, :most].copy(), data.holds[indices])
+    return FeatureTable(
+        arguments, others[:, :most].copy(), share[:, :most].copy(), data.holds[indices]
+    )
 
 
 def order(holds: NDArray[np.bool_]) -> NDArray[np.intp]:

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from grounding.relational.kernels import fall_short
-from grounding.relational.measures import Measures, View, turns, upright
+from grounding.relational.kernels import constraint_violations
+from grounding.relational.measures import Measures, RegionFrame, turns, upright
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
 
@@ -58,7 +58,7 @@ class Demonstration:
 
 
 @dataclass(frozen=True)
-class Chart:
+class RelationalCoordinates:
     """The coordinates of one relation.
 
     Attributes:
@@ -81,7 +81,7 @@ class Chart:
     steadiness: float
 
     @classmethod
-    def fit(cls, measured: Sequence[Measures]) -> Chart:
+    def fit(cls, measured: Sequence[Measures]) -> RelationalCoordinates:
         """Fit the coordinates to positive examples, each of one pose."""
         heights = np.array(
             [_levels(one)[0][:, None] - _anchors(one.view)[None] for one in measured]
@@ -112,7 +112,7 @@ class Chart:
         )
 
     @classmethod
-    def from_card(cls, card: Mapping[str, Any]) -> Chart:
+    def from_card(cls, card: Mapping[str, Any]) -> RelationalCoordinates:
         """Rebuild the coordinates from a card, the inverse of `card`.
 
         Raises:
@@ -152,7 +152,7 @@ class Chart:
         view = measured.view
         return Demonstration(coordinates, view.faces.descriptors[measured.face[0]], view.size)
 
-    def decode(self, view: View, face: NDArray[np.intp], coordinates: Array) -> Measures:
+    def decode(self, view: RegionFrame, face: NDArray[np.intp], coordinates: Array) -> Measures:
         """Decode faces (n,) and coordinates (n, 7) to poses, measured."""
         cosine, sine = coordinates[:, 5], coordinates[:, 6]
         length = np.maximum(np.hypot(cosine, sine), 1e-9)
@@ -186,7 +186,7 @@ class Chart:
         )
         return still.moved(positions)
 
-    def shortfall(self, measured: Measures) -> Array:
+    def constraint_violation(self, measured: Measures) -> Array:
         """Compute the constraint violation: by how much each pose misses what all demonstrations
         keep, metres, 0 for none; shape (n,).
         """
@@ -199,7 +199,7 @@ class Chart:
             measured.nearest,
             measured.view.region.size,
         )
-        fall_short(*sizes, bounds, SLACK, missing)
+        constraint_violations(*sizes, bounds, SLACK, missing)
         return missing
 
     def _share(self, measured: Measures) -> Array:
@@ -216,7 +216,7 @@ def _levels(measured: Measures) -> Array:
     return np.stack([low, (low + high) / 2, high], axis=1)
 
 
-def _anchors(view: View) -> Array:
+def _anchors(view: RegionFrame) -> Array:
     """Return the region's plane and ceiling, the foot and the middle of the argument's box, in the
     region's frame, (4,).
     """

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from grounding.form import form_of
-from grounding.paper.moving import Moving, laid
+from grounding.body_geometry import geometry_of
+from grounding.paper.planner_adapter import SnappingSampler, snapped
 from grounding.random_poses import random_turn
 from grounding.registry import shipped_grounding
 from tamp.geometric.scene.pose import Pose
@@ -19,12 +19,12 @@ SCENE = load_problem("four_objects").scene
 @pytest.mark.parametrize("name", ["cracker_box", "mustard", "mug", "bowl"])
 def test_a_laid_body_stands_on_a_face_where_it_was(name: str) -> None:
     body, rng = SCENE.bodies[name], np.random.default_rng(0)
-    form = form_of(body.parts)
+    form = geometry_of(body.parts)
     middle = form.corners.mean(axis=0)
     for _ in range(20):
         pose = random_turn(rng)
         pose[:3, 3] = rng.uniform(-1.0, 1.0, 3)
-        found = laid(form, pose)
+        found = snapped(form, pose)
         assert found[:3, :3] @ found[:3, :3].T == pytest.approx(np.eye(3), abs=1e-9)
         assert np.linalg.det(found[:3, :3]) == pytest.approx(1.0)
         assert max(face.rotation[2] @ found[2, :3] for face in form.faces) == pytest.approx(1.0)
@@ -33,12 +33,12 @@ def test_a_laid_body_stands_on_a_face_where_it_was(name: str) -> None:
         low, lower = ((form.vertices @ one[2, :3] + one[2, 3]).min() for one in (pose, found))
         assert lower == pytest.approx(low)
         assert (found[:3, :3] @ middle + found[:3, 3])[:2] == pytest.approx((pose[:3, :3] @ middle + pose[:3, 3])[:2])
-        assert laid(form, found) == pytest.approx(found)
+        assert snapped(form, found) == pytest.approx(found)
 
 
 def test_a_body_from_across_the_room_finds_many_places() -> None:
     grounding = shipped_grounding("on", "mlp-bb")
-    assert isinstance(grounding, Moving)
+    assert isinstance(grounding, SnappingSampler)
     surface = SCENE.surfaces["cupboard_top"]
     T_world_region = SCENE.world_pose(surface)
     poses = grounding.propose(SCENE, ("mug", "cupboard_top"), 60, np.random.default_rng(0))

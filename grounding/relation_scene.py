@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from grounding.form import Form, form_of
+from grounding.body_geometry import BodyGeometry, geometry_of
 from tamp.errors import InputError
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
@@ -26,7 +26,7 @@ IV-B), metres.
 class Placed:
     """A form somewhere: T_world_body, shape (4, 4)."""
 
-    form: Form
+    form: BodyGeometry
     matrix: Array
 
     @cached_property
@@ -67,7 +67,7 @@ class Region:
 
 
 @dataclass(frozen=True, eq=False)
-class Situation:
+class RelationScene:
     """Argument 0 (support or container), argument 1 (the body), and the surroundings.
 
     Attributes:
@@ -88,7 +88,9 @@ class Situation:
         return self.support.matrix @ self.region.matrix
 
 
-def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None) -> Situation:
+def relation_scene_of(
+    scene: Scene, arguments: Sequence[str], at: Array | None = None
+) -> RelationScene:
     """Build the situation of (body, surface or cavity), the planner's order of a relation's
     arguments.
 
@@ -113,24 +115,24 @@ def situation_of(scene: Scene, arguments: Sequence[str], at: Array | None = None
         for item in scene.bodies.values()
         if item is not body and item is not support
     ]
-    seen = _placed(body.parts, body.pose) if at is None else Placed(form_of(body.parts), at)
+    seen = _placed(body.parts, body.pose) if at is None else Placed(geometry_of(body.parts), at)
     return near(_placed(support.parts, support.pose), region_of(support, place), seen, others)
 
 
 @lru_cache(maxsize=4096)
 def _placed(parts: tuple[Part, ...], pose: Pose) -> Placed:
     """Place a body; bodies mostly stay where they are from one situation to the next."""
-    return Placed(form_of(parts), pose.matrix)
+    return Placed(geometry_of(parts), pose.matrix)
 
 
-def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> Situation:
+def near(support: Placed, region: Region, body: Placed, others: Sequence[Placed]) -> RelationScene:
     """Return the situation with those of `others` that are surroundings."""
     around = tuple(
         other
         for other in others
         if min(gap(other.box, support.box), gap(other.box, body.box)) <= SURROUNDINGS
     )
-    return Situation(support, region, body, around)
+    return RelationScene(support, region, body, around)
 
 
 def region_of(support: Body, place: Surface | Cavity) -> Region:
