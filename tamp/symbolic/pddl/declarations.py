@@ -202,6 +202,7 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
             raise error(name, f"'{name.written}' is a word of PDDL and cannot name a {what}")
     found: dict[str, Predicate] = {}
     notes: list[str] = []
+
     for name, group in zip(names, groups, strict=True):
         declared = Predicate(name.text, placeholders(group.items[1:], types), group.place)
         before = found.setdefault(name.text, declared)
@@ -216,6 +217,7 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
         found[name.text] = replace(
             before, parameters=tuple(map(_either, before.parameters, declared.parameters))
         )
+
     return Signatures(found, tuple(notes))
 
 

@@ -79,6 +79,7 @@ def compile_away(
                 if atom.place is None
                 else error(atom.place, what, remedy=remedy)
             )
+
     awaited = {
         atom.predicate for stream in made for atom in stream.domain
     } & domain.fluent_predicates
@@ -87,6 +88,7 @@ def compile_away(
     actions = tuple(rewriting.action(action) for action in domain.actions)
     derived = tuple(rewriting.rules)
     predicates = {**domain.predicates, **rewriting.predicates}
+
     return CompiledTask(
         replace(domain, predicates=predicates, actions=actions, derived=derived),
         replace(

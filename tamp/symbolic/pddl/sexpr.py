@@ -52,6 +52,7 @@ def read(
     stack: list[tuple[Place, list[Node]]] = []
     lower: dict[str, str] = {}
     words = _words(text, name, line_offset, column_offset)
+
     for count, (word, line, column) in enumerate(words):
         items = stack[-1][1] if stack else forms
         if count >= MAX_TOKENS:
@@ -79,10 +80,12 @@ def read(
             items.append(
                 Symbol(lower.setdefault(word, word.lower()), word, Place(name, line, column))
             )
+
     if stack:
         tokens = _tokens(text, name, line_offset, column_offset)
         culprit = left_open(tokens).place if len(tokens) < MANY else stack[-1][0]
         raise error(culprit, "this '(' is never closed: a ')' is missing")
+
     return tuple(forms)
 
 

@@ -102,6 +102,7 @@ def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequenc
         if effect.adds
     }
     nowhere = Place(None, 1, 1)
+
     for stream in made:
         for atom in stream.domain:
             if atom.predicate in found and atom.predicate in added:
@@ -116,7 +117,9 @@ def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequenc
                 raise error(
                     stream.place or nowhere, what, remedy="Give what is certified another name"
                 )
+
     tested = {a.predicate for s in made for a in s.certified if not set(a.terms) & set(s.outputs)}
+
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in found and atom.predicate in tested:
             what = (

@@ -105,6 +105,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
     costs: dict[Fact, float] = {}
+
     for node in items_of(sections, ":init"):
         if isinstance(node, Group) and node.head == "=":
             term, value = _cost(node, scope)
@@ -117,6 +118,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
             denied[_negative(node, scope)] = node
         else:
             facts.add(_fact(node, scope))
+
     for fact, node in denied.items():
         if fact in facts:
             raise error(node, f"({' '.join(fact)}) is said and denied at the start")
@@ -131,6 +133,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
         )
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
         notes.append(warning(name, what))
+
     formula = parse_formula(goal.items[0], scope)
     return Task(name.text, domain, scope.objects, frozenset(facts), formula, costs, tuple(notes))
 
