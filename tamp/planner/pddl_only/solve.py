@@ -139,6 +139,7 @@ def _solve(
     instantiated = instantiate(task)
     ready = time.perf_counter()
     refuted: list[str] = []
+
     for way in ((name, heuristic), *OTHERS):
         found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline)
         reason = refutation(task, found.plan)
@@ -148,11 +149,13 @@ def _solve(
         refuted.append(reason)
     else:
         found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
+
     done = time.perf_counter()
     outcome = (
         Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
     )
     infeasible = outcome is Outcome.INFEASIBLE
+
     return SymbolicSolution(
         problem,
         outcome,
