@@ -34,6 +34,7 @@ def check_parts(problem: tuple[Any, ...]) -> None:
         raise _wrong(
             "stream_pddl", "the streams' text, a Path to it, several of them, or None", streams
         )
+
     if not isinstance(functions, Mapping):
         raise _wrong("stream_map", "a dict of functions by stream", functions)
     for name, function in functions.items():
@@ -41,6 +42,7 @@ def check_parts(problem: tuple[Any, ...]) -> None:
             raise _wrong(
                 f"stream_map['{name}']", "a function, or one of from_fn, from_gen_fn, ...", function
             )
+
     if not _listing(init):
         raise _wrong("init", "a list of facts such as ('On', 'mug', 'table')", init)
     if not isinstance(goal, tuple | list):

@@ -90,6 +90,7 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
     facts: set[Fact] = set()
     costs: dict[Fact, float] = {}
     types: dict[str, tuple[str, ...]] = {}
+
     for item in init:
         head, arguments = _parts(item, "an initial fact")
         if head == "=":
@@ -114,6 +115,7 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
         else:
             _check(head, len(arguments), domain, domain.predicates, "predicate", item)
             facts.add((head, *(names.of(argument) for argument in arguments)))
+
     warnings = tuple(
         f"neither the domain nor a stream knows '{name}', of which there are initial facts"
         for name in unused
@@ -137,17 +139,21 @@ def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) ->
         if head != "=" and head not in domain.types:
             _check(head, len(rest), domain, domain.predicates, "predicate", item)
         return Atom(head, tuple(_term(term, names, bound) for term in rest))
+
     wanted = {"not": 1, "imply": 2, "exists": 2, "forall": 2}.get(head)
     if wanted is not None and len(rest) != wanted:
         raise InputError(
             f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}"
         )
+
     if head in ("exists", "forall"):
         parameters = _parameters(rest[0], domain)
         inner = (*bound, *(parameter.name for parameter in parameters))
         body = _formula(rest[1], domain, names, inner)
         return Exists(parameters, body) if head == "exists" else Forall(parameters, body)
+
     parts = tuple(_formula(part, domain, names, bound) for part in rest)
+
     match head:
         case "and":
             return And(parts)

@@ -87,11 +87,13 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
         _text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())
     ]
     undeclared: dict[str, Predicate] = {}
+
     for text, file in sources:
         for name, size, _ in facts_of(read(text, file)):
             undeclared.setdefault(
                 name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size)))
             )
+
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
     computed = _used(initial_functions(problem.init), domain_text)
     declared = {
