@@ -22,6 +22,7 @@ def astar(search: SearchSpace) -> Plan | None:
         (0.0, 0.0, 0, 0.0, s.initial, s.initial)
     ]
     number = 0
+
     while queue:
         f, guess, _, cost, state, parent = heappop(queue)
         if cost > search.best[state]:
@@ -58,6 +59,7 @@ def astar(search: SearchSpace) -> Plan | None:
             if reached + rest < search.below:
                 number -= 1
                 heappush(queue, (reached + rest, rest, number, reached, after, state))
+
     search.bound = search.below
     return None
 

@@ -138,11 +138,14 @@ def _applied(
     derived, read, heads = supports(why, operator.positive)
     static = set(operator.static)
     guards = triggered(operator, state)
+
     for guard in guards:
         if guard.waived_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
         static.add(guard.waived_by)
+
     added, deleted = operator.added, operator.deleted
+
     for effect in operator.conditional:
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
             added |= effect.added
@@ -150,8 +153,10 @@ def _applied(
             static |= effect.static
             more = supports(why, effect.positive)
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
+
     after = (state - deleted) | added
     gone = state - after
+
     return Step(
         operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
     ), after

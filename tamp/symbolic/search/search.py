@@ -102,11 +102,13 @@ def search(
     run = SearchSpace(
         successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit
     )
+
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
     except SearchLimitReached as stop:
         plan, reason = None, stop.reason
+
     return Result(
         plan,
         reason,

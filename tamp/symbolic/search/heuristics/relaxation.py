@@ -50,15 +50,18 @@ class Relaxation:
         self._of_operator: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.instantiated.axioms)
         negated = s.guard_mask | s.goal_absent
+
         for i in s.alive:
             negated |= s.absent[i]
             for _, negative, _, _ in s.conditional[i]:
                 negated |= negative
+
         for axiom in s.instantiated.axioms:
             negated |= s.mask(axiom.negative)
         self._negated = negated = negated & ~derived
         every = (1 << size) - 1
         split = cache(_split)
+
         for i in s.alive:
             deleted = every & ~s.kept[i] & ~s.added[i] & negated
             effects = [*split(s.added[i]), *(size + b for b in bits(deleted))]
@@ -77,6 +80,7 @@ class Relaxation:
                         s.cost[i] + step,
                         effects,
                     )
+
         for axiom, price in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
             self._add(
@@ -86,6 +90,7 @@ class Relaxation:
                 cost,
                 [s.number[axiom.head]],
             )
+
         self.free = [i for i, facts in enumerate(self._before) if not facts]
         self._removal = self._removal_costs()
         self._negative_goals = list(bits(s.goal_absent & ~derived))
@@ -175,6 +180,7 @@ class Relaxation:
                         by.append(price)
                     else:
                         waiting.setdefault((facts, price), []).append(i)
+
         if not waiting and not dearer:
             return base
         operators, first = base.operators, base.facts
@@ -182,12 +188,14 @@ class Relaxation:
         guards: list[int] = []
         removers: list[int] = []
         removed: list[int] = []
+
         for guard, ((facts, _), those) in enumerate(waiting.items(), start=first):
             waiters += those
             guards += [guard] * len(those)
             complements = [size + fact for fact in bits(facts)]
             removers += complements
             removed += [guard] * len(complements)
+
         numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
         kernels, last = base.kernels, operators + len(removers)
         added = kernels.integers(range(operators, last))
@@ -200,6 +208,7 @@ class Relaxation:
             for guard, (_, price) in enumerate(waiting, start=first)
             if price < math.inf
         ]
+
         return RelaxedState(
             kernels,
             before=kernels.appended(base.before, behind, sources, last),

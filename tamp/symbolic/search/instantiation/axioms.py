@@ -27,6 +27,7 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
         for head, rules in by_head.items()
     }
     stratum: dict[Fact, int] = {}
+
     for component in components(below):
         members = set(component)
         for head in component:
@@ -44,7 +45,9 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
         )
         for head in component:
             stratum[head] = level
+
     ordered = sorted(by_head, key=lambda head: (stratum[head], head))
+
     return tuple(
         replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head]
     )
@@ -59,6 +62,7 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     stack: list[Fact] = []
     on_stack: set[Fact] = set()
     found: list[list[Fact]] = []
+
     for root in sorted(graph):
         if root in order:
             continue
@@ -87,6 +91,7 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
                     found.append(sorted(stack[at:]))
                     on_stack.difference_update(stack[at:])
                     del stack[at:]
+
     return found
 
 
@@ -105,6 +110,7 @@ def derive(
     why: dict[Fact, Axiom] = {}
     costs: dict[Fact, float] = {}
     start = 0
+
     while start < len(axioms):
         stop = start
         while stop < len(axioms) and axioms[stop].stratum == axioms[start].stratum:
@@ -128,6 +134,7 @@ def derive(
                 why[head] = axiom
                 changed = True
         start = stop
+
     return why
 
 

@@ -149,6 +149,7 @@ def join(
     negative = list(body.negative)
     equalities = list(body.equalities)
     known = {variable: i for i, variable in enumerate(variables)}
+
     while rows:
         rows = _filter(relations, known, negative, equalities, rows)
         if not atoms:
@@ -182,6 +183,7 @@ def join(
                 rows = [row for row in rows if key(row) in table]
         for term in fresh:
             known[term] = len(known)
+
     if not rows:
         return []
     return list(map(getter([known[variable] for variable in order]), rows))

@@ -46,6 +46,7 @@ class Instantiation:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
+
         for action in task.domain.actions:
             effects = lifted_effects(action, normalizer)
             scope = {parameter.name: parameter.types for parameter in action.parameters}
@@ -53,6 +54,7 @@ class Instantiation:
                 (action, literals, effects)
                 for literals in normalizer.split(action.precondition, scope)
             ]
+
         goals = normalizer.split(task.goal, {})
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
@@ -109,6 +111,7 @@ class Instantiation:
         } | heads
         initial = frozenset(f for f in self._task.initial if f[0] in predicates.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
+
         return InstantiatedTask(
             initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings
         )
@@ -159,6 +162,7 @@ class Instantiation:
             (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(
                 fact
             )
+
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
                 needs.negative.append((atom.predicate, *atom.terms))
@@ -173,6 +177,7 @@ class Instantiation:
             needs.add(refuted)
             if refuted.impossible:
                 needs.positive.append(("not", atom.predicate, *atom.terms))
+
         for fact in (*needs.positive, *needs.negative):
             self._need(fact)
         return Goal(frozenset(needs.positive), frozenset(needs.negative), frozenset(static))
@@ -222,10 +227,12 @@ class Instantiation:
                     self._negation.prepare(
                         atom.predicate, map(filler(atom.terms, known), sorted(rule.rows))
                     )
+
         axioms: list[Axiom] = []
         if fact in self._predicates.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
         rows = self._predicates.relations.rows
+
         for i, row in self._heads[predicate].get(fact, ()):
             positive, negative, refuted, static = self._bodies[predicate][i]
             needs = Needs([fill(row) for fill in positive])
@@ -237,4 +244,5 @@ class Instantiation:
                 axioms.append(
                     Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given)
                 )
+
         return axioms
