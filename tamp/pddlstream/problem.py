@@ -81,27 +81,11 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
         InputError: Anything wrong with the texts, the map or the facts.
     """
     check_parts(problem)
-    domain_text, domain_file = _text(problem.domain_pddl)
-    listed = problem.stream_pddl
-    sources = [
-        _text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())
-    ]
-    undeclared: dict[str, Predicate] = {}
-
-    for text, file in sources:
-        for name, size, _ in facts_of(read(text, file)):
-            undeclared.setdefault(
-                name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size)))
-            )
-
+    domain_text = _text(problem.domain_pddl)
+    sources = _sources(problem.stream_pddl)
+    domain, streams = _parsed(domain_text, sources, problem.init)
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
-    computed = _used(initial_functions(problem.init), domain_text)
-    declared = {
-        name: one for text, file in sources for name, one in stream_functions(read(text, file))
-    }
-    domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed, declared))
-    files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
-    streams = _joined(files)
+
     constants, spare = _constants(problem.constant_map, domain)
     names = Names(constants)
     facts, costs, types, unused = initial_facts(problem.init, domain, names)
@@ -117,19 +101,15 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
         *spare,
         *_check_map(functions, [one for group in used.values() for one in group]),
     ]
+
     started = without_started(domain, streams, goal)
     waiting = compile_away(started.domain, started.streams, started.goal, facts)
     domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
-    bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
-    bound += [_bound(rule, domain, _always) for rule in streams.rules]
-    bound += [
-        test
-        for predicate in decided.values()
-        for test in _tests(predicate, domain, functions[predicate.name])
-    ]
+    bound = _bound_streams(streams, domain, functions)
     negated = negated_tests(streams.streams, domain, goal)
     bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
+
     rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
     if unit_costs:
         actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
@@ -143,6 +123,43 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
     )
     stream_task = StreamTask(task, tuple(bound), names.values, computed, by_value=True)
     return Bound(stream_task, tuple(warnings), streams.uncalled, started.names)
+
+
+def _sources(listed: str | Path | Sequence[str | Path] | None) -> list[tuple[str, Path | None]]:
+    """Read the texts of the streams, each with its file."""
+    return [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
+
+
+def _parsed(
+    domain_text: tuple[str, Path | None],
+    sources: Sequence[tuple[str, Path | None]],
+    init: Sequence[Any],
+) -> tuple[Domain, StreamFile]:
+    """Parse the domain and its streams; what streams name need not be declared in the domain."""
+    undeclared: dict[str, Predicate] = {}
+    for text, file in sources:
+        for name, size, _ in facts_of(read(text, file)):
+            parameters = tuple(Parameter(f"?x{i}") for i in range(size))
+            undeclared.setdefault(name, Predicate(name, parameters))
+
+    valued = _used(initial_functions(init), domain_text[0])
+    computed = {
+        name: one for text, file in sources for name, one in stream_functions(read(text, file))
+    }
+    domain = parse_domain(*domain_text, Undeclared(undeclared, valued, computed))
+    files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
+    return domain, _joined(files)
+
+
+def _bound_streams(
+    streams: StreamFile, domain: Domain, functions: Mapping[str, Any]
+) -> list[BoundStream]:
+    """Bind streams, rules and decided predicates to the functions of the stream map."""
+    bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
+    bound += [_bound(rule, domain, _always) for rule in streams.rules]
+    for predicate in {one.name: one for one in streams.predicates}.values():
+        bound += _tests(predicate, domain, functions[predicate.name])
+    return bound
 
 
 def _bound(stream: Stream, domain: Domain, function: Any) -> BoundStream:

@@ -21,7 +21,7 @@ class Step:
     Attributes:
         operator: What is applied.
         state: The fluent facts before it.
-        static: What it rests on there: its static preconditions, the facts that lift its triggered
+        static: What it rests on there: its static preconditions, the facts that waive its triggered
             guards, the static facts in the derivations of its derived preconditions and of the
             conditional effects that take place.
         derived: Those of the static facts that derivations rest on.

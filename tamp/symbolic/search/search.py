@@ -81,7 +81,7 @@ def search(
         heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues
             to each, "astar" takes the maximum, "eager" the sum.
         weight: Of the estimate in "wastar".
-        price: What the use of a static fact costs (by an operator resting on it, to lift a guard,
+        price: What the use of a static fact costs (by an operator resting on it, to waive a guard,
             and in the lazy searches where the goal is derived from it); may be infinite. A mapping
             of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.

@@ -14,7 +14,11 @@ from functools import cache
 
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.symbolic.search.heuristics.loops.selection import choose
-from tamp.symbolic.search.heuristics.relaxed_state import RelaxedExploration, RelaxedState
+from tamp.symbolic.search.heuristics.relaxed_state import (
+    RelaxedExploration,
+    RelaxedState,
+    TriggeredGuards,
+)
 from tamp.symbolic.search.successors import State, Successors, bits
 
 MAX_RELAXED_STATES = 64
@@ -158,30 +162,14 @@ class Relaxation:
         return known
 
     def _relax(self, state: State) -> RelaxedState:
-        s, size, base = self._successors, self._size, self._base
-        dearer: list[int] = []
-        by: list[float] = []
-        waiting: dict[tuple[int, float], list[int]] = {}
-        raised: dict[int, float] = {}
-        blocked: dict[int, list[tuple[int, float]]] = {}
-        for fact in bits(state):
-            if fact in self._negative:
-                waiting[1 << fact, math.inf] = list(self._negative[fact])
-        for facts in s.triggered(state):
-            removal = min(self._removal[fact] for fact in bits(facts))
-            for operator, price in s.penalties(facts).items():
-                if price <= removal and price < math.inf:
-                    raised[operator] = raised.get(operator, 0.0) + price
-                else:
-                    blocked.setdefault(operator, []).append((facts, price))
-                for i in self._of_operator[operator]:
-                    if price <= removal and price < math.inf:
-                        dearer.append(i)
-                        by.append(price)
-                    else:
-                        waiting.setdefault((facts, price), []).append(i)
+        """Build the relaxed task in which the state's triggered guards are paid for, or waited for.
 
-        if not waiting and not dearer:
+        An operator waits until a guard's facts are removed, or until the guard is paid for.
+        """
+        size, base = self._size, self._base
+        found = self._triggered(state)
+        waiting, raised, blocked = found.waiting, found.raised, found.blocked
+        if not waiting and not found.dearer:
             return base
         operators, first = base.operators, base.facts
         waiters: list[int] = []
@@ -213,7 +201,10 @@ class Relaxation:
             kernels,
             before=kernels.appended(base.before, behind, sources, last),
             costs=kernels.incremented(
-                base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)
+                base.costs,
+                kernels.integers(found.dearer),
+                kernels.reals(found.by),
+                len(removers),
             ),
             effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
             needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
@@ -225,6 +216,31 @@ class Relaxation:
                 for operator, keys in blocked.items()
             },
         )
+
+    def _triggered(self, state: State) -> TriggeredGuards:
+        """Find what a state's violated negative conditions and triggered guards change."""
+        s, found = self._successors, TriggeredGuards()
+        waiting, raised, blocked = found.waiting, found.raised, found.blocked
+        for fact in bits(state):
+            if fact in self._negative:
+                waiting[1 << fact, math.inf] = list(self._negative[fact])
+
+        for facts in s.triggered(state):
+            removal = min(self._removal[fact] for fact in bits(facts))
+            for operator, price in s.penalties(facts).items():
+                paid = price <= removal and price < math.inf
+                if paid:
+                    raised[operator] = raised.get(operator, 0.0) + price
+                else:
+                    blocked.setdefault(operator, []).append((facts, price))
+
+                for i in self._of_operator[operator]:
+                    if paid:
+                        found.dearer.append(i)
+                        found.by.append(price)
+                    else:
+                        waiting.setdefault((facts, price), []).append(i)
+        return found
 
     def explore(self, closed: State, *, additive: bool) -> RelaxedExploration:
         """Compute the costs of all facts from a state: sums of the preconditions' costs (hadd) or

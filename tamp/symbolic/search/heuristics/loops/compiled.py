@@ -77,4 +77,4 @@ COMPILED = Kernels(
     integers=_integers,
     reals=_reals,
 )
-"""The compiled loops."""
+"""The compiled kernels."""
