@@ -19,7 +19,7 @@ from tamp.symbolic.pddl.nodes import Group, Node, as_group, as_name, error, warn
 from tamp.symbolic.pddl.rules import parse_rule, redefinition, rule_head
 from tamp.symbolic.pddl.sections import Section, items_of, keyword_values, read_sections
 from tamp.symbolic.pddl.stratification import strata
-from tamp.symbolic.pddl.structs import Action, And, Domain, Predicate
+from tamp.symbolic.pddl.structs import Action, And, Domain, Place, Predicate
 from tamp.symbolic.pddl.typed import parameters
 
 SECTIONS = (
@@ -71,30 +71,12 @@ def parse_domain(
     functional = parse_functions(items_of(sections, ":functions"), types)
     predicates, functions = signatures.by_name, functional.by_name
     notes += (*signatures.notes, *functional.notes)
-    known = (types, predicates, functions)
     if undeclared is not None:
-        predicates |= {
-            n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)
-        }
-        functions |= {
-            n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)
-        }
-        for name, computed in undeclared.computed.items():
-            declared_as = functions.get(name)
-            if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
-                declares, computes = len(declared_as.parameters), len(computed.parameters)
-                sizes = f"{declares} arguments, computed of {computes}"
-                notes.append(
-                    warning(
-                        declared_as.place or title.place,
-                        f"function '{name}' is declared with {sizes}",
-                    )
-                )
-            if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
-                functions[name] = computed
+        notes += _add_undeclared(undeclared, types, predicates, functions, title.place)
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
+
     # Domains written for PDDLStream increase the total cost without declaring it.
     counts_costs = TOTAL_COST in functions or any(
         _mentions(section.group, "increase") for section in sections
@@ -124,6 +106,39 @@ def parse_domain(
     acts = [section for section in sections if section.keyword.text == ":action"]
     actions = [_action(section, names, derived_names, counts_costs, notes) for section in acts]
     return replace(names, actions=_distinct(actions, notes), derived=derived, notes=tuple(notes))
+
+
+def _add_undeclared(
+    undeclared: Undeclared,
+    types: Mapping[str, str],
+    predicates: dict[str, Predicate],
+    functions: dict[str, Predicate],
+    place: Place,
+) -> list[str]:
+    """Add predicates and functions that may be used undeclared, in place; return notes of them."""
+    notes: list[str] = []
+    known = (types, predicates, functions)
+    predicates |= {
+        n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)
+    }
+    functions |= {
+        n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)
+    }
+
+    for name, computed in undeclared.computed.items():
+        declared_as = functions.get(name)
+        if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
+            declares, computes = len(declared_as.parameters), len(computed.parameters)
+            sizes = f"{declares} arguments, computed of {computes}"
+            notes.append(
+                warning(
+                    declared_as.place or place,
+                    f"function '{name}' is declared with {sizes}",
+                )
+            )
+        if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
+            functions[name] = computed
+    return notes
 
 
 def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]:

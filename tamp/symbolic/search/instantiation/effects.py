@@ -89,34 +89,9 @@ class Effects:
         """Find all instances of one effect, by the values of the action's variables that it
         mentions.
         """
-        body = self._predicates.body(condition)
-        used = {
-            term
-            for atom in (effect.atom, *condition.positive, *condition.negative)
-            for term in atom.terms
-        }
-        used |= {term for left, right, _ in condition.equalities for term in (left, right)}
-        shared = tuple(name for name in self._known if name in used)
-        # Types of the action's own parameters have been checked already; only what exists can be
-        # deleted.
-        atoms = [
-            a
-            for a in body.positive
-            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
-        ]
-        if not effect.adds and effect.atom not in atoms:
-            atoms.append(effect.atom)
-        own = tuple(name for name in condition.names if name not in self._known)
+        shared, names, found = self._join(effect, condition, rows)
+        own = names[len(shared) :]
         key = getter([self._known[name] for name in shared])
-        start = list(dict.fromkeys(map(key, rows)))
-        names = (*shared, *own)
-        found = join(
-            self._predicates.relations,
-            Body(tuple(atoms), body.negative, body.equalities),
-            shared,
-            start,
-            names,
-        )
         known = {name: i for i, name in enumerate(names)}
         kinds = self._predicates.classify(condition)
         unnamed = [atom for atom in self._predicates.unnamed(condition) if atom.terms[0] in own]
@@ -134,6 +109,7 @@ class Effects:
                 ),
             )
         }
+
         instances: dict[Row, list[_Instance]] = {}
         width = len(shared)
         for row in sorted(found):
@@ -156,6 +132,46 @@ class Effects:
                 (positive, frozenset(needs.negative), static, changed)
             )
         self._expanded.append((effect.adds, key, instances))
+
+    def _join(
+        self, effect: LiftedEffect, condition: Literals, rows: list[Row]
+    ) -> tuple[tuple[str, ...], tuple[str, ...], list[Row]]:
+        """Join an effect's condition with the bindings of the action's variables.
+
+        Returns:
+            The action's variables that it mentions, all its variables, those first, and bindings.
+        """
+        body = self._predicates.body(condition)
+        used = {
+            term
+            for atom in (effect.atom, *condition.positive, *condition.negative)
+            for term in atom.terms
+        }
+        used |= {term for left, right, _ in condition.equalities for term in (left, right)}
+        shared = tuple(name for name in self._known if name in used)
+
+        # Types of the action's own parameters have been checked already; only what exists can be
+        # deleted.
+        atoms = [
+            a
+            for a in body.positive
+            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
+        ]
+        if not effect.adds and effect.atom not in atoms:
+            atoms.append(effect.atom)
+        own = tuple(name for name in condition.names if name not in self._known)
+        key = getter([self._known[name] for name in shared])
+        start = list(dict.fromkeys(map(key, rows)))
+
+        names = (*shared, *own)
+        found = join(
+            self._predicates.relations,
+            Body(tuple(atoms), body.negative, body.equalities),
+            shared,
+            start,
+            names,
+        )
+        return shared, names, found
 
     def of(self, row: Row, before: Facts) -> tuple[Facts, Facts, tuple[ConditionalEffect, ...]]:
         """Return the added facts, deleted facts and conditional effects of the operator with this
