@@ -28,13 +28,21 @@ def check_parts(problem: tuple[Any, ...]) -> None:
     if not isinstance(constants, Mapping):
         raise _wrong("constant_map", "a dict of values by constant", constants)
     listed = (streams,) if isinstance(streams, str | Path) or streams is None else streams
-    if not _listing(listed) or not all(one is None or isinstance(one, str | Path) for one in listed):
-        raise _wrong("stream_pddl", "the streams' text, a Path to it, several of them, or None", streams)
+    if not _listing(listed) or not all(
+        one is None or isinstance(one, str | Path) for one in listed
+    ):
+        raise _wrong(
+            "stream_pddl", "the streams' text, a Path to it, several of them, or None", streams
+        )
+
     if not isinstance(functions, Mapping):
         raise _wrong("stream_map", "a dict of functions by stream", functions)
     for name, function in functions.items():
         if not callable(function) and not isinstance(function, Adapted):
-            raise _wrong(f"stream_map['{name}']", "a function, or one of from_fn, from_gen_fn, ...", function)
+            raise _wrong(
+                f"stream_map['{name}']", "a function, or one of from_fn, from_gen_fn, ...", function
+            )
+
     if not _listing(init):
         raise _wrong("init", "a list of facts such as ('On', 'mug', 'table')", init)
     if not isinstance(goal, tuple | list):
@@ -51,4 +59,6 @@ def _wrong(part: str, wanted: str, found: Any) -> InputError:
     remedy = ""
     if isinstance(found, str) and found.lower() in DEBUG_WORDS:
         remedy = "tamp has no placeholder streams: give each stream a function"
-    return InputError(f"{part}: expected {wanted}, found {type(found).__name__} {shown}", remedy=remedy)
+    return InputError(
+        f"{part}: expected {wanted}, found {type(found).__name__} {shown}", remedy=remedy
+    )

@@ -42,7 +42,11 @@ class Names:
         key = value_key(value)
         name = self._names.get(key)
         if name is None:
-            name = value if isinstance(value, str) and _WORD.fullmatch(value) and value not in self.values else ""
+            name = (
+                value
+                if isinstance(value, str) and _WORD.fullmatch(value) and value not in self.values
+                else ""
+            )
             number = len(self.values)
             while not name or name in self.values:
                 number += 1
@@ -86,6 +90,7 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
     facts: set[Fact] = set()
     costs: dict[Fact, float] = {}
     types: dict[str, tuple[str, ...]] = {}
+
     for item in init:
         head, arguments = _parts(item, "an initial fact")
         if head == "=":
@@ -101,14 +106,19 @@ def initial_facts(init: Sequence[Any], domain: Domain, names: Names) -> Initial:
             name = names.of(arguments[0])
             types[name] = (*types.get(name, ()), head)
         elif head in domain.derived_predicates:
-            raise InputError(f"'{head}' is derived: its rules say where it holds, {item!r} cannot be an initial fact")
+            raise InputError(
+                f"'{head}' is derived: its rules say where it holds, "
+                f"{item!r} cannot be an initial fact"
+            )
         elif _unknown(head, domain.predicates):
             unused.setdefault(head)
         else:
             _check(head, len(arguments), domain, domain.predicates, "predicate", item)
             facts.add((head, *(names.of(argument) for argument in arguments)))
+
     warnings = tuple(
-        f"neither the domain nor a stream knows '{name}', of which there are initial facts" for name in unused
+        f"neither the domain nor a stream knows '{name}', of which there are initial facts"
+        for name in unused
     )
     return Initial(frozenset(facts), costs, types, warnings)
 
@@ -129,15 +139,21 @@ def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) ->
         if head != "=" and head not in domain.types:
             _check(head, len(rest), domain, domain.predicates, "predicate", item)
         return Atom(head, tuple(_term(term, names, bound) for term in rest))
+
     wanted = {"not": 1, "imply": 2, "exists": 2, "forall": 2}.get(head)
     if wanted is not None and len(rest) != wanted:
-        raise InputError(f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}")
+        raise InputError(
+            f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}"
+        )
+
     if head in ("exists", "forall"):
         parameters = _parameters(rest[0], domain)
         inner = (*bound, *(parameter.name for parameter in parameters))
         body = _formula(rest[1], domain, names, inner)
         return Exists(parameters, body) if head == "exists" else Forall(parameters, body)
+
     parts = tuple(_formula(part, domain, names, bound) for part in rest)
+
     match head:
         case "and":
             return And(parts)
@@ -191,9 +207,15 @@ def _unknown(name: str, known: Mapping[str, Any]) -> bool:
     return name not in known and closest(name, known) is None
 
 
-def _check(name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any) -> None:
+def _check(
+    name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any
+) -> None:
     if name not in known:
-        raise InputError(f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known)
+        raise InputError(
+            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known
+        )
     wanted = len(known[name].parameters)
     if wanted != count:
-        raise InputError(f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}")
+        raise InputError(
+            f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}"
+        )

@@ -81,19 +81,11 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
         InputError: Anything wrong with the texts, the map or the facts.
     """
     check_parts(problem)
-    domain_text, domain_file = _text(problem.domain_pddl)
-    listed = problem.stream_pddl
-    sources = [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
-    undeclared: dict[str, Predicate] = {}
-    for text, file in sources:
-        for name, size, _ in facts_of(read(text, file)):
-            undeclared.setdefault(name, Predicate(name, tuple(Parameter(f"?x{i}") for i in range(size))))
+    domain_text = _text(problem.domain_pddl)
+    sources = _sources(problem.stream_pddl)
+    domain, streams = _parsed(domain_text, sources, problem.init)
     functions = {str(name).lower(): function for name, function in problem.stream_map.items()}
-    computed = _used(initial_functions(problem.init), domain_text)
-    declared = {name: one for text, file in sources for name, one in stream_functions(read(text, file))}
-    domain = parse_domain(domain_text, domain_file, Undeclared(undeclared, computed, declared))
-    files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
-    streams = _joined(files)
+
     constants, spare = _constants(problem.constant_map, domain)
     names = Names(constants)
     facts, costs, types, unused = initial_facts(problem.init, domain, names)
@@ -109,24 +101,65 @@ def bind(problem: PDDLProblem, *, unit_costs: bool = False) -> Bound:
         *spare,
         *_check_map(functions, [one for group in used.values() for one in group]),
     ]
+
     started = without_started(domain, streams, goal)
     waiting = compile_away(started.domain, started.streams, started.goal, facts)
     domain, streams, goal, facts = waiting.domain, waiting.streams, waiting.goal, waiting.facts
     decided = {predicate.name: predicate for predicate in streams.predicates}
-    bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
-    bound += [_bound(rule, domain, _always) for rule in streams.rules]
-    bound += [test for predicate in decided.values() for test in _tests(predicate, domain, functions[predicate.name])]
+    bound = _bound_streams(streams, domain, functions)
     negated = negated_tests(streams.streams, domain, goal)
     bound += [_failing(stream, domain, functions[stream.name]) for stream in negated.values()]
+
     rewritten, goal = with_complements(domain, goal, decided.keys() | negated.keys())
     if unit_costs:
         actions = tuple(replace(action, cost=1.0) for action in rewritten.actions)
         rewritten = replace(rewritten, actions=actions)
-    objects = {name: types.get(name, ("object",)) for name in names.values if name not in domain.constants}
+    objects = {
+        name: types.get(name, ("object",)) for name in names.values if name not in domain.constants
+    }
     task = Task(domain.name, rewritten, objects, facts, goal, costs)
-    computed = tuple(BoundFunction(function, functions[function.name]) for function in streams.functions)
+    computed = tuple(
+        BoundFunction(function, functions[function.name]) for function in streams.functions
+    )
     stream_task = StreamTask(task, tuple(bound), names.values, computed, by_value=True)
     return Bound(stream_task, tuple(warnings), streams.uncalled, started.names)
+
+
+def _sources(listed: str | Path | Sequence[str | Path] | None) -> list[tuple[str, Path | None]]:
+    """Read the texts of the streams, each with its file."""
+    return [_text(one) for one in ((listed,) if isinstance(listed, str | Path) else listed or ())]
+
+
+def _parsed(
+    domain_text: tuple[str, Path | None],
+    sources: Sequence[tuple[str, Path | None]],
+    init: Sequence[Any],
+) -> tuple[Domain, StreamFile]:
+    """Parse the domain and its streams; what streams name need not be declared in the domain."""
+    undeclared: dict[str, Predicate] = {}
+    for text, file in sources:
+        for name, size, _ in facts_of(read(text, file)):
+            parameters = tuple(Parameter(f"?x{i}") for i in range(size))
+            undeclared.setdefault(name, Predicate(name, parameters))
+
+    valued = _used(initial_functions(init), domain_text[0])
+    computed = {
+        name: one for text, file in sources for name, one in stream_functions(read(text, file))
+    }
+    domain = parse_domain(*domain_text, Undeclared(undeclared, valued, computed))
+    files = [parse_streams(text, domain, file, waiting=True) for text, file in sources]
+    return domain, _joined(files)
+
+
+def _bound_streams(
+    streams: StreamFile, domain: Domain, functions: Mapping[str, Any]
+) -> list[BoundStream]:
+    """Bind streams, rules and decided predicates to the functions of the stream map."""
+    bound = [_bound(stream, domain, functions[stream.name]) for stream in streams.streams]
+    bound += [_bound(rule, domain, _always) for rule in streams.rules]
+    for predicate in {one.name: one for one in streams.predicates}.values():
+        bound += _tests(predicate, domain, functions[predicate.name])
+    return bound
 
 
 def _bound(stream: Stream, domain: Domain, function: Any) -> BoundStream:
@@ -139,7 +172,9 @@ def _always(*inputs: Any) -> bool:
     return True
 
 
-def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) -> tuple[BoundStream, BoundStream]:
+def _tests(
+    predicate: Function, domain: Domain, function: Callable[..., Any]
+) -> tuple[BoundStream, BoundStream]:
     """Build the streams that promise a decided predicate, and its complement."""
 
     def holds(*inputs: Any, call: Any) -> bool:
@@ -154,7 +189,9 @@ def _tests(predicate: Function, domain: Domain, function: Callable[..., Any]) ->
         (complement_name(predicate.name, domain), does_not_hold),
     ):
         certified = (Atom(name, predicate.inputs, predicate.place),)
-        stream = Stream(f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place)
+        stream = Stream(
+            f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place
+        )
         made.append(BoundStream(stream, test, (), may_advise=False))
     return made[0], made[1]
 
@@ -172,7 +209,9 @@ def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
 
     name = complement_name(atom.predicate, domain)
     certified = (Atom(name, atom.terms, atom.place),)
-    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False)
+    return BoundStream(
+        replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False
+    )
 
 
 def _joined(files: Sequence[StreamFile]) -> StreamFile:
@@ -191,10 +230,16 @@ def _joined(files: Sequence[StreamFile]) -> StreamFile:
 def _used(functions: Mapping[str, Predicate], text: str) -> dict[str, Predicate]:
     """Select those that a domain's text calls."""
     lower = text.lower()
-    return {name: one for name, one in functions.items() if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)}
+    return {
+        name: one
+        for name, one in functions.items()
+        if re.search(rf"\(\s*{re.escape(name)}[\s)]", lower)
+    }
 
 
-def _check_map(functions: Mapping[str, Any], declared: Sequence[Stream | Function]) -> Iterator[str]:
+def _check_map(
+    functions: Mapping[str, Any], declared: Sequence[Stream | Function]
+) -> Iterator[str]:
     """Warn of each function that no stream is called, unless it is a misspelt one: that is an
     error.
     """

@@ -16,6 +16,7 @@ def facts_of(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
     for node in nodes:
         if not isinstance(node, Group) or not node.items:
             continue
+
         head = node.head
         if head == "define":
             yield from facts_of(node.items[2:])

@@ -44,6 +44,7 @@ def summary(solution: SymbolicSolution) -> str:
     else:
         lines.append(f"{solution.outcome.value}{':' if solution.explanation else '.'}")
         lines += [f"  {line}" for line in solution.explanation]
+
     facts = f"{_count(solution.operators, 'operator')} and {_count(solution.facts, 'fact')}"
     lines += [
         "",

@@ -135,6 +135,7 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
     instantiated = instantiate(task)
     ready = time.perf_counter()
     refuted: list[str] = []
+
     for way in ((name, heuristic), *OTHERS):
         found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline)
         reason = refutation(task, found.plan)
@@ -144,9 +145,11 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         refuted.append(reason)
     else:
         found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
+
     done = time.perf_counter()
     outcome = Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
     infeasible = outcome is Outcome.INFEASIBLE
+
     return SymbolicSolution(
         problem,
         outcome,

@@ -90,6 +90,7 @@ def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) ->
     for predicate, name in {**instead.complements, **instead.copies}.items():
         predicates[name] = Predicate(name, domain.predicates[predicate].parameters)
     rules: list[Derived] = []
+
     for rule in domain.derived:
         predicate = rule.head.predicate
         needed = signs.get(predicate, {True})
@@ -97,6 +98,7 @@ def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) ->
         if predicate in instead.copies:
             head = replace(rule.head, predicate=instead.copies[predicate])
             rules.append(replace(rule, head=head, body=_rewrite(rule.body, True, instead, False)))
+
     actions = tuple(_rewritten(action, instead) for action in domain.actions)
     changed = replace(domain, predicates=predicates, actions=actions, derived=tuple(rules))
     return changed, _rewrite(goal, True, instead, True)

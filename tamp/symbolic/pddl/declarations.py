@@ -72,21 +72,34 @@ def parse_types(nodes: Sequence[Node]) -> Types:
         above = tuple(symbol.text for symbol in entry.types)
         parents[name] = tuple(dict.fromkeys((*parents.get(name, ()), *above)))
         if name == "object" and parents[name] not in ((), ("object",)):
-            raise error(entry.name, "'object' is the root of all types, it cannot stand below another one")
+            raise error(
+                entry.name, "'object' is the root of all types, it cannot stand below another one"
+            )
         if name != "object":
-            parents[name] = tuple(parent for parent in parents[name] if parent != name)  # - itself: says nothing
+            parents[name] = tuple(
+                parent for parent in parents[name] if parent != name
+            )  # - itself: says nothing
     parents.setdefault("object", ())
     notes: list[str] = []
     for symbol in (symbol for entry in entries for symbol in entry.types):
         if symbol.text not in parents:
             near = closest(symbol.text, sorted(parents.keys() - {"object"}))
             meant = f". Did you mean '{near}'?" if near else ""
-            notes.append(warning(symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"))
+            notes.append(
+                warning(
+                    symbol, f"type '{symbol.written}' is not listed itself, only as a parent{meant}"
+                )
+            )
             parents[as_name(symbol, "a type").text] = ()
     _check_depth({entry.name.text: entry.name for entry in entries}, parents)
-    full = {name: tuple(t for t in above if t != "object") or ("object",) for name, above in parents.items()}
+    full = {
+        name: tuple(t for t in above if t != "object") or ("object",)
+        for name, above in parents.items()
+    }
     first = {"object": "object", **{name: above[0] for name, above in full.items()}}
-    return Types(first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes))
+    return Types(
+        first, {name: above[1:] for name, above in full.items() if len(above) > 1}, tuple(notes)
+    )
 
 
 def parse_objects(
@@ -123,7 +136,9 @@ def parse_objects(
         if name.text in lines:
             message = f"{kind} '{name.written}' stands twice; first in line {lines[name.text]}"
         if set(own) != set(before):
-            raise error(name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}")
+            raise error(
+                name, f"{message}, of type {' and '.join(before)}, here {' and '.join(own)}"
+            )
         notes.append(warning(name, message))
     return found
 
@@ -154,7 +169,9 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
             continue
         result = nodes[position] if position < len(nodes) else None
         if node.text != "-" or result is None:
-            raise error(node, f"expected a function such as (distance ?a ?b), found '{node.written}'")
+            raise error(
+                node, f"expected a function such as (distance ?a ?b), found '{node.written}'"
+            )
         symbol = as_symbol(result, "the type 'number'")
         if typed == len(groups):  # an empty list before a type
             position += 1
@@ -185,6 +202,7 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
             raise error(name, f"'{name.written}' is a word of PDDL and cannot name a {what}")
     found: dict[str, Predicate] = {}
     notes: list[str] = []
+
     for name, group in zip(names, groups, strict=True):
         declared = Predicate(name.text, placeholders(group.items[1:], types), group.place)
         before = found.setdefault(name.text, declared)
@@ -196,7 +214,10 @@ def _signatures(groups: Sequence[Group], types: Mapping[str, str], what: str) ->
             sizes = f"{len(before.parameters)} and {len(declared.parameters)}"
             raise error(name, f"{first}, with other arguments ({sizes})")
         notes.append(warning(name, first))
-        found[name.text] = replace(before, parameters=tuple(map(_either, before.parameters, declared.parameters)))
+        found[name.text] = replace(
+            before, parameters=tuple(map(_either, before.parameters, declared.parameters))
+        )
+
     return Signatures(found, tuple(notes))
 
 

@@ -19,7 +19,7 @@ from tamp.symbolic.pddl.nodes import Group, Node, as_group, as_name, error, warn
 from tamp.symbolic.pddl.rules import parse_rule, redefinition, rule_head
 from tamp.symbolic.pddl.sections import Section, items_of, keyword_values, read_sections
 from tamp.symbolic.pddl.stratification import strata
-from tamp.symbolic.pddl.structs import Action, And, Domain, Predicate
+from tamp.symbolic.pddl.structs import Action, And, Domain, Place, Predicate
 from tamp.symbolic.pddl.typed import parameters
 
 SECTIONS = (
@@ -44,7 +44,9 @@ class Undeclared:
     computed: Mapping[str, Predicate] = field(default_factory=dict[str, Predicate])
 
 
-def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclared | None = None) -> Domain:
+def parse_domain(
+    text: str, file: str | Path | None = None, undeclared: Undeclared | None = None
+) -> Domain:
     """Read a PDDL domain.
 
     Types, constants, predicates and functions are known everywhere, in whatever order the sections
@@ -69,28 +71,16 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     functional = parse_functions(items_of(sections, ":functions"), types)
     predicates, functions = signatures.by_name, functional.by_name
     notes += (*signatures.notes, *functional.notes)
-    known = (types, predicates, functions)
     if undeclared is not None:
-        predicates |= {n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)}
-        functions |= {n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)}
-        for name, computed in undeclared.computed.items():
-            declared_as = functions.get(name)
-            if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
-                declares, computes = len(declared_as.parameters), len(computed.parameters)
-                sizes = f"{declares} arguments, computed of {computes}"
-                notes.append(
-                    warning(
-                        declared_as.place or title.place,
-                        f"function '{name}' is declared with {sizes}",
-                    )
-                )
-            if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
-                functions[name] = computed
+        notes += _add_undeclared(undeclared, types, predicates, functions, title.place)
     for function in functions.values():
         if function.name in predicates and function.place:
             raise error(function.place, f"'{function.name}' is already a predicate")
+
     # Domains written for PDDLStream increase the total cost without declaring it.
-    counts_costs = TOTAL_COST in functions or any(_mentions(section.group, "increase") for section in sections)
+    counts_costs = TOTAL_COST in functions or any(
+        _mentions(section.group, "increase") for section in sections
+    )
     functions.setdefault(TOTAL_COST, Predicate(TOTAL_COST, ()))
     file_name = None if file is None else str(file)
     rules = [section for section in sections if section.keyword.text in (":derived", ":axiom")]
@@ -118,6 +108,39 @@ def parse_domain(text: str, file: str | Path | None = None, undeclared: Undeclar
     return replace(names, actions=_distinct(actions, notes), derived=derived, notes=tuple(notes))
 
 
+def _add_undeclared(
+    undeclared: Undeclared,
+    types: Mapping[str, str],
+    predicates: dict[str, Predicate],
+    functions: dict[str, Predicate],
+    place: Place,
+) -> list[str]:
+    """Add predicates and functions that may be used undeclared, in place; return notes of them."""
+    notes: list[str] = []
+    known = (types, predicates, functions)
+    predicates |= {
+        n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)
+    }
+    functions |= {
+        n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)
+    }
+
+    for name, computed in undeclared.computed.items():
+        declared_as = functions.get(name)
+        if declared_as is not None and len(declared_as.parameters) != len(computed.parameters):
+            declares, computes = len(declared_as.parameters), len(computed.parameters)
+            sizes = f"{declares} arguments, computed of {computes}"
+            notes.append(
+                warning(
+                    declared_as.place or place,
+                    f"function '{name}' is declared with {sizes}",
+                )
+            )
+        if declared_as is None or len(declared_as.parameters) != len(computed.parameters):
+            functions[name] = computed
+    return notes
+
+
 def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]:
     """Give the actions names of their own: the same one written twice is one, another one of its
     name is renamed.
@@ -134,20 +157,30 @@ def _distinct(actions: Sequence[Action], notes: list[str]) -> tuple[Action, ...]
         while name in found:
             name, number = f"{action.name}~{number}", number + 1
         if name != action.name and action.place is not None:
-            notes.append(warning(action.place, f"another action '{action.name}': plans have it as '{name}'"))
+            notes.append(
+                warning(action.place, f"another action '{action.name}': plans have it as '{name}'")
+            )
         found[name] = replace(action, name=name)
     return tuple(found.values())
 
 
-def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bool, notes: list[str]) -> Action:
+def _action(
+    section: Section, names: Domain, derived: Set[str], counts_costs: bool, notes: list[str]
+) -> Action:
     if not section.items:
         raise error(section.group, "an action has no name")
     name = as_name(section.items[0], "an action's name")
     values = keyword_values(section.items[1:], f"action '{name.text}'", ACTION_KEYWORDS)
-    listed = as_group(values[":parameters"], "a list of parameters").items if ":parameters" in values else ()
+    listed = (
+        as_group(values[":parameters"], "a list of parameters").items
+        if ":parameters" in values
+        else ()
+    )
     written = parameters(listed, names.types)
     scope, bound = scope_of(names, notes=notes).with_variables(written)
-    precondition = parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    precondition = (
+        parse_formula(values[":precondition"], scope) if ":precondition" in values else And(())
+    )
     same = repeated(written, bound)
     precondition = And((precondition, *same)) if same else precondition
     effects = parse_effects(values[":effect"], scope, derived) if ":effect" in values else Effects()
@@ -158,4 +191,6 @@ def _action(section: Section, names: Domain, derived: Set[str], counts_costs: bo
 
 
 def _mentions(node: Node, word: str) -> bool:
-    return isinstance(node, Group) and (node.head == word or any(_mentions(item, word) for item in node.items))
+    return isinstance(node, Group) and (
+        node.head == word or any(_mentions(item, word) for item in node.items)
+    )

@@ -70,6 +70,7 @@ def _collect(
         return
     head = as_symbol(group.items[0], "a predicate or one of and, not, when, forall, increase")
     rest = group.items[1:]
+
     match head.text:
         case "and":
             for part in rest:
@@ -131,18 +132,21 @@ def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
     if target.head != TOTAL_COST or len(target.items) != 1:
         what = f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
         raise error(target, what)
+
     amount = rest[1]
     if isinstance(amount, Symbol):
         value = parse_number(amount)
         if value < 0:
             raise error(amount, f"an action's cost cannot be negative, found {amount.written}")
         return value
+
     if amount.head in ("+", "-", "*", "/"):
         raise error(
             amount,
             f"arithmetic such as {show(amount)} is not supported",
             remedy="Name a number or a function",
         )
+
     term = parse_function_term(amount, scope)
     if term.predicate == TOTAL_COST:
         raise error(amount, "the total cost cannot increase by itself")

@@ -51,7 +51,9 @@ class CompiledTask:
     facts: frozenset[Fact]
 
 
-def compile_away(domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]) -> CompiledTask:
+def compile_away(
+    domain: Domain, streams: StreamFile, goal: Formula, facts: frozenset[Fact]
+) -> CompiledTask:
     """Move what changes from the streams' domains into rules; nothing is changed where there is
     none.
 
@@ -65,15 +67,28 @@ def compile_away(domain: Domain, streams: StreamFile, goal: Formula, facts: froz
         return CompiledTask(domain, streams, goal, facts)
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in resting:
-            what = f"'{atom.predicate}' has to be false here, and its stream waits for what actions change"
-            remedy = "Put what it waits for in the action's precondition instead of the stream's :domain"
-            raise (InputError(what, remedy=remedy) if atom.place is None else error(atom.place, what, remedy=remedy))
-    awaited = {atom.predicate for stream in made for atom in stream.domain} & domain.fluent_predicates
+            what = (
+                f"'{atom.predicate}' has to be false here, "
+                "and its stream waits for what actions change"
+            )
+            remedy = (
+                "Put what it waits for in the action's precondition instead of the stream's :domain"
+            )
+            raise (
+                InputError(what, remedy=remedy)
+                if atom.place is None
+                else error(atom.place, what, remedy=remedy)
+            )
+
+    awaited = {
+        atom.predicate for stream in made for atom in stream.domain
+    } & domain.fluent_predicates
     rewriting = _Rewriting(domain, resting, sorted(awaited), facts)
     changed = {stream.name: rewriting.stream(stream) for stream in made}
     actions = tuple(rewriting.action(action) for action in domain.actions)
     derived = tuple(rewriting.rules)
     predicates = {**domain.predicates, **rewriting.predicates}
+
     return CompiledTask(
         replace(domain, predicates=predicates, actions=actions, derived=derived),
         replace(
@@ -117,7 +132,9 @@ class _Rewriting:
                 name = self._like(predicate, f"given-{predicate}")
                 self.started |= {(name, *fact[1:]) for fact in given}
                 terms = tuple(f"?x{i}" for i in range(len(domain.predicates[predicate].parameters)))
-                self.rules.append(_rule(Atom(self.now[predicate], terms), terms, (Atom(name, terms),)))
+                self.rules.append(
+                    _rule(Atom(self.now[predicate], terms), terms, (Atom(name, terms),))
+                )
 
     def stream(self, stream: Stream) -> Stream:
         """Rewrite a stream into one that does not wait, and add the rules for what it certifies."""
@@ -125,22 +142,32 @@ class _Rewriting:
         if not certified:
             return stream
         terms = (*stream.inputs, *stream.outputs)
-        result = Atom(self._new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms)
+        result = Atom(
+            self._new(f"{stream.name}-result", tuple(Parameter(term) for term in terms)), terms
+        )
         waits = [self._awaited(atom) for atom in stream.domain]
         body = (result, *(atom for atom in waits if atom is not None))
-        self.rules += [_rule(replace(atom, predicate=self.now[atom.predicate]), terms, body) for atom in certified]
+        self.rules += [
+            _rule(replace(atom, predicate=self.now[atom.predicate]), terms, body)
+            for atom in certified
+        ]
         static = tuple(atom for atom in stream.domain if atom.predicate not in self._changing)
         return replace(stream, domain=static, certified=(*stream.certified, result))
 
     def action(self, action: Action) -> Action:
         """Rewrite the action over the rules; what it makes true is noted as having been true."""
-        effects = [replace(effect, condition=renamed(effect.condition, self.now)) for effect in action.effects]
+        effects = [
+            replace(effect, condition=renamed(effect.condition, self.now))
+            for effect in action.effects
+        ]
         noted = [
             replace(effect, atom=replace(effect.atom, predicate=self.was[effect.atom.predicate]))
             for effect in effects
             if effect.adds and effect.atom.predicate in self.was
         ]
-        return replace(action, precondition=renamed(action.precondition, self.now), effects=(*effects, *noted))
+        return replace(
+            action, precondition=renamed(action.precondition, self.now), effects=(*effects, *noted)
+        )
 
     def _awaited(self, atom: Atom) -> Atom | None:
         """Return what a rule asks in the place of a stream's domain; nothing of what never

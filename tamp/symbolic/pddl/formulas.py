@@ -94,6 +94,7 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
         return And(())
     head = as_symbol(group.items[0], "a predicate or one of " + ", ".join(CONNECTIVES))
     rest = group.items[1:]
+
     match head.text:
         case "and":
             return And(tuple(parse_formula(part, scope) for part in rest))
@@ -139,6 +140,7 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
                     lacking(f"(= ... {show(item).strip(chr(39))})", "numeric or object fluents"),
                 )
         return _applied(group, Predicate("=", (Parameter("?a"), Parameter("?b"))), scope)
+
     if name in domain.predicates:
         return _applied(group, domain.predicates[name], scope)
     if name in domain.types:
@@ -147,6 +149,7 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
         if name in COMPOUND:
             raise error(head, unsupported(name, head.written))
         raise error(head, f"unknown connective '{head.written}'", found=name, choices=CONNECTIVES)
+
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
     words = dict.fromkeys((*domain.predicates, *(type_ for type_ in domain.types if type_ != "object")))
@@ -196,6 +199,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
             choices = scope.variables
             raise error(symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices)
         return scope.variables[symbol.text].name
+
     name = _object(symbol, scope)
     if name is not None and scope.domain.fits(scope.objects[name], types):
         return name
@@ -204,6 +208,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
         choices = (*scope.variables, *(fitting or scope.objects))
         message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
         raise error(symbol, message, found=symbol.written, choices=choices)
+
     own = " and ".join(scope.objects[name])
     general = _more_general(scope.objects[name], types, scope.domain)
     if scope.notes is not None and (general or scope.any_type):
@@ -211,6 +216,7 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
         what = f"'{name}' {said} {_article(own)}, where {_article(' or '.join(types))} is declared"
         scope.notes.append(warning(symbol, what))
         return name
+
     message = f"'{name}' is {_article(own)}, not {_article(' or '.join(types))}"
     raise error(symbol, message + ("" if fitting else "; there is none"), choices=fitting)
 

@@ -120,6 +120,7 @@ def _unachievable(
     for stream in (*streams.streams, *streams.rules) if streams else ():
         makers |= {atom.predicate for atom in stream.certified}
     given = {fact[0] for fact in initial}
+
     for atom in _atoms(goal, positive_only=True):
         if atom.predicate in makers or (atom.predicate in domain.types and atom.predicate not in domain.predicates):
             continue

@@ -42,6 +42,7 @@ def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain)
     name = as_name(section.items[0], "an optimizer's name")
     certified = {atom.predicate for stream in streams for atom in stream.certified}
     alone: dict[str, str] = {}
+
     for node in section.items[1:]:
         group = as_group(node, f"a part of the optimizer, one of {', '.join(PARTS)}")
         keyword = as_symbol(group.items[0], "a part's keyword") if group.items else None
@@ -58,8 +59,10 @@ def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain)
                 missing = f"no stream certifies ({predicate} ...)"
                 what = f"optimizer '{name.text}' is not called, and {missing}"
                 alone.setdefault(predicate, warning(where, f"{what}. {REMEDY}"))
+
     if alone:
         return [*alone.values()], [*alone.values()]
+
     return [
         warning(
             section.group,
@@ -84,6 +87,7 @@ def _promised(group: Group, keyword: str, domain: Domain) -> list[tuple[str, Gro
         )
     else:
         variables, facts = [as_variable(item) for item in head.items[1:]], head
+
     scope = scope_of(domain).with_variables(Parameter(symbol.text) for symbol in variables)[0]
     if facts is None:
         return []

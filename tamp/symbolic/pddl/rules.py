@@ -57,6 +57,7 @@ def parse_rule(section: Section, names: Domain, notes: list[str] | None = None) 
         message = f"'{predicate.name}' takes {wanted} argument{plural}, found {len(listed)}"
         form = " ".join((predicate.name, *(parameter.name for parameter in predicate.parameters)))
         raise error(head, message, remedy=f"Its form is ({form})")
+
     outer = _axiom_types(section, names)
     typed = {entry.name.text for entry in typed_list(head.items[1:], "a variable") if entry.types}
     own = tuple(

@@ -59,6 +59,7 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
     """Read `:keyword value :keyword value`; `owner` says whose they are: "action 'pick'"."""
     values: dict[str, Node] = {}
     position = 0
+
     while position < len(nodes):
         keyword = as_symbol(nodes[position], f"a keyword of {owner}: {', '.join(known)}")
         if keyword.text not in known and keyword.text in FEATURES:
@@ -77,6 +78,7 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
             raise error(keyword, f"'{keyword.text}' of {owner} has no value")
         values[keyword.text] = value
         position += 2
+
     return values
 
 

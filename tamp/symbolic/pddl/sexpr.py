@@ -52,27 +52,40 @@ def read(
     stack: list[tuple[Place, list[Node]]] = []
     lower: dict[str, str] = {}
     words = _words(text, name, line_offset, column_offset)
+
     for count, (word, line, column) in enumerate(words):
         items = stack[-1][1] if stack else forms
         if count >= MAX_TOKENS:
-            raise error(Place(name, line, column), f"more than {MAX_TOKENS:,} words and parentheses")
+            raise error(
+                Place(name, line, column), f"more than {MAX_TOKENS:,} words and parentheses"
+            )
         if word == "(":
             if len(stack) >= MAX_DEPTH:
-                raise error(Place(name, line, column), f"nested more than {MAX_DEPTH} parentheses deep")
+                raise error(
+                    Place(name, line, column), f"nested more than {MAX_DEPTH} parentheses deep"
+                )
             stack.append((Place(name, line, column), []))
         elif word == ")":
             if not stack:
-                culprit = surplus(_tokens(text, name, line_offset, column_offset)).place if count < MANY else None
+                culprit = (
+                    surplus(_tokens(text, name, line_offset, column_offset)).place
+                    if count < MANY
+                    else None
+                )
                 where = culprit or Place(name, line, column)
                 raise error(where, "this ')' closes nothing: there is one too many")
             place, inner = stack.pop()
             (stack[-1][1] if stack else forms).append(Group(tuple(inner), place))
         else:
-            items.append(Symbol(lower.setdefault(word, word.lower()), word, Place(name, line, column)))
+            items.append(
+                Symbol(lower.setdefault(word, word.lower()), word, Place(name, line, column))
+            )
+
     if stack:
         tokens = _tokens(text, name, line_offset, column_offset)
         culprit = left_open(tokens).place if len(tokens) < MANY else stack[-1][0]
         raise error(culprit, "this '(' is never closed: a ')' is missing")
+
     return tuple(forms)
 
 
@@ -110,7 +123,9 @@ def _tokens(text: str, file: str | None, line_offset: int, column_offset: int) -
     return tokens
 
 
-def _words(text: str, file: str | None, line_offset: int, column_offset: int) -> Iterator[tuple[str, int, int]]:
+def _words(
+    text: str, file: str | None, line_offset: int, column_offset: int
+) -> Iterator[tuple[str, int, int]]:
     """Generate each word and parenthesis with its line and column."""
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     known: dict[str, str] = {}

@@ -56,12 +56,16 @@ def without_started(domain: Domain, streams: StreamFile, goal: Formula) -> Start
     """
     made = [*streams.streams, *streams.rules]
     changing = domain.fluent_predicates
-    found = tuple(dict.fromkeys(a.predicate for s in made for a in s.certified if a.predicate in changing))
+    found = tuple(
+        dict.fromkeys(a.predicate for s in made for a in s.certified if a.predicate in changing)
+    )
     if not found:
         return Started(domain, streams, goal)
 
     _check(domain, made, goal, found)
-    start, gone, now = ({one: _new(f"{one}-{word}", domain) for one in found} for word in ("start", "gone", "now"))
+    start, gone, now = (
+        {one: _new(f"{one}-{word}", domain) for one in found} for word in ("start", "gone", "now")
+    )
     predicates = dict(domain.predicates)
     for one in found:
         for names in (start, gone, now):
@@ -91,8 +95,14 @@ def without_started(domain: Domain, streams: StreamFile, goal: Formula) -> Start
 
 
 def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequence[str]) -> None:
-    added = {effect.atom.predicate for action in domain.actions for effect in action.effects if effect.adds}
+    added = {
+        effect.atom.predicate
+        for action in domain.actions
+        for effect in action.effects
+        if effect.adds
+    }
     nowhere = Place(None, 1, 1)
+
     for stream in made:
         for atom in stream.domain:
             if atom.predicate in found and atom.predicate in added:
@@ -104,11 +114,18 @@ def _check(domain: Domain, made: Sequence[Stream], goal: Formula, found: Sequenc
             if name in found:
                 shown = f"stream '{stream.name}' is shown '{name}' through :fluents"
                 what = f"{shown}, which another stream certifies"
-                raise error(stream.place or nowhere, what, remedy="Give what is certified another name")
+                raise error(
+                    stream.place or nowhere, what, remedy="Give what is certified another name"
+                )
+
     tested = {a.predicate for s in made for a in s.certified if not set(a.terms) & set(s.outputs)}
+
     for atom, sign in atoms_of_conditions(domain, goal):
         if not sign and atom.predicate in found and atom.predicate in tested:
-            what = f"'{atom.predicate}' has to be false here, and a test that may still pass makes it true at the start"
+            what = (
+                f"'{atom.predicate}' has to be false here, "
+                "and a test that may still pass makes it true at the start"
+            )
             raise error(
                 atom.place or nowhere,
                 what,
@@ -120,7 +137,9 @@ def _action(action: Action, gone: Mapping[str, str], now: Mapping[str, str]) -> 
     """Rewrite the action over the rules; what it makes false is noted as gone, what it makes
     true as not gone.
     """
-    effects = [replace(effect, condition=renamed(effect.condition, now)) for effect in action.effects]
+    effects = [
+        replace(effect, condition=renamed(effect.condition, now)) for effect in action.effects
+    ]
     noted = [
         replace(
             effect,
@@ -130,7 +149,9 @@ def _action(action: Action, gone: Mapping[str, str], now: Mapping[str, str]) -> 
         for effect in effects
         if effect.atom.predicate in gone
     ]
-    return replace(action, precondition=renamed(action.precondition, now), effects=(*effects, *noted))
+    return replace(
+        action, precondition=renamed(action.precondition, now), effects=(*effects, *noted)
+    )
 
 
 def _rules(predicate: Predicate, start: str, gone: str, now: str) -> tuple[Derived, Derived]:
@@ -144,7 +165,9 @@ def _rules(predicate: Predicate, start: str, gone: str, now: str) -> tuple[Deriv
 
 
 def _renamed(atoms: Sequence[Atom], names: Mapping[str, str]) -> tuple[Atom, ...]:
-    return tuple(replace(atom, predicate=names.get(atom.predicate, atom.predicate)) for atom in atoms)
+    return tuple(
+        replace(atom, predicate=names.get(atom.predicate, atom.predicate)) for atom in atoms
+    )
 
 
 def _new(name: str, domain: Domain) -> str:

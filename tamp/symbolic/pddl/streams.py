@@ -61,9 +61,11 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
         tuple(note for _, alone in read for note in alone),
     )
     refuse_duplicates((as_symbol(section.items[0], "a name") for section in streamed), "stream")
+
     for keyword in (":function", ":predicate"):
         heads = (as_group(section.items[0], f"a {keyword[1:]}").items[0] for section in by_keyword[keyword])
         refuse_duplicates((as_symbol(head, "a name") for head in heads), keyword[1:])
+
     for predicate in result.predicates:
         _check_static(predicate, domain)
     return result
@@ -111,6 +113,7 @@ def _stream(section: Section, domain: Domain, waiting: bool) -> Stream:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
     fluents = tuple(_fluent(node, domain) for node in _list(values.get(":fluents"), ":fluents"))
+
     return Stream(
         name.text,
         tuple(symbol.text for symbol in inputs),
@@ -174,6 +177,7 @@ def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], A
                 values[":inputs"],
                 f"the inputs are not the arguments {' '.join(term.terms)} of the function",
             )
+
     condition = _atoms(node, scope, domain, f"the domain of function '{term.predicate}'")
     _check_covered(
         arguments,

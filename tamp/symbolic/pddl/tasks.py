@@ -99,6 +99,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
     costs: dict[Fact, float] = {}
+
     for node in items_of(sections, ":init"):
         if isinstance(node, Group) and node.head == "=":
             term, value = _cost(node, scope)
@@ -109,6 +110,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
             denied[_negative(node, scope)] = node
         else:
             facts.add(_fact(node, scope))
+
     for fact, node in denied.items():
         if fact in facts:
             raise error(node, f"({' '.join(fact)}) is said and denied at the start")
@@ -121,6 +123,7 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
         domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
         notes.append(warning(name, what))
+
     formula = parse_formula(goal.items[0], scope)
     return Task(name.text, domain, scope.objects, frozenset(facts), formula, costs, tuple(notes))
 

@@ -20,6 +20,7 @@ def astar(search: SearchSpace) -> Plan | None:
     estimates: dict[State, float] = {}
     queue: list[tuple[float, float, int, float, State, State]] = [(0.0, 0.0, 0, 0.0, s.initial, s.initial)]
     number = 0
+
     while queue:
         f, guess, _, cost, state, parent = heappop(queue)
         if cost > search.best[state]:
@@ -56,6 +57,7 @@ def astar(search: SearchSpace) -> Plan | None:
             if reached + rest < search.below:
                 number -= 1
                 heappush(queue, (reached + rest, rest, number, reached, after, state))
+
     search.bound = search.below
     return None
 

@@ -26,7 +26,7 @@ class Guard(NamedTuple):
     Attributes:
         facts: Fluent facts; the guard is *triggered* in the states that contain all of them.
         waived_by: The static fact, a test stream's result, whose truth makes the guard harmless;
-            its price is paid when the guard is triggered. None: nothing lifts it, the operator is
+            its price is paid when the guard is triggered. None: nothing waives it, the operator is
             inapplicable while the facts hold.
     """
 

@@ -21,7 +21,7 @@ class Step:
     Attributes:
         operator: What is applied.
         state: The fluent facts before it.
-        static: What it rests on there: its static preconditions, the facts that lift its triggered
+        static: What it rests on there: its static preconditions, the facts that waive its triggered
             guards, the static facts in the derivations of its derived preconditions and of the
             conditional effects that take place.
         derived: Those of the static facts that derivations rest on.
@@ -100,7 +100,9 @@ def trace(
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
-def replayed(instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
+def replayed(
+    instantiated: InstantiatedTask, actions: Iterable[tuple[str, tuple[str, ...]]]
+) -> bool:
     """Check that actions, by name and arguments, lead from the initial state to the goal."""
     operators: dict[tuple[str, tuple[str, ...]], list[Operator]] = {}
     for operator in instantiated.operators:
@@ -136,11 +138,14 @@ def _applied(
     derived, read, heads = supports(why, operator.positive)
     static = set(operator.static)
     guards = triggered(operator, state)
+
     for guard in guards:
         if guard.waived_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
         static.add(guard.waived_by)
+
     added, deleted = operator.added, operator.deleted
+
     for effect in operator.conditional:
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
             added |= effect.added
@@ -148,9 +153,13 @@ def _applied(
             static |= effect.static
             more = supports(why, effect.positive)
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
+
     after = (state - deleted) | added
     gone = state - after
-    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
+
+    return Step(
+        operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
+    ), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:

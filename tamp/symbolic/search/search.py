@@ -81,7 +81,7 @@ def search(
         heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues
             to each, "astar" takes the maximum, "eager" the sum.
         weight: Of the estimate in "wastar".
-        price: What the use of a static fact costs (by an operator resting on it, to lift a guard,
+        price: What the use of a static fact costs (by an operator resting on it, to waive a guard,
             and in the lazy searches where the goal is derived from it); may be infinite. A mapping
             of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
@@ -99,12 +99,16 @@ def search(
     if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(instantiated, price if price is not None else {})
-    run = SearchSpace(successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit)
+    run = SearchSpace(
+        successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit
+    )
+
     try:
         plan = SEARCHES[search](run, weight)
         reason = None if plan else Reason.UNSOLVABLE
     except SearchLimitReached as stop:
         plan, reason = None, stop.reason
+
     return Result(
         plan,
         reason,
@@ -123,6 +127,8 @@ def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:
     goal = instantiated.goal
     never = sorted(goal.positive - instantiated.reachable - instantiated.initial)
     deleted = {fact for o in instantiated.operators for fact in o.deleted}
-    deleted |= {fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted}
+    deleted |= {
+        fact for o in instantiated.operators for effect in o.conditional for fact in effect.deleted
+    }
     kept = sorted(("not", *fact) for fact in (goal.negative & instantiated.initial) - deleted)
     return (*never, *kept)

@@ -14,7 +14,11 @@ from functools import cache
 
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.symbolic.search.heuristics.loops.selection import choose
-from tamp.symbolic.search.heuristics.relaxed_state import RelaxedExploration, RelaxedState
+from tamp.symbolic.search.heuristics.relaxed_state import (
+    RelaxedExploration,
+    RelaxedState,
+    TriggeredGuards,
+)
 from tamp.symbolic.search.successors import State, Successors, bits
 
 MAX_RELAXED_STATES = 64
@@ -50,15 +54,18 @@ class Relaxation:
         self._of_operator: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.instantiated.axioms)
         negated = s.guard_mask | s.goal_absent
+
         for i in s.alive:
             negated |= s.absent[i]
             for _, negative, _, _ in s.conditional[i]:
                 negated |= negative
+
         for axiom in s.instantiated.axioms:
             negated |= s.mask(axiom.negative)
         self._negated = negated = negated & ~derived
         every = (1 << size) - 1
         split = cache(_split)
+
         for i in s.alive:
             deleted = every & ~s.kept[i] & ~s.added[i] & negated
             effects = [*split(s.added[i]), *(size + b for b in bits(deleted))]
@@ -77,6 +84,7 @@ class Relaxation:
                         s.cost[i] + step,
                         effects,
                     )
+
         for axiom, price in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
             cost = price if steps else 0.0
             self._add(
@@ -86,6 +94,7 @@ class Relaxation:
                 cost,
                 [s.number[axiom.head]],
             )
+
         self.free = [i for i, facts in enumerate(self._before) if not facts]
         self._removal = self._removal_costs()
         self._negative_goals = list(bits(s.goal_absent & ~derived))
@@ -104,7 +113,9 @@ class Relaxation:
         self._ends = kernels.integers(self.goals)
         self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
 
-    def _add(self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]) -> None:
+    def _add(
+        self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]
+    ) -> None:
         number = len(self._owners)
         self._owners.append(owner)
         self._before.append(before)
@@ -151,41 +162,28 @@ class Relaxation:
         return known
 
     def _relax(self, state: State) -> RelaxedState:
-        s, size, base = self._successors, self._size, self._base
-        dearer: list[int] = []
-        by: list[float] = []
-        waiting: dict[tuple[int, float], list[int]] = {}
-        raised: dict[int, float] = {}
-        blocked: dict[int, list[tuple[int, float]]] = {}
-        for fact in bits(state):
-            if fact in self._negative:
-                waiting[1 << fact, math.inf] = list(self._negative[fact])
-        for facts in s.triggered(state):
-            removal = min(self._removal[fact] for fact in bits(facts))
-            for operator, price in s.penalties(facts).items():
-                if price <= removal and price < math.inf:
-                    raised[operator] = raised.get(operator, 0.0) + price
-                else:
-                    blocked.setdefault(operator, []).append((facts, price))
-                for i in self._of_operator[operator]:
-                    if price <= removal and price < math.inf:
-                        dearer.append(i)
-                        by.append(price)
-                    else:
-                        waiting.setdefault((facts, price), []).append(i)
-        if not waiting and not dearer:
+        """Build the relaxed task in which the state's triggered guards are paid for, or waited for.
+
+        An operator waits until a guard's facts are removed, or until the guard is paid for.
+        """
+        size, base = self._size, self._base
+        found = self._triggered(state)
+        waiting, raised, blocked = found.waiting, found.raised, found.blocked
+        if not waiting and not found.dearer:
             return base
         operators, first = base.operators, base.facts
         waiters: list[int] = []
         guards: list[int] = []
         removers: list[int] = []
         removed: list[int] = []
+
         for guard, ((facts, _), those) in enumerate(waiting.items(), start=first):
             waiters += those
             guards += [guard] * len(those)
             complements = [size + fact for fact in bits(facts)]
             removers += complements
             removed += [guard] * len(complements)
+
         numbers = {key: guard for guard, key in enumerate(waiting, start=first)}
         kernels, last = base.kernels, operators + len(removers)
         added = kernels.integers(range(operators, last))
@@ -193,11 +191,21 @@ class Relaxation:
             kernels.integers([*waiters, *added]),
             kernels.integers([*guards, *removers]),
         )
-        paid = [(guard, price) for guard, (_, price) in enumerate(waiting, start=first) if price < math.inf]
+        paid = [
+            (guard, price)
+            for guard, (_, price) in enumerate(waiting, start=first)
+            if price < math.inf
+        ]
+
         return RelaxedState(
             kernels,
             before=kernels.appended(base.before, behind, sources, last),
-            costs=kernels.incremented(base.costs, kernels.integers(dearer), kernels.reals(by), len(removers)),
+            costs=kernels.incremented(
+                base.costs,
+                kernels.integers(found.dearer),
+                kernels.reals(found.by),
+                len(removers),
+            ),
             effects=kernels.appended(base.effects, added, kernels.integers(removed), last),
             needed=kernels.appended(base.needed, sources, behind, first + len(waiting)),
             paid=tuple(guard for guard, _ in paid),
@@ -208,6 +216,31 @@ class Relaxation:
                 for operator, keys in blocked.items()
             },
         )
+
+    def _triggered(self, state: State) -> TriggeredGuards:
+        """Find what a state's violated negative conditions and triggered guards change."""
+        s, found = self._successors, TriggeredGuards()
+        waiting, raised, blocked = found.waiting, found.raised, found.blocked
+        for fact in bits(state):
+            if fact in self._negative:
+                waiting[1 << fact, math.inf] = list(self._negative[fact])
+
+        for facts in s.triggered(state):
+            removal = min(self._removal[fact] for fact in bits(facts))
+            for operator, price in s.penalties(facts).items():
+                paid = price <= removal and price < math.inf
+                if paid:
+                    raised[operator] = raised.get(operator, 0.0) + price
+                else:
+                    blocked.setdefault(operator, []).append((facts, price))
+
+                for i in self._of_operator[operator]:
+                    if paid:
+                        found.dearer.append(i)
+                        found.by.append(price)
+                    else:
+                        waiting.setdefault((facts, price), []).append(i)
+        return found
 
     def explore(self, closed: State, *, additive: bool) -> RelaxedExploration:
         """Compute the costs of all facts from a state: sums of the preconditions' costs (hadd) or

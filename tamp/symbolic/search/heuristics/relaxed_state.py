@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
+from tamp.symbolic.search.successors import State
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,29 @@ class RelaxedState:
     def facts(self) -> int:
         """Count the facts, complements and guards."""
         return len(self.needed.starts) - 1
+
+
+@dataclass(slots=True)
+class TriggeredGuards:
+    """What triggered guards and violated negative conditions change in the relaxed task.
+
+    Attributes:
+        waiting: For each guard, its facts and price, the relaxed operators that wait for it.
+        dearer: Relaxed operators that pay for a guard.
+        by: How much.
+        raised: For each operator the prices of guards that its cost contains.
+        blocked: For each operator the guards that it waits for.
+    """
+
+    waiting: dict[tuple[State, float], list[int]] = field(
+        default_factory=dict[tuple[State, float], list[int]]
+    )
+    dearer: list[int] = field(default_factory=list[int])
+    by: list[float] = field(default_factory=list[float])
+    raised: dict[int, float] = field(default_factory=dict[int, float])
+    blocked: dict[int, list[tuple[State, float]]] = field(
+        default_factory=dict[int, list[tuple[State, float]]]
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
         for head, rules in by_head.items()
     }
     stratum: dict[Fact, int] = {}
+
     for component in components(below):
         members = set(component)
         for head in component:
@@ -36,13 +37,20 @@ def stratify(axioms: Iterable[Axiom]) -> tuple[Axiom, ...]:
                         f"the derived fact ({' '.join(head)}) depends on the negation of "
                         f"({' '.join(fact)}), "
                         "which depends on it",
-                        remedy="Derived predicates must be stratified: no predicate may depend on its own negation",
+                        remedy="Derived predicates must be stratified: "
+                        "no predicate may depend on its own negation",
                     )
-        level = 1 + max((stratum[f] for head in component for f in below[head] if f not in members), default=-1)
+        level = 1 + max(
+            (stratum[f] for head in component for f in below[head] if f not in members), default=-1
+        )
         for head in component:
             stratum[head] = level
+
     ordered = sorted(by_head, key=lambda head: (stratum[head], head))
-    return tuple(replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head])
+
+    return tuple(
+        replace(axiom, stratum=stratum[head]) for head in ordered for axiom in by_head[head]
+    )
 
 
 def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
@@ -54,6 +62,7 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
     stack: list[Fact] = []
     on_stack: set[Fact] = set()
     found: list[list[Fact]] = []
+
     for root in sorted(graph):
         if root in order:
             continue
@@ -82,10 +91,13 @@ def components(graph: dict[Fact, list[Fact]]) -> list[list[Fact]]:
                     found.append(sorted(stack[at:]))
                     on_stack.difference_update(stack[at:])
                     del stack[at:]
+
     return found
 
 
-def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None) -> dict[Fact, Axiom]:
+def derive(
+    axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | None = None
+) -> dict[Fact, Axiom]:
     """Derive the facts of a state, each with the axiom that gave it; in the order of derivation.
 
     Args:
@@ -98,6 +110,7 @@ def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | 
     why: dict[Fact, Axiom] = {}
     costs: dict[Fact, float] = {}
     start = 0
+
     while start < len(axioms):
         stop = start
         while stop < len(axioms) and axioms[stop].stratum == axioms[start].stratum:
@@ -121,6 +134,7 @@ def derive(axioms: Sequence[Axiom], state: Facts, price: Mapping[Fact, float] | 
                 why[head] = axiom
                 changed = True
         start = stop
+
     return why
 
 

@@ -145,6 +145,7 @@ def join(
     negative = list(body.negative)
     equalities = list(body.equalities)
     known = {variable: i for i, variable in enumerate(variables)}
+
     while rows:
         rows = _filter(relations, known, negative, equalities, rows)
         if not atoms:
@@ -176,6 +177,7 @@ def join(
                 rows = [row for row in rows if key(row) in table]
         for term in fresh:
             known[term] = len(known)
+
     if not rows:
         return []
     return list(map(getter([known[variable] for variable in order]), rows))

@@ -32,9 +32,15 @@ def lifted_effects(action: Action, normalizer: Normalizer) -> tuple[LiftedEffect
         names = {parameter.name: f"{parameter.name} of effect" for parameter in effect.parameters}
         scope = {parameter.name: parameter.types for parameter in action.parameters}
         scope |= {names[parameter.name]: parameter.types for parameter in effect.parameters}
-        atom = Atom(effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms))
+        atom = Atom(
+            effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms)
+        )
         simple = not effect.parameters and effect.condition == And(())
-        effects.append(LiftedEffect(atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple))
+        effects.append(
+            LiftedEffect(
+                atom, effect.adds, tuple(normalizer.split(effect.condition, scope, names)), simple
+            )
+        )
     return tuple(effects)
 
 
@@ -83,26 +89,9 @@ class Effects:
         """Find all instances of one effect, by the values of the action's variables that it
         mentions.
         """
-        body = self._predicates.body(condition)
-        used = {term for atom in (effect.atom, *condition.positive, *condition.negative) for term in atom.terms}
-        used |= {term for left, right, _ in condition.equalities for term in (left, right)}
-        shared = tuple(name for name in self._known if name in used)
-        # Types of the action's own parameters have been checked already; only what exists can be
-        # deleted.
-        atoms = [a for a in body.positive if not (a.predicate.startswith("type ") and a.terms[0] in self._known)]
-        if not effect.adds and effect.atom not in atoms:
-            atoms.append(effect.atom)
-        own = tuple(name for name in condition.names if name not in self._known)
+        shared, names, found = self._join(effect, condition, rows)
+        own = names[len(shared) :]
         key = getter([self._known[name] for name in shared])
-        start = list(dict.fromkeys(map(key, rows)))
-        names = (*shared, *own)
-        found = join(
-            self._predicates.relations,
-            Body(tuple(atoms), body.negative, body.equalities),
-            shared,
-            start,
-            names,
-        )
         known = {name: i for i, name in enumerate(names)}
         kinds = self._predicates.classify(condition)
         unnamed = [atom for atom in self._predicates.unnamed(condition) if atom.terms[0] in own]
@@ -120,11 +109,14 @@ class Effects:
                 ),
             )
         }
+
         instances: dict[Row, list[_Instance]] = {}
         width = len(shared)
         for row in sorted(found):
             needs = Needs([fill(row) for fill in fills["positive"]])
-            needs.negative += [f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])]
+            needs.negative += [
+                f for f in (fill(row) for fill in fills["negative"]) if f[1:] in self._rows(f[0])
+            ]
             for fill in fills["refuted"]:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if needs.impossible:
@@ -136,8 +128,50 @@ class Effects:
             positive = frozenset(needs.positive)
             if not effect.adds:
                 positive -= {changed}  # deleting what is absent changes nothing
-            instances.setdefault(row[:width], []).append((positive, frozenset(needs.negative), static, changed))
+            instances.setdefault(row[:width], []).append(
+                (positive, frozenset(needs.negative), static, changed)
+            )
         self._expanded.append((effect.adds, key, instances))
+
+    def _join(
+        self, effect: LiftedEffect, condition: Literals, rows: list[Row]
+    ) -> tuple[tuple[str, ...], tuple[str, ...], list[Row]]:
+        """Join an effect's condition with the bindings of the action's variables.
+
+        Returns:
+            The action's variables that it mentions, all its variables, those first, and bindings.
+        """
+        body = self._predicates.body(condition)
+        used = {
+            term
+            for atom in (effect.atom, *condition.positive, *condition.negative)
+            for term in atom.terms
+        }
+        used |= {term for left, right, _ in condition.equalities for term in (left, right)}
+        shared = tuple(name for name in self._known if name in used)
+
+        # Types of the action's own parameters have been checked already; only what exists can be
+        # deleted.
+        atoms = [
+            a
+            for a in body.positive
+            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
+        ]
+        if not effect.adds and effect.atom not in atoms:
+            atoms.append(effect.atom)
+        own = tuple(name for name in condition.names if name not in self._known)
+        key = getter([self._known[name] for name in shared])
+        start = list(dict.fromkeys(map(key, rows)))
+
+        names = (*shared, *own)
+        found = join(
+            self._predicates.relations,
+            Body(tuple(atoms), body.negative, body.equalities),
+            shared,
+            start,
+            names,
+        )
+        return shared, names, found
 
     def of(self, row: Row, before: Facts) -> tuple[Facts, Facts, tuple[ConditionalEffect, ...]]:
         """Return the added facts, deleted facts and conditional effects of the operator with this
@@ -148,7 +182,11 @@ class Effects:
             before: The operator's positive precondition: conditions need not repeat it.
         """
         added = [fill(row) for fill in self._adds]
-        deleted = [fact(row) for predicate, fill, fact in self._deletes if fill(row) in self._rows(predicate)]
+        deleted = [
+            fact(row)
+            for predicate, fill, fact in self._deletes
+            if fill(row) in self._rows(predicate)
+        ]
         universal: list[Facts] = []
         conditional: dict[tuple[Facts, Facts, Facts], tuple[list[Fact], list[Fact]]] = {}
         for number, (adds, key, instances) in enumerate(self._expanded):
@@ -181,14 +219,18 @@ class Effects:
             ),
         )
 
-    def _split(self, number: int, key: Row, instances: list[_Instance]) -> tuple[Facts, list[_Instance]]:
+    def _split(
+        self, number: int, key: Row, instances: list[_Instance]
+    ) -> tuple[Facts, list[_Instance]]:
         """Split off the facts changed in any case, one set for all operators with this key, from
         the conditional instances.
         """
         table = self._shared.setdefault(number, {})
         if key not in table:
             always = frozenset(
-                fact for positive, negative, static, fact in instances if not (positive or negative or static)
+                fact
+                for positive, negative, static, fact in instances
+                if not (positive or negative or static)
             )
             table[key] = (always, [i for i in instances if i[0] or i[1] or i[2]])
         return table[key]

@@ -29,7 +29,7 @@ class Instantiator:
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
         assumed: Static predicates of tests that are taken to hold, without listing their facts,
-            where they would lift a guard.
+            where they would waive a guard.
     """
 
     def __init__(self, task: Task, assumed: frozenset[str] = frozenset()) -> None:

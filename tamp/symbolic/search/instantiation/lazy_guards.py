@@ -22,7 +22,7 @@ class DerivedGuards:
     assumed atom in its body.
 
     For `blocked(o, p) <- at-pose(o2, p2), o != o2, not clear(o, p, o2, p2)`: each at-pose(o2, p2)
-    is a guard of `not blocked(o, p)`, lifted by clear(o, p, o2, p2) unless that fact is refused.
+    is a guard of `not blocked(o, p)`, waived by clear(o, p, o2, p2) unless that fact is refused.
     """
 
     def __init__(self, predicates: PredicateKinds, definition: Definition) -> None:

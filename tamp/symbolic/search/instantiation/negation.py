@@ -91,6 +91,7 @@ class Negation:
                 if row in reached:
                     self._known[predicate, *row].negative.append((predicate, *row))
             return
+
         for fact in sorted(self._predicates.given & {(predicate, *row) for row in new}):
             self._known[fact].impossible = True
         for number, definition in enumerate(self._predicates.definitions(predicate)):

@@ -114,6 +114,7 @@ class Normalizer:
                     tuple(dict.fromkeys(equalities)),
                 )
             )
+
         return disjuncts
 
     def _typed(self, atom: Atom) -> Atom:

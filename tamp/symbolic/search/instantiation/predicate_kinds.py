@@ -109,6 +109,7 @@ class PredicateKinds:
             for name, rules in definitions.items()
         }
         found: set[str] = set()
+
         for name in below:
             seen: set[str] = set()
             stack = list(below[name])
@@ -119,6 +120,7 @@ class PredicateKinds:
                     stack.extend(below[at])
             if name in seen:
                 found.add(name)
+
         return frozenset(found)
 
     def classify(self, literals: Literals) -> ClassifiedAtoms:

@@ -40,14 +40,21 @@ class Instantiation:
         absences: The static predicates that some condition wants not to hold.
     """
 
-    def __init__(self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []
+
         for action in task.domain.actions:
             effects = lifted_effects(action, normalizer)
             scope = {parameter.name: parameter.types for parameter in action.parameters}
-            split += [(action, literals, effects) for literals in normalizer.split(action.precondition, scope)]
+            split += [
+                (action, literals, effects)
+                for literals in normalizer.split(action.precondition, scope)
+            ]
+
         goals = normalizer.split(task.goal, {})
         if len(goals) != 1 or goals[0].variables:
             goals = [Literals((), (normalizer.goal(goals, task.goal),), (), ())]
@@ -65,9 +72,13 @@ class Instantiation:
             for name in normalizer.reached(roots, self._recursive)
         }
         self._rules = [variant.rule for variant in self._variants]
-        self._rules += [rule for variant in self._variants for rule in effect_rules(predicates, variant)]
+        self._rules += [
+            rule for variant in self._variants for rule in effect_rules(predicates, variant)
+        ]
         self._rules += [rule for pairs in self._definitions.values() for _, rule in pairs]
-        self.absences = frozenset(atom.predicate for rule in self._rules for atom in rule.body.negative)
+        self.absences = frozenset(
+            atom.predicate for rule in self._rules for atom in rule.body.negative
+        )
         self._made: list[dict[Row, Operator]] = [{} for _ in self._variants]
         self._joined = False
 
@@ -95,10 +106,15 @@ class Instantiation:
         goal = self._goal()
         self._derive()
         heads = {axiom.head for axiom in self._axioms}
-        reachable = {(p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)} | heads
+        reachable = {
+            (p, *row) for p in sorted(predicates.fluent) for row in predicates.relations.rows(p)
+        } | heads
         initial = frozenset(f for f in self._task.initial if f[0] in predicates.fluent)
         meanings = {**self._normalizer.meanings(), **self._negation.meanings}
-        return InstantiatedTask(initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings)
+
+        return InstantiatedTask(
+            initial, goal, tuple(operators), stratify(self._axioms), frozenset(reachable), meanings
+        )
 
     def _operators(self, variant: Variant, made: dict[Row, Operator]) -> list[Operator]:
         """Instantiate the operators of all bindings.
@@ -108,7 +124,9 @@ class Instantiation:
         rows = sorted(variant.rule.rows)
         if not rows:
             return []
-        template = OperatorTemplate(variant, rows, self._predicates, self._negation, self._need, self._cost)
+        template = OperatorTemplate(
+            variant, rows, self._predicates, self._negation, self._need, self._cost
+        )
 
         operators: list[Operator] = []
         for row in rows:
@@ -141,7 +159,10 @@ class Instantiation:
             needs.positive.append((atom.predicate, *atom.terms))
         for atom in kinds.static:
             fact = (atom.predicate, *atom.terms)
-            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(fact)
+            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(
+                fact
+            )
+
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
                 needs.negative.append((atom.predicate, *atom.terms))
@@ -156,13 +177,16 @@ class Instantiation:
             needs.add(refuted)
             if refuted.impossible:
                 needs.positive.append(("not", atom.predicate, *atom.terms))
+
         for fact in (*needs.positive, *needs.negative):
             self._need(fact)
         return Goal(frozenset(needs.positive), frozenset(needs.negative), frozenset(static))
 
     def _need(self, fact: Fact) -> None:
         """Ask for the axioms of a derived fact (others are ignored)."""
-        if (fact[0] in self._definitions or fact[0].startswith("choice ")) and fact not in self._needed:
+        if (
+            fact[0] in self._definitions or fact[0].startswith("choice ")
+        ) and fact not in self._needed:
             self._needed[fact] = None
             self._waiting.append(fact)
 
@@ -175,7 +199,9 @@ class Instantiation:
             for axiom in self._negation.axioms[used:]:
                 choices.setdefault(axiom.head, []).append(axiom)
             used = len(self._negation.axioms)
-            for axiom in choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact):
+            for axiom in (
+                choices.get(fact, ()) if fact[0].startswith("choice ") else self._axioms_of(fact)
+            ):
                 self._axioms.setdefault(axiom)
                 for other in sorted(axiom.positive | axiom.negative):
                     self._need(other)
@@ -194,13 +220,19 @@ class Instantiation:
                 static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
                 static += self._predicates.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
-                bodies.append([[filler((a.predicate, *a.terms), known) for a in part] for part in parts])
+                bodies.append(
+                    [[filler((a.predicate, *a.terms), known) for a in part] for part in parts]
+                )
                 for atom in kinds.refuted:
-                    self._negation.prepare(atom.predicate, map(filler(atom.terms, known), sorted(rule.rows)))
+                    self._negation.prepare(
+                        atom.predicate, map(filler(atom.terms, known), sorted(rule.rows))
+                    )
+
         axioms: list[Axiom] = []
         if fact in self._predicates.given:
             axioms.append(Axiom(fact, frozenset(), frozenset(), frozenset((fact,))))
         rows = self._predicates.relations.rows
+
         for i, row in self._heads[predicate].get(fact, ()):
             positive, negative, refuted, static = self._bodies[predicate][i]
             needs = Needs([fill(row) for fill in positive])
@@ -209,5 +241,8 @@ class Instantiation:
                 needs.add(self._negation.refute(fill(row), guards=False))
             if not needs.impossible:
                 given = frozenset([fill(row) for fill in static])
-                axioms.append(Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given))
+                axioms.append(
+                    Axiom(fact, frozenset(needs.positive), frozenset(needs.negative), given)
+                )
+
         return axioms

@@ -49,6 +49,7 @@ def bound_variables(formula: Formula, sign: bool) -> frozenset[str]:
             parts = [bound_variables(part, sign) for part in formula.parts]
             if isinstance(formula, And) is sign:
                 return frozenset[str]().union(*parts)
+            # A disjunction binds what all of its parts do.
             shared = set(parts[0]) if parts else set[str]()
             for part in parts:
                 shared &= part

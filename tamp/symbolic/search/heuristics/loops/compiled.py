@@ -67,4 +67,4 @@ COMPILED = Kernels(
     integers=_integers,
     reals=_reals,
 )
-"""The compiled loops."""
+"""The compiled kernels."""

@@ -10,7 +10,7 @@ from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals,
 
 @dataclass(frozen=True, slots=True)
 class Kernels:
-    """The loops, and what makes the lists that they take."""
+    """The inner loops, and what makes the lists that they take."""
 
     explore: Callable[[CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]]
     relaxed_plan: Callable[

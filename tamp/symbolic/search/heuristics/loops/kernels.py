@@ -1,5 +1,4 @@
-"""The inner loops of the heuristics, in Python that numba can compile: `selection` has them run
-either way.
+"""The inner loops of the heuristics, in Python that numba can compile; see `selection`.
 
 All in one file, since numba's cache watches one file only. Operators and facts are those of
 `heuristics.relaxation`. Compiled, all lists are arrays.
@@ -19,10 +18,10 @@ def _before(fact: int, other: int, keys: Reals, ranks: Integers) -> bool:
     return keys[fact] < keys[other] or (keys[fact] == keys[other] and ranks[fact] < ranks[other])
 
 
-def _push(fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers) -> int:
-    """Push a fact into the heap, or move it up after its key fell; return the new size. `places`
-    is -1 for facts outside.
-    """
+def _push(
+    fact: int, heap: list[int], places: list[int], size: int, keys: Reals, ranks: Integers
+) -> int:
+    """Push a fact, or move it up after its key fell; return the size. places[fact] < 0: outside."""
     k = places[fact]
     if k < 0:
         k = size
@@ -64,8 +63,7 @@ def explore(
     before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers, prices: Reals,
     goals: Integers, additive: bool,
 ) -> tuple[list[float], list[int]]:  # fmt: skip
-    """Compute what `Relaxation.explore` promises: the facts' costs and best supporters. Among
-    equals the first found goes first.
+    """Compute the facts' costs and best supporters (`Relaxation.explore`); the first found wins.
 
     `here`: the facts to begin with, and what each costs.
     """
@@ -92,7 +90,7 @@ def explore(
     now = 0.0
     while size:
         cost = reached[heap[0]]
-        if cost > now:
+        if cost > now:  # all facts that cost less are done: is the goal among them?
             dearest = 0.0
             for goal in goals:
                 dearest = max(dearest, reached[goal])
@@ -121,9 +119,7 @@ def relaxed_plan(
     reached: Reals, supporters: Integers, before: CsrRows, effects: CsrRows, costs: Reals,
     owners: Integers, operators: int, goals: Integers, guards: int,
 ) -> tuple[float, list[int]]:  # fmt: skip
-    """Extract what `Relaxation.plan` promises: the cost and the operators, ascending. Facts from
-    `guards` on are guards.
-    """
+    """Extract a relaxed plan (`Relaxation.plan`): cost and operators; guards from `guards`."""
     facts = len(reached)
     keys, ranks = full(facts, 0.0), count_up(facts)
     for fact in range(facts):
@@ -144,7 +140,7 @@ def relaxed_plan(
             if fact >= guards:
                 total += reached[fact]
             continue
-        if provided[fact] < math.inf and provided[fact] <= bounds[fact]:
+        if provided[fact] < math.inf and provided[fact] <= bounds[fact]:  # by one already chosen
             continue
         if i < len(owners) and owners[i] >= 0:
             chosen[owners[i]] = max(chosen[owners[i]], costs[i])
@@ -171,9 +167,7 @@ def _levels(
     before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers,
     heap: list[int], places: list[int], ranks: Integers,
 ) -> tuple[list[float], list[int], list[float]]:  # fmt: skip
-    """Compute the cost of all facts by hmax, and for each operator its dearest precondition and
-    what that costs.
-    """
+    """Compute all facts' costs by hmax, and each operator's dearest precondition with its cost."""
     reached = full(len(needs.starts) - 1, math.inf)
     dearest, levels = full(len(costs), -1), full(len(costs), math.inf)
     left = full(len(costs), 0)
@@ -190,7 +184,7 @@ def _levels(
         for n in range(needs.starts[fact], needs.starts[fact + 1]):
             i = needs.values[n]
             left[i] -= 1
-            if not left[i]:
+            if not left[i]:  # facts come in the order of cost: the last one is the dearest
                 dearest[i], levels[i] = fact, cost
                 for k in range(effects.starts[i], effects.starts[i + 1]):
                     if cost + costs[i] < reached[effects.values[k]]:
@@ -203,11 +197,9 @@ def _find_cut(
     effects: CsrRows, needs: CsrRows, adders: CsrRows, costs: Reals, here: Integers,
     dearest: Integers, goal: int, stack: list[int], cut: list[int],
 ) -> int:  # fmt: skip
-    """Fill `cut` with the operators that lead into the goal zone, the facts from which the goal
-    costs nothing more; return how many.
-    """
+    """Fill `cut` with the operators that enter the zone where the goal is free; return how many."""
     zone, seen = full(len(stack), False), full(len(stack), False)
-    zone[goal] = True
+    zone[goal] = True  # backward over operators that cost nothing
     stack[0] = goal
     size, count = 1, 0
     while size:
@@ -219,7 +211,7 @@ def _find_cut(
                 zone[other] = True
                 stack[size] = other
                 size += 1
-    for fact in here:
+    for fact in here:  # forward from the state, up to the zone
         if not zone[fact] and not seen[fact]:
             seen[fact] = True
             stack[size] = fact
@@ -250,9 +242,7 @@ def landmark_cut(
     before: CsrRows, effects: CsrRows, needs: CsrRows, adders: CsrRows, prices: Reals,
     here: Integers, owners: Integers, groups: CsrRows, goal: int,
 ) -> float:  # fmt: skip
-    """Compute what `LandmarkCut.value` promises. The row of an owner in `groups`: its operators,
-    which get cheaper together.
-    """
+    """Compute `LandmarkCut.value`. Row i of `groups`: operators of owner i, cheaper together."""
     facts, operators = len(needs.starts) - 1, len(prices)
     costs = full(operators, 0.0)
     for i in range(operators):
@@ -288,7 +278,7 @@ def landmark_cut(
                 if levels[i] + costs[i] < reached[effects.values[k]]:
                     reached[effects.values[k]] = levels[i] + costs[i]
                     size = _push(effects.values[k], heap, places, size, reached, ranks)
-        while size:
+        while size:  # hmax again, only where costs fell
             fact = _pop(heap, places, size, reached, ranks)
             size -= 1
             for n in range(needs.starts[fact], needs.starts[fact + 1]):
