@@ -27,7 +27,9 @@ def facts_of(nodes: Sequence[Node]) -> Iterator[tuple[str, int, Group]]:
             after = [b for a, b in zip([None, *items], items, strict=False) if not _lists(a)]
             yield from facts_of(after)
         elif head in (":variables", ":constraint"):
-            yield from facts_of([b for a, b in zip(node.items, node.items[1:], strict=False) if not _lists(a)])
+            yield from facts_of(
+                [b for a, b in zip(node.items, node.items[1:], strict=False) if not _lists(a)]
+            )
         elif head == "and":
             yield from facts_of(node.items[1:])
         elif head is not None and head[0] not in "?:" and head not in RESERVED:

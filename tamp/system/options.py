@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import inspect
 import io
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 import tyro
 
 from tamp.errors import InputError
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 CONFIG = (tyro.conf.FlagCreatePairsOff,)
 """How tyro reads all commands: a flag has no --no-flag beside it."""
@@ -93,7 +91,7 @@ class OneOf:
             raise InputError(f"unknown {self.what} '{value}'", found=value, choices=self.choices)
 
 
-def check_rules(options: DataclassInstance) -> None:
+def check_rules(options: Any) -> None:
     """Check every option that was given against the rules in its annotation.
 
     Raises:
@@ -108,7 +106,7 @@ def check_rules(options: DataclassInstance) -> None:
             check_rules(value)
 
 
-def changed(options: DataclassInstance, kind: type[Note]) -> Iterator[tuple[str, Note]]:
+def changed(options: Any, kind: type[Note]) -> Iterator[tuple[str, Note]]:
     """Find the options that are not as usual and have a note of this kind in their annotation.
 
     Yields:
@@ -215,13 +213,16 @@ class _Option:
     group: type | None
 
 
-def _annotated(kind: type) -> Iterator[_Option]:
-    """Go through the fields of a dataclass of options; one that is a dataclass itself is a group."""
+@functools.cache
+def _annotated(kind: type) -> tuple[_Option, ...]:
+    """List the fields of a dataclass of options; one that is a dataclass itself is a group."""
+    options: list[_Option] = []
     for name, hint in get_type_hints(kind, include_extras=True).items():
         bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
         notes = getattr(hint, "__metadata__", ())
         group = bare if isinstance(bare, type) and is_dataclass(bare) else None
-        yield _Option(name, f"--{name.replace('_', '-')}", notes, group)
+        options.append(_Option(name, f"--{name.replace('_', '-')}", notes, group))
+    return tuple(options)
 
 
 def _names(kind: type) -> Iterator[str]:
@@ -235,8 +236,8 @@ def _names(kind: type) -> Iterator[str]:
 
 def _check_names(kind: type, words: Sequence[str], remedy: str = "") -> None:
     """Refuse an option that there is not, with the one that was probably meant."""
-    known = [*_names(kind), "--help"]
-    for word in words:
-        name = word.partition("=")[0].replace("_", "-")
-        if name.startswith("--") and name not in known:
+    given = [word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")]
+    known = [*_names(kind), "--help"] if given else []
+    for name in given:
+        if name not in known:
             raise InputError(f"unknown option '{name}'", found=name, choices=known, remedy=remedy)

@@ -22,7 +22,9 @@ def headline(problem: SymbolicProblem) -> str:
     task = problem.task
     goals = len(task.goal.parts) if isinstance(task.goal, And) else 1
     objects = _count(len(task.objects), "object")
-    return f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    return (
+        f"{printable(problem.name)}: {_count(goals, 'goal')}, {objects}, domain {task.domain.name}"
+    )
 
 
 def summary(solution: SymbolicSolution) -> str:
@@ -122,7 +124,9 @@ def write_symbolic_plan(solution: SymbolicSolution, path: Path) -> Path:
 
 
 def _plan(solution: SymbolicSolution) -> dict[str, Any]:
-    actions = [{"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan]
+    actions = [
+        {"name": o.name, "arguments": list(o.arguments), "cost": o.cost} for o in solution.plan
+    ]
     return {"actions": actions, "cost": solution.cost, "optimal": solution.optimal}
 
 

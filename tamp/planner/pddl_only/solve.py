@@ -126,10 +126,14 @@ def solve_symbolic(
         return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline))
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
-        return SymbolicSolution(problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()})
+        return SymbolicSolution(
+            problem, outcome, search, heuristic, seconds={"total": deadline.elapsed()}
+        )
 
 
-def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline) -> SymbolicSolution:
+def _solve(
+    problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline
+) -> SymbolicSolution:
     started = time.perf_counter()
     task = problem.task
     instantiated = instantiate(task)
@@ -147,7 +151,9 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
 
     done = time.perf_counter()
-    outcome = Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
+    outcome = (
+        Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
+    )
     infeasible = outcome is Outcome.INFEASIBLE
 
     return SymbolicSolution(
@@ -156,8 +162,11 @@ def _solve(problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadli
         name,
         heuristic,
         plan=found.plan.operators if found.plan is not None else (),
-        optimal=found.plan is not None and name == "astar" and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=tuple(dict.fromkeys(refuted)) + (_why(problem, instantiated, deadline) if infeasible else ()),
+        optimal=found.plan is not None
+        and name == "astar"
+        and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
+        explanation=tuple(dict.fromkeys(refuted))
+        + (_why(problem, instantiated, deadline) if infeasible else ()),
         expanded=found.expanded,
         evaluated=found.evaluated,
         operators=len(instantiated.operators),
@@ -177,7 +186,9 @@ def refutation(task: Task, plan: Plan | None) -> str | None:
     return None if reason is None else f"{REFUTED}: {reason}"
 
 
-def _why(problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Deadline) -> tuple[str, ...]:
+def _why(
+    problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Deadline
+) -> tuple[str, ...]:
     task = problem.task
     facts = {*task.initial, *type_facts(task), *instantiated.reachable, *instantiated.initial}
     missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
@@ -185,4 +196,6 @@ def _why(problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Dea
     def towards(goal: Formula) -> InstantiatedTask:
         return instantiate(replace(task, goal=goal))
 
-    return explain_infeasible(StreamTask(task, (), {}), instantiated, {}, missing, deadline, towards)
+    return explain_infeasible(
+        StreamTask(task, (), {}), instantiated, {}, missing, deadline, towards
+    )

@@ -72,7 +72,9 @@ class Complements(NamedTuple):
     copies: dict[str, str]
 
 
-def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) -> tuple[Domain, Formula]:
+def with_complements(
+    domain: Domain, goal: Formula, decided: Collection[str]
+) -> tuple[Domain, Formula]:
     """Rewrite actions, rules and goal so that the decided predicates and their complements occur
     positively only.
 
@@ -80,12 +82,20 @@ def with_complements(domain: Domain, goal: Formula, decided: Collection[str]) ->
     negation, is helped by what makes it true being false. A derived predicate that is needed both
     ways gets a copy for the negations.
     """
-    names = {predicate: complement_name(predicate, domain) for predicate in decided if predicate in domain.predicates}
+    names = {
+        predicate: complement_name(predicate, domain)
+        for predicate in decided
+        if predicate in domain.predicates
+    }
     if not names:
         return domain, goal
     signs = _signs(domain, goal)
-    both = [predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2]
-    instead = Complements(names, {predicate: complement_name(predicate, domain) for predicate in both})
+    both = [
+        predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2
+    ]
+    instead = Complements(
+        names, {predicate: complement_name(predicate, domain) for predicate in both}
+    )
     predicates = dict(domain.predicates)
     for predicate, name in {**instead.complements, **instead.copies}.items():
         predicates[name] = Predicate(name, domain.predicates[predicate].parameters)
@@ -117,7 +127,9 @@ def _rewritten(action: Action, instead: Complements) -> Action:
             decided = Or((happens, does_not))
             known.append(Forall(effect.parameters, decided) if effect.parameters else decided)
         effects.append(replace(effect, condition=happens))
-    return replace(action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects))
+    return replace(
+        action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects)
+    )
 
 
 def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
@@ -128,7 +140,9 @@ def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
         more = False
         for rule in domain.derived:
             used = {atom.predicate for atom, _ in _atoms(rule.body, True)}
-            if rule.head.predicate not in found and any(one in decided or one in found for one in used):
+            if rule.head.predicate not in found and any(
+                one in decided or one in found for one in used
+            ):
                 found[rule.head.predicate] = None
                 more = True
     return list(found)
@@ -154,7 +168,11 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
     for action in domain.actions:
         stack += _atoms(action.precondition, True)
         for effect in action.effects:
-            stack += [(atom, sign) for atom, one in _atoms(effect.condition, True) for sign in (one, not one)]
+            stack += [
+                (atom, sign)
+                for atom, one in _atoms(effect.condition, True)
+                for sign in (one, not one)
+            ]
     while stack:
         atom, sign = stack.pop()
         yield atom, sign

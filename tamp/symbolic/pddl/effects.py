@@ -95,7 +95,9 @@ def _collect(
                 raise error(head, "a cost inside 'when' or 'forall' is not supported")
             effects.cost = _added(effects.cost, _increase(group, rest, scope), head)
         case "decrease" | "assign" | "scale-up" | "scale-down":
-            raise error(head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)")
+            raise error(
+                head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)"
+            )
         case "probabilistic" | "oneof" if head.text not in scope.domain.predicates:
             raise error(head, unsupported(head.text))
         case "not":
@@ -130,7 +132,9 @@ def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
     _expect(group, 2, "(total-cost) and an amount")
     target = as_group(rest[0], "(total-cost)")
     if target.head != TOTAL_COST or len(target.items) != 1:
-        what = f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
+        what = (
+            f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
+        )
         raise error(target, what)
 
     amount = rest[1]
@@ -164,4 +168,6 @@ def _added(cost: float | Atom | None, more: float | Atom, head: Symbol) -> float
 def _expect(group: Group, wanted: int, what: str) -> None:
     if len(group.items) - 1 != wanted:
         found = len(group.items) - 1
-        raise error(group, f"'{group.head}' takes {what}, found {found} part{'' if found == 1 else 's'}")
+        raise error(
+            group, f"'{group.head}' takes {what}, found {found} part{'' if found == 1 else 's'}"
+        )

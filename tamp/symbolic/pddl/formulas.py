@@ -152,7 +152,9 @@ def parse_atom(node: Node, scope: Scope) -> Atom:
 
     if name in domain.functions:
         raise error(head, f"'{head.written}' is a function, not a predicate")
-    words = dict.fromkeys((*domain.predicates, *(type_ for type_ in domain.types if type_ != "object")))
+    words = dict.fromkeys(
+        (*domain.predicates, *(type_ for type_ in domain.types if type_ != "object"))
+    )
     raise error(head, f"unknown predicate '{head.written}'", found=name, choices=words)
 
 
@@ -188,7 +190,8 @@ def _applied(group: Group, predicate: Predicate, scope: Scope) -> Atom:
         raise error(group, message, remedy=f"Its form is ({predicate.name}{names})")
     terms = zip(group.items[1:], predicate.parameters, strict=True)
     checked = tuple(
-        _term(as_symbol(node, "a variable or an object"), parameter.types, scope) for node, parameter in terms
+        _term(as_symbol(node, "a variable or an object"), parameter.types, scope)
+        for node, parameter in terms
     )
     return Atom(predicate.name, checked, group.place)
 
@@ -197,7 +200,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     if symbol.text.startswith("?"):
         if symbol.text not in scope.variables:
             choices = scope.variables
-            raise error(symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices)
+            raise error(
+                symbol, f"unknown variable '{symbol.written}'", found=symbol.text, choices=choices
+            )
         return scope.variables[symbol.text].name
 
     name = _object(symbol, scope)
@@ -206,7 +211,9 @@ def _term(symbol: Symbol, types: tuple[str, ...], scope: Scope) -> str:
     fitting = [other for other, own in scope.objects.items() if scope.domain.fits(own, types)]
     if name is None:
         choices = (*scope.variables, *(fitting or scope.objects))
-        message = f"unknown object '{symbol.written}'" + ("" if choices else "; there are no objects")
+        message = f"unknown object '{symbol.written}'" + (
+            "" if choices else "; there are no objects"
+        )
         raise error(symbol, message, found=symbol.written, choices=choices)
 
     own = " and ".join(scope.objects[name])

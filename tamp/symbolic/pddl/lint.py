@@ -37,7 +37,9 @@ def lint(
         initial: The facts of the problem's initial state.
     """
     found: list[tuple[Place, str]] = []
-    asked = {atom.predicate for atom in _conditions(domain)} | {atom.predicate for atom in _atoms(goal)}
+    asked = {atom.predicate for atom in _conditions(domain)} | {
+        atom.predicate for atom in _atoms(goal)
+    }
     found += _unused_predicates(domain, streams, asked)
     if streams is not None:
         found += _unused_streams(domain, streams, asked, goal is not None)
@@ -46,7 +48,9 @@ def lint(
     if goal is not None:
         found += _unachievable(domain, streams, goal, initial)
     found.sort(key=lambda row: (row[0].file or "", row[0].line, row[0].column, row[1]))
-    return tuple(dict.fromkeys((*domain.notes, *(warning(place, message) for place, message in found))))
+    return tuple(
+        dict.fromkeys((*domain.notes, *(warning(place, message) for place, message in found)))
+    )
 
 
 def _unused_predicates(
@@ -59,7 +63,9 @@ def _unused_predicates(
     made |= domain.derived_predicates
     shown: set[str] = set()
     for stream in (*streams.streams, *streams.rules) if streams else ():
-        shown |= {atom.predicate for atom in (*stream.domain, *stream.certified)} | set(stream.fluents)
+        shown |= {atom.predicate for atom in (*stream.domain, *stream.certified)} | set(
+            stream.fluents
+        )
     for function in streams.functions if streams else ():
         shown |= {atom.predicate for atom in function.domain}
     for predicate in domain.predicates.values():
@@ -88,7 +94,9 @@ def _unused_streams(
                 grows = True
     for stream in waiting:
         if stream.place is not None and stream not in streams.rules:
-            facts = " or ".join(dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified))
+            facts = " or ".join(
+                dict.fromkeys(f"({atom.predicate} ...)" for atom in stream.certified)
+            )
             yield stream.place, f"stream '{stream.name}' is never used: nothing asks for {facts}"
 
 
@@ -115,17 +123,28 @@ def _unachievable(
     """Find goal atoms of predicates that nothing makes true, and that do not hold at the start
     either.
     """
-    makers = {effect.atom.predicate for action in domain.actions for effect in action.effects if effect.adds}
+    makers = {
+        effect.atom.predicate
+        for action in domain.actions
+        for effect in action.effects
+        if effect.adds
+    }
     makers |= domain.derived_predicates | {"="}
     for stream in (*streams.streams, *streams.rules) if streams else ():
         makers |= {atom.predicate for atom in stream.certified}
     given = {fact[0] for fact in initial}
 
     for atom in _atoms(goal, positive_only=True):
-        if atom.predicate in makers or (atom.predicate in domain.types and atom.predicate not in domain.predicates):
+        if atom.predicate in makers or (
+            atom.predicate in domain.types and atom.predicate not in domain.predicates
+        ):
             continue
         without_variables = not any(term.startswith("?") for term in atom.terms)
-        if (atom.predicate, *atom.terms) in initial if without_variables else atom.predicate in given:
+        if (
+            (atom.predicate, *atom.terms) in initial
+            if without_variables
+            else atom.predicate in given
+        ):
             continue
         if atom.place is not None:
             text = " ".join((atom.predicate, *atom.terms))
@@ -144,7 +163,9 @@ def _conditions(domain: Domain) -> Iterator[Atom]:
         yield from _atoms(rule.body)
 
 
-def _atoms(formula: Formula | None, *, positive_only: bool = False, sign: bool = True) -> Iterator[Atom]:
+def _atoms(
+    formula: Formula | None, *, positive_only: bool = False, sign: bool = True
+) -> Iterator[Atom]:
     parts: Iterable[Formula] = ()
     match formula:
         case None:

@@ -29,7 +29,9 @@ REMEDY = (
 KEYWORDS = (":inputs", ":domain", ":graph", ":necessary", ":fluents")
 
 
-def check_optimizer(section: Section, streams: Sequence[Stream], domain: Domain) -> tuple[list[str], list[str]]:
+def check_optimizer(
+    section: Section, streams: Sequence[Stream], domain: Domain
+) -> tuple[list[str], list[str]]:
     """Read one optimizer: notes of it, and of them those of facts that nothing else certifies.
 
     Initial facts may stand for those, or no plan need them.
@@ -80,7 +82,9 @@ def _promised(group: Group, keyword: str, domain: Domain) -> list[tuple[str, Gro
     head = as_group(group.items[1], "a list of variables, or a fact such as (cfree ?a ?b)")
     values = keyword_values(group.items[2:], f"the {keyword[1:]}", KEYWORDS)
     if keyword == ":variables":
-        inputs = as_group(values[":inputs"], "a list after :inputs").items if ":inputs" in values else ()
+        inputs = (
+            as_group(values[":inputs"], "a list after :inputs").items if ":inputs" in values else ()
+        )
         variables, facts = (
             [as_variable(item) for item in (*head.items, *inputs)],
             values.get(":graph"),

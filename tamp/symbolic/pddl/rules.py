@@ -22,11 +22,15 @@ def rule_head(section: Section, names: Domain) -> str:
         raise error(head, "expected a fact such as (on ?a ?b), found '()'")
     if symbol.text not in names.predicates:
         choices = names.predicates
-        raise error(symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices)
+        raise error(
+            symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices
+        )
     return symbol.text
 
 
-def redefinition(section: Section, predicates: Mapping[str, Predicate]) -> Iterator[tuple[str, tuple[Predicate, str]]]:
+def redefinition(
+    section: Section, predicates: Mapping[str, Predicate]
+) -> Iterator[tuple[str, tuple[Predicate, str]]]:
     """Return the predicate as a rule's head has it, with a warning, where it is declared with
     another number of arguments.
     """
@@ -61,7 +65,9 @@ def parse_rule(section: Section, names: Domain, notes: list[str] | None = None) 
     outer = _axiom_types(section, names)
     typed = {entry.name.text for entry in typed_list(head.items[1:], "a variable") if entry.types}
     own = tuple(
-        parameter if parameter.name in typed else replace(parameter, types=outer.get(parameter.name, declared.types))
+        parameter
+        if parameter.name in typed
+        else replace(parameter, types=outer.get(parameter.name, declared.types))
         for parameter, declared in zip(listed, predicate.parameters, strict=True)
     )
     scope, bound = scope_of(names, notes=notes).with_variables(own)
@@ -99,5 +105,7 @@ def _axiom_types(section: Section, names: Domain) -> dict[str, tuple[str, ...]]:
     node = values.get(":parameters")
     if node is None:
         return {}
-    listed: tuple[Parameter, ...] = parameters(as_group(node, "a list of parameters").items, names.types)
+    listed: tuple[Parameter, ...] = parameters(
+        as_group(node, "a list of parameters").items, names.types
+    )
     return {parameter.name: parameter.types for parameter in listed}

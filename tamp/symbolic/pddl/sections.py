@@ -22,7 +22,9 @@ class Section:
     group: Group
 
 
-def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path | None) -> tuple[Symbol, list[Section]]:
+def read_sections(
+    text: str, kind: str, known: Sequence[str], file: str | Path | None
+) -> tuple[Symbol, list[Section]]:
     """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords
     checked.
     """
@@ -36,8 +38,12 @@ def read_sections(text: str, kind: str, known: Sequence[str], file: str | Path |
     if title.head != kind:
         raise error(title, f"expected ({kind} NAME), found {show(title)}")
     if len(title.items) != 2:
-        raise error(title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names")
-    return as_name(title.items[1], "a name"), [_section(item, kind, known) for item in form.items[2:]]
+        raise error(
+            title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names"
+        )
+    return as_name(title.items[1], "a name"), [
+        _section(item, kind, known) for item in form.items[2:]
+    ]
 
 
 def single(sections: Sequence[Section], keyword: str) -> Section | None:

@@ -31,7 +31,9 @@ SECTIONS = (":stream", ":wild-stream", ":function", ":predicate", ":rule", ":opt
 STREAM_KEYWORDS = (":inputs", ":domain", ":fluents", ":outputs", ":certified")
 
 
-def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, waiting: bool = False) -> StreamFile:
+def parse_streams(
+    text: str, domain: Domain, file: str | Path | None = None, *, waiting: bool = False
+) -> StreamFile:
     """Read the streams of a domain.
 
     Args:
@@ -45,15 +47,26 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
         InputError: With file, line and column of what is wrong.
     """
     name, sections = read_sections(text, "stream", SECTIONS, file)
-    by_keyword = {keyword: [s for s in sections if s.keyword.text == keyword] for keyword in SECTIONS}
-    streamed = [section for section in sections if section.keyword.text in (":stream", ":wild-stream")]
+    by_keyword = {
+        keyword: [s for s in sections if s.keyword.text == keyword] for keyword in SECTIONS
+    }
+    streamed = [
+        section for section in sections if section.keyword.text in (":stream", ":wild-stream")
+    ]
     streams = [_stream(section, domain, waiting) for section in streamed]
-    rules = [_rule(number, section, domain, waiting) for number, section in enumerate(by_keyword[":rule"], start=1)]
-    read = [check_optimizer(section, [*streams, *rules], domain) for section in by_keyword[":optimizer"]]
+    rules = [
+        _rule(number, section, domain, waiting)
+        for number, section in enumerate(by_keyword[":rule"], start=1)
+    ]
+    read = [
+        check_optimizer(section, [*streams, *rules], domain) for section in by_keyword[":optimizer"]
+    ]
     result = StreamFile(
         name.text,
         tuple(streams),
-        tuple(_function(section, domain, parse_function_term) for section in by_keyword[":function"]),
+        tuple(
+            _function(section, domain, parse_function_term) for section in by_keyword[":function"]
+        ),
         None if file is None else str(file),
         tuple(_function(section, domain, parse_atom) for section in by_keyword[":predicate"]),
         tuple(rules),
@@ -63,7 +76,10 @@ def parse_streams(text: str, domain: Domain, file: str | Path | None = None, *, 
     refuse_duplicates((as_symbol(section.items[0], "a name") for section in streamed), "stream")
 
     for keyword in (":function", ":predicate"):
-        heads = (as_group(section.items[0], f"a {keyword[1:]}").items[0] for section in by_keyword[keyword])
+        heads = (
+            as_group(section.items[0], f"a {keyword[1:]}").items[0]
+            for section in by_keyword[keyword]
+        )
         refuse_duplicates((as_symbol(head, "a name") for head in heads), keyword[1:])
 
     for predicate in result.predicates:
@@ -106,7 +122,9 @@ def _stream(section: Section, domain: Domain, waiting: bool) -> Stream:
     values = keyword_values(section.items[1:], owner, STREAM_KEYWORDS)
     inputs, outputs = (_variables(values.get(key), key) for key in (":inputs", ":outputs"))
     refuse_duplicates((*inputs, *outputs), f"variable of {owner}:")
-    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
+    condition = _atoms(
+        values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting
+    )
     scope, where = _scope(domain, [*inputs, *outputs]), f":certified of {owner}"
     certified = _atoms(values.get(":certified"), scope, domain, where, waiting, derived=False)
     if not certified:
@@ -132,9 +150,13 @@ def _rule(number: int, section: Section, domain: Domain, waiting: bool) -> Strea
     owner = f"rule {number}"
     values = keyword_values(section.items, owner, (":inputs", ":domain", ":certified"))
     inputs = _variables(values.get(":inputs"), ":inputs")
-    condition = _atoms(values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting)
+    condition = _atoms(
+        values.get(":domain"), _scope(domain, inputs), domain, f":domain of {owner}", waiting
+    )
     where = f":certified of {owner}"
-    certified = _atoms(values.get(":certified"), _scope(domain, inputs), domain, where, waiting, derived=False)
+    certified = _atoms(
+        values.get(":certified"), _scope(domain, inputs), domain, where, waiting, derived=False
+    )
     if not certified:
         raise error(values.get(":certified", section.group), f"{owner} certifies nothing")
     _check_covered(inputs, condition, f"input of {owner} does not stand in its :domain")
@@ -149,7 +171,9 @@ def _check_static(predicate: Function, domain: Domain) -> None:
         (domain.derived_predicates, "derived"),
     ):
         if predicate.name in names and predicate.place:
-            raise error(predicate.place, f"'{predicate.name}' is {what}, so Python cannot decide it")
+            raise error(
+                predicate.place, f"'{predicate.name}' is {what}, so Python cannot decide it"
+            )
 
 
 def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], Atom]) -> Function:
@@ -204,9 +228,15 @@ def _atoms(
     atoms = parse_conjunction(node, scope) if node is not None else ()
     for atom in () if may_change and derived else atoms:
         kind = "derived" if atom.predicate in domain.derived_predicates else ""
-        kind = "changed by actions" if atom.predicate in domain.fluent_predicates and not may_change else kind
+        kind = (
+            "changed by actions"
+            if atom.predicate in domain.fluent_predicates and not may_change
+            else kind
+        )
         if kind and atom.place:
-            remedy = "Streams speak of what never changes; a function sees the state through :fluents"
+            remedy = (
+                "Streams speak of what never changes; a function sees the state through :fluents"
+            )
             raise error(
                 atom.place,
                 f"'{atom.predicate}' is {kind}, it cannot stand in {where}",
@@ -246,5 +276,7 @@ def _fluent(node: Node, domain: Domain) -> str:
     symbol = as_name(node, "a predicate's name")
     if symbol.text not in domain.predicates:
         choices = domain.predicates
-        raise error(symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices)
+        raise error(
+            symbol, f"unknown predicate '{symbol.written}'", found=symbol.text, choices=choices
+        )
     return symbol.text

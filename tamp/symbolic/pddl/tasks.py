@@ -78,7 +78,11 @@ def parse_facts(
     """
     scope = scope_of(domain, objects)
     texts = (text,) if isinstance(text, str) else text
-    nodes = [n for t in texts for n in read(t, file, line_offset=line_offset, column_offset=column_offset)]
+    nodes = [
+        n
+        for t in texts
+        for n in read(t, file, line_offset=line_offset, column_offset=column_offset)
+    ]
     return frozenset(_fact(node, scope) for node in nodes)
 
 
@@ -94,7 +98,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     name, sections = read_sections(text, "problem", SECTIONS, file)
     notes = [*check_requirements(items_of(sections, ":requirements"))]
     notes += _check_domain(single(sections, ":domain"), domain)
-    objects = parse_objects(items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants)
+    objects = parse_objects(
+        items_of(sections, ":objects"), domain.types, "an object", notes, domain.constants
+    )
     scope = replace(scope_of(domain, objects, notes), any_type=True)
     facts: set[Fact] = set()
     denied: dict[Fact, Node] = {}
@@ -105,7 +111,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
             term, value = _cost(node, scope)
             if costs.setdefault(term, value) != value:
                 shown = " ".join(term)
-                raise error(node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}")
+                raise error(
+                    node, f"({shown}) has two values at the start, {costs[term]:g} and {value:g}"
+                )
         elif isinstance(node, Group) and node.head == "not":
             denied[_negative(node, scope)] = node
         else:
@@ -120,7 +128,9 @@ def parse_task(text: str, domain: Domain, file: str | Path | None = None) -> Tas
     metric = single(sections, ":metric")
     _check_metric(metric)
     if metric is None and any(action.cost != 1.0 for action in domain.actions):
-        domain = replace(domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions))
+        domain = replace(
+            domain, actions=tuple(replace(action, cost=1.0) for action in domain.actions)
+        )
         what = "the problem has no (:metric minimize (total-cost)): every action costs 1"
         notes.append(warning(name, what))
 
@@ -179,7 +189,11 @@ def _check_domain(section: Section | None, domain: Domain) -> tuple[str, ...]:
         raise error(section.group, "a problem has one (:domain NAME)")
     name = as_name(section.items[0], "the domain's name")
     if name.text != domain.name:
-        return (warning(name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"),)
+        return (
+            warning(
+                name, f"the problem is for domain '{name.written}', the domain is '{domain.name}'"
+            ),
+        )
     return ()
 
 
@@ -205,4 +219,8 @@ def _check_metric(section: Section | None) -> None:
 
 
 def _words(node: Node) -> set[str]:
-    return {node.text} if isinstance(node, Symbol) else {word for item in node.items for word in _words(item)}
+    return (
+        {node.text}
+        if isinstance(node, Symbol)
+        else {word for item in node.items for word in _words(item)}
+    )

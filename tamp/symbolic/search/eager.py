@@ -18,7 +18,9 @@ def astar(search: SearchSpace) -> Plan | None:
     """
     s = search.successors
     estimates: dict[State, float] = {}
-    queue: list[tuple[float, float, int, float, State, State]] = [(0.0, 0.0, 0, 0.0, s.initial, s.initial)]
+    queue: list[tuple[float, float, int, float, State, State]] = [
+        (0.0, 0.0, 0, 0.0, s.initial, s.initial)
+    ]
     number = 0
 
     while queue:

@@ -36,7 +36,9 @@ class RelaxedState:
     paid: tuple[int, ...] = ()
     prices: tuple[float, ...] = ()
     raised: Mapping[int, float] = field(default_factory=dict[int, float])
-    guarded: Mapping[int, list[tuple[int, float]]] = field(default_factory=dict[int, list[tuple[int, float]]])
+    guarded: Mapping[int, list[tuple[int, float]]] = field(
+        default_factory=dict[int, list[tuple[int, float]]]
+    )
 
     @property
     def operators(self) -> int:
@@ -94,7 +96,9 @@ class RelaxedExploration:
         """
         it = self.relaxed_state
         waited = it.guarded.get(operator, ())
-        return it.raised.get(operator, 0.0) + sum(price for guard, price in waited if self.supporters[guard] < 0)
+        return it.raised.get(operator, 0.0) + sum(
+            price for guard, price in waited if self.supporters[guard] < 0
+        )
 
     @property
     def dead(self) -> bool:

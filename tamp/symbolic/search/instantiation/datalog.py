@@ -95,14 +95,18 @@ class Relations:
         terms = atom.terms
         first = {term: terms.index(term) for term in terms}
         constants = tuple((i, t) for i, t in enumerate(terms) if not t.startswith("?"))
-        same = tuple((i, first[t]) for i, t in enumerate(terms) if t.startswith("?") and first[t] != i)
+        same = tuple(
+            (i, first[t]) for i, t in enumerate(terms) if t.startswith("?") and first[t] != i
+        )
         name = (tuple(bound), tuple(free), constants, same)
         indexes = self._indexes.setdefault(atom.predicate, {})
         found = indexes.get(name)
         if found is None:
 
             def fits(row: Row) -> bool:
-                return all(row[i] == t for i, t in constants) and all(row[i] == row[j] for i, j in same)
+                return all(row[i] == t for i, t in constants) and all(
+                    row[i] == row[j] for i, j in same
+                )
 
             matches = fits if constants or same else None
             key: Callable[[Row], Any] = itemgetter(*bound) if bound else lambda row: ()
@@ -167,7 +171,9 @@ def join(
         table = relations.index(atom, bound, free)
         if not bound:
             added = table.get((), _EMPTY)
-            rows = [row + more for row in rows for more in added] if free else (rows if added else [])
+            rows = (
+                [row + more for row in rows for more in added] if free else (rows if added else [])
+            )
         else:
             key = itemgetter(*columns)
             if free:
@@ -239,7 +245,9 @@ class Rule:
     rows: dict[Row, None] = field(default_factory=lambda: {})
 
 
-def fixpoint(relations: Relations, rules: Sequence[Rule], delta: Mapping[str, list[Row]] | None = None) -> None:
+def fixpoint(
+    relations: Relations, rules: Sequence[Rule], delta: Mapping[str, list[Row]] | None = None
+) -> None:
     """Apply the rules until nothing new follows (semi-naive evaluation); relations and rules' rows
     are extended in place.
 
@@ -262,12 +270,16 @@ def fixpoint(relations: Relations, rules: Sequence[Rule], delta: Mapping[str, li
                 continue
             known = {variable: i for i, variable in enumerate(rule.variables)}
             for head in rule.heads:
-                derived.setdefault(head.predicate, {}).update(dict.fromkeys(map(filler(head.terms, known), new)))
+                derived.setdefault(head.predicate, {}).update(
+                    dict.fromkeys(map(filler(head.terms, known), new))
+                )
         added = {predicate: relations.add(predicate, rows) for predicate, rows in derived.items()}
         delta = {predicate: rows for predicate, rows in added.items() if rows}
 
 
-def _triggered(relations: Relations, rule: Rule, delta: Mapping[str, list[Row]] | None) -> Iterable[Row]:
+def _triggered(
+    relations: Relations, rule: Rule, delta: Mapping[str, list[Row]] | None
+) -> Iterable[Row]:
     if delta is None:
         yield from join(relations, rule.body, (), [()], rule.variables)
         return

@@ -69,7 +69,9 @@ class DerivedGuards:
         """Return all guards of one negated fact."""
         made = self._made.get(row)
         if made is None:
-            made = self._made[row] = tuple(guard for _, guard in self._find(self._head.terms, [row]))
+            made = self._made[row] = tuple(
+                guard for _, guard in self._find(self._head.terms, [row])
+            )
         return made
 
     def triggered(self, row: Row, state: Facts) -> list[Guard]:
@@ -92,7 +94,9 @@ class DerivedGuards:
         """Find the guards, with their rows, that one of the static facts waives, or would waive
         were it not refused.
         """
-        return self._match(self._absent, [fact for fact in facts if fact[0] == self._absent.predicate])
+        return self._match(
+            self._absent, [fact for fact in facts if fact[0] == self._absent.predicate]
+        )
 
     def refused(self) -> Iterator[tuple[Row, Guard]]:
         """Find the guards that nothing waives."""
@@ -110,10 +114,15 @@ class DerivedGuards:
         return [
             tuple(fact[first[name]] for name in names)
             for fact in facts
-            if all(f == (fact[first[t]] if t.startswith("?") else t) for f, t in zip(fact[1:], atom.terms, strict=True))
+            if all(
+                f == (fact[first[t]] if t.startswith("?") else t)
+                for f, t in zip(fact[1:], atom.terms, strict=True)
+            )
         ]
 
-    def _find(self, variables: tuple[str, ...], rows: list[Row], *more: Atom) -> Iterator[tuple[Row, Guard]]:
+    def _find(
+        self, variables: tuple[str, ...], rows: list[Row], *more: Atom
+    ) -> Iterator[tuple[Row, Guard]]:
         predicates = self._predicates
         body = Body((*self._body.positive, *more), (), self._body.equalities)
         for row in join(predicates.relations, body, variables, rows, self._names):
@@ -131,7 +140,9 @@ class LazyGuards(Sequence[Guard]):
         blocked: Where the others come from, and which they are.
     """
 
-    def __init__(self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]) -> None:
+    def __init__(
+        self, made: tuple[Guard, ...], blocked: tuple[tuple[DerivedGuards, Row], ...]
+    ) -> None:
         self.made = made
         self.blocked = blocked
 

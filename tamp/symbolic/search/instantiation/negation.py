@@ -28,7 +28,9 @@ class Needs:
     positive: list[Fact] = field(default_factory=list[Fact])
     negative: list[Fact] = field(default_factory=list[Fact])
     guards: list[Guard] = field(default_factory=list[Guard])
-    blocked: list[tuple[DerivedGuards, Row]] = field(default_factory=list[tuple[DerivedGuards, Row]])
+    blocked: list[tuple[DerivedGuards, Row]] = field(
+        default_factory=list[tuple[DerivedGuards, Row]]
+    )
     impossible: bool = False
 
     def add(self, other: Needs) -> None:
@@ -100,7 +102,9 @@ class Negation:
                 continue
             source = self._derived_guards.get((predicate, number))
             if source is None:
-                source = self._derived_guards[predicate, number] = DerivedGuards(self._predicates, definition)
+                source = self._derived_guards[predicate, number] = DerivedGuards(
+                    self._predicates, definition
+                )
             source.add(new)
             for row in new:
                 self._known[predicate, *row].blocked.append((source, row))
@@ -110,7 +114,11 @@ class Negation:
         kinds = self._predicates.classify(literals)
         for i, term in enumerate(head.terms):  # constants and repeated variables in the head
             j = head.terms.index(term)
-            rows = [row for row in rows if (row[i] == row[j] if term.startswith("?") else row[i] == term)]
+            rows = [
+                row
+                for row in rows
+                if (row[i] == row[j] if term.startswith("?") else row[i] == term)
+            ]
         columns = tuple(dict.fromkeys(term for term in head.terms if term.startswith("?")))
         start = list(
             map(
@@ -187,7 +195,9 @@ class Negation:
             else:
                 needs = self.refute(fact, guards=False)
                 if not needs.impossible:
-                    self.axioms.append(Axiom(head, frozenset(needs.positive), frozenset(needs.negative)))
+                    self.axioms.append(
+                        Axiom(head, frozenset(needs.positive), frozenset(needs.negative))
+                    )
         for waiver in waivers:  # last: what holds without a test needs none
             self.axioms.append(Axiom(head, frozenset(), frozenset(), frozenset((waiver,))))
         self._predicates.relations.add(name, [()])

@@ -84,9 +84,13 @@ class Normalizer:
                 if term.startswith("?") and term not in types:
                     types[term] = declared.parameters[i].types if declared else ("object",)
             for literals in self.split(rule.body, types):
-                self.definitions.setdefault(rule.head.predicate, []).append(Definition(rule.head, literals))
+                self.definitions.setdefault(rule.head.predicate, []).append(
+                    Definition(rule.head, literals)
+                )
 
-    def split(self, formula: Formula, scope: Scope, names: Mapping[str, str] | None = None) -> list[Literals]:
+    def split(
+        self, formula: Formula, scope: Scope, names: Mapping[str, str] | None = None
+    ) -> list[Literals]:
         """Split the formula into a disjunction; each disjunct has the scope's variables and those
         of existential quantifiers.
 
@@ -123,7 +127,9 @@ class Normalizer:
             return Atom(type_relation((atom.predicate,)), atom.terms)
         return Atom(atom.predicate, atom.terms)
 
-    def _dnf(self, formula: Formula, sign: bool, names: Mapping[str, str], scope: dict[str, Types]) -> list[_Part]:
+    def _dnf(
+        self, formula: Formula, sign: bool, names: Mapping[str, str], scope: dict[str, Types]
+    ) -> list[_Part]:
         if isinstance(formula, Atom):
             terms = tuple(names.get(term, term) for term in formula.terms)
             if sign and formula.predicate in self._unfolded:
@@ -144,14 +150,22 @@ class Normalizer:
             parameters.append(Parameter(names[parameter.name], parameter.types))
             scope[names[parameter.name]] = parameter.types
         if isinstance(formula, Exists) is sign:
-            return [((*parameters, *more), literals) for more, literals in self._dnf(formula.body, sign, names, scope)]
+            return [
+                ((*parameters, *more), literals)
+                for more, literals in self._dnf(formula.body, sign, names, scope)
+            ]
         # not exists x. f(x): a negated auxiliary predicate that f defines
-        inner = [((*parameters, *more), literals) for more, literals in self._dnf(formula.body, not sign, names, scope)]
+        inner = [
+            ((*parameters, *more), literals)
+            for more, literals in self._dnf(formula.body, not sign, names, scope)
+        ]
         if not inner:
             return [((), ())]
         return [((), ((False, self._name(formula, inner, scope, "forall")),))]
 
-    def _unfold(self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]) -> list[_Part]:
+    def _unfold(
+        self, rule: Derived, terms: tuple[str, ...], scope: dict[str, Types]
+    ) -> list[_Part]:
         """Put the rule's body in the place of its head, with the types that it asks of its
         arguments.
         """
@@ -161,7 +175,10 @@ class Normalizer:
             for parameter in rule.parameters
             if "object" not in parameter.types
         )
-        return [(more, (*typed, *literals)) for more, literals in self._dnf(rule.body, True, names, scope)]
+        return [
+            (more, (*typed, *literals))
+            for more, literals in self._dnf(rule.body, True, names, scope)
+        ]
 
     def _product(self, parts: list[list[_Part]], scope: dict[str, Types]) -> list[_Part]:
         size = 1
@@ -174,7 +191,9 @@ class Normalizer:
             product = [((*p, *q), (*a, *b)) for p, a in product for q, b in part]
         return product
 
-    def _name(self, formula: Formula | None, parts: list[_Part], scope: dict[str, Types], kind: str) -> Atom:
+    def _name(
+        self, formula: Formula | None, parts: list[_Part], scope: dict[str, Types], kind: str
+    ) -> Atom:
         """Name an auxiliary predicate of the free variables that holds when one of the parts
         does.
         """
@@ -187,7 +206,9 @@ class Normalizer:
                         free[term] = scope[term]
         name = f"{kind} {len(self.auxiliary) + 1}"
         head = Atom(name, tuple(free))
-        self.auxiliary[name] = formula if formula is not None else Or(tuple(_formula(part) for part in parts))
+        self.auxiliary[name] = (
+            formula if formula is not None else Or(tuple(_formula(part) for part in parts))
+        )
         rules: list[Definition] = []
         for parameters, literals in parts:
             body = And(tuple(atom if sign else Not(atom) for sign, atom in literals))
@@ -226,7 +247,9 @@ class Normalizer:
                 self._want(rule.literals, refuted, wanted)
         return [name for name in self.definitions if (name, False) in wanted]
 
-    def _want(self, literals: Literals, refuted: bool, wanted: dict[tuple[str, bool], None]) -> None:
+    def _want(
+        self, literals: Literals, refuted: bool, wanted: dict[tuple[str, bool], None]
+    ) -> None:
         for atom in literals.positive:
             if atom.predicate in self.definitions:
                 wanted.setdefault((atom.predicate, False))  # a join goes over its facts

@@ -48,12 +48,16 @@ class PredicateKinds:
         given: Facts of derived predicates that were given nevertheless.
     """
 
-    def __init__(self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()
+    ) -> None:
         self._task = task
         self._normalizer = normalizer
         self.assumed = assumed
         self.refused: frozenset[Fact] = frozenset()
-        self.fluent = frozenset(effect.atom.predicate for action in task.domain.actions for effect in action.effects)
+        self.fluent = frozenset(
+            effect.atom.predicate for action in task.domain.actions for effect in action.effects
+        )
         self.relations = Relations()
         self.certain = task.initial
         self.given: set[Fact] = set()
@@ -131,7 +135,8 @@ class PredicateKinds:
             return tuple(
                 a
                 for a in atoms
-                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2) == kind
+                if (0 if a.predicate in self.fluent else 1 if a.predicate in definitions else 2)
+                == kind
             )
 
         positive, negative = literals.positive, literals.negative

@@ -23,7 +23,9 @@ def unfoldable(domain: Domain, given: frozenset[str]) -> list[Derived]:
     for rule in domain.derived:
         rules.setdefault(rule.head.predicate, []).append(rule)
 
-    below = {name: {a for rule in those for a in _predicates(rule.body)} for name, those in rules.items()}
+    below = {
+        name: {a for rule in those for a in _predicates(rule.body)} for name, those in rules.items()
+    }
     chosen: list[Derived] = []
     for name, (rule, *others) in rules.items():
         terms = rule.head.terms
@@ -42,7 +44,11 @@ def bound_variables(formula: Formula, sign: bool) -> frozenset[str]:
     match formula:
         case Atom():
             named = sign and formula.predicate != "="
-            return frozenset(term for term in formula.terms if term.startswith("?")) if named else frozenset()
+            return (
+                frozenset(term for term in formula.terms if term.startswith("?"))
+                if named
+                else frozenset()
+            )
         case Not():
             return bound_variables(formula.body, not sign)
         case And() | Or():
@@ -57,7 +63,9 @@ def bound_variables(formula: Formula, sign: bool) -> frozenset[str]:
         case Exists() | Forall():
             if isinstance(formula, Exists) is not sign:
                 return frozenset()
-            return bound_variables(formula.body, sign) - {parameter.name for parameter in formula.parameters}
+            return bound_variables(formula.body, sign) - {
+                parameter.name for parameter in formula.parameters
+            }
 
 
 def _predicates(formula: Formula) -> Iterator[str]:

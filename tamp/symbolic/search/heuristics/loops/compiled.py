@@ -49,7 +49,11 @@ _names: dict[str, Any] = {**vars(rows), **vars(kernels), "full": _full, "count_u
 def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..., Any]:
     """Compile a function; without a signature it serves other compiled ones only."""
     copy = FunctionType(function.__code__, _names, function.__name__)
-    made = njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True) if signature else njit(**_INNER)
+    made = (
+        njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True)
+        if signature
+        else njit(**_INNER)
+    )
     _names[function.__name__] = result = made(copy)
     return result
 
@@ -58,9 +62,15 @@ for _inner in (kernels._before, kernels._push, kernels._pop, kernels._levels, ke
     _compile(_inner)
 
 COMPILED = Kernels(
-    explore=_compile(kernels.explore, types.Tuple((_F, _I))(_ROWS, _ROWS, _ROWS, _F, _I, _F, _I, types.boolean)),
-    relaxed_plan=_compile(kernels.relaxed_plan, types.Tuple((_N, _I))(_F, _I, _ROWS, _ROWS, _F, _I, _C, _I, _C)),
-    landmark_cut=_compile(kernels.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)),
+    explore=_compile(
+        kernels.explore, types.Tuple((_F, _I))(_ROWS, _ROWS, _ROWS, _F, _I, _F, _I, types.boolean)
+    ),
+    relaxed_plan=_compile(
+        kernels.relaxed_plan, types.Tuple((_N, _I))(_F, _I, _ROWS, _ROWS, _F, _I, _C, _I, _C)
+    ),
+    landmark_cut=_compile(
+        kernels.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)
+    ),
     transposed=_compile(rows.transposed, _ROWS(_ROWS, _C)),
     appended=_compile(rows.appended, _ROWS(_ROWS, _I, _I, _C)),
     incremented=_compile(rows.incremented, _F(_F, _I, _F, _C)),

@@ -12,12 +12,16 @@ from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals,
 class Kernels:
     """The inner loops, and what makes the lists that they take."""
 
-    explore: Callable[[CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]]
+    explore: Callable[
+        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]
+    ]
     relaxed_plan: Callable[
         [Reals, Integers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
         tuple[float, Integers],
     ]
-    landmark_cut: Callable[[CsrRows, CsrRows, CsrRows, CsrRows, Reals, Integers, Integers, CsrRows, int], float]
+    landmark_cut: Callable[
+        [CsrRows, CsrRows, CsrRows, CsrRows, Reals, Integers, Integers, CsrRows, int], float
+    ]
     transposed: Callable[[CsrRows, int], CsrRows]
     appended: Callable[[CsrRows, Integers, Integers, int], CsrRows]
     incremented: Callable[[Reals, Integers, Reals, int], Reals]
