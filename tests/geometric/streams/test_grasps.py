@@ -199,6 +199,8 @@ def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
     aside = [abs(grasp.T_tool_body.inverse().position[0]) for grasp in first(robot, long, 40)]
     assert max(aside[:8]) < 0.03
     assert max(aside) > 0.06  # none is lost
+    uneven = replace(long, center_of_mass=(0.1, 0.0, 0.0))
+    assert all(abs(grasp.T_tool_body.inverse().position[0] - 0.1) < 0.03 for grasp in first(robot, uneven, 8))
 
 
 def load(folder: Path, thing: str) -> list[object]:
