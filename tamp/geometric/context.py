@@ -10,6 +10,7 @@ import numpy as np
 
 from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
 from tamp.geometric.collision.hand_collisions import HandCollisions
+from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
@@ -64,6 +65,11 @@ class Context:
     def collisions(self) -> Collisions:
         """Collision detection among the scene's bodies and the robot."""
         return Collisions(self.scene, self.robot, self.kinematics)
+
+    @cached_property
+    def touching(self) -> Touching:
+        """The bodies that touch each other at the start."""
+        return Touching(self.scene, () if self.holding is None else (self.holding.body,))
 
     @cached_property
     def hand(self) -> HandCollisions:

@@ -21,7 +21,7 @@ from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Sphere
-from tamp.simulation.shapes import centre_of_mass, floor_under, half_extents, link_frame, obj
+from tamp.simulation.shapes import floor_under, half_extents, link_frame, mass_centre, obj
 from tamp.simulation.silence import silence
 from tamp.system.scratch import scratch_folder
 
@@ -181,7 +181,7 @@ class World:
     def _add_body(self, body: Body) -> None:
         if self.dynamic and body.movable:
             solids = [self._compound(body)]
-            self._centres[body.name] = centre_of_mass(body.parts)
+            self._centres[body.name] = mass_centre(body)
         else:
             solids = [self._solid(body.name, part, body.friction) for part in body.parts]
             self._centres[body.name] = np.zeros(3)
@@ -217,7 +217,7 @@ class World:
                 collisionFrameOrientations=[list(part.pose.quaternion) for part in body.parts],
                 physicsClientId=self.client,
             )
-        centre = centre_of_mass(body.parts)
+        centre = mass_centre(body)
         handle = self._bullet.createMultiBody(
             body.mass, shape, baseInertialFramePosition=centre.tolist(), physicsClientId=self.client
         )  # fmt: skip

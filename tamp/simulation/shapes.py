@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Scene, Shape, Sphere
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Shape, Sphere
 
 _SINGLE = 100.0
 ROUND = 48
@@ -66,6 +66,13 @@ def centre_of_mass(parts: Iterable[Part]) -> Array:
         total += volume
         moment += volume * part.pose.apply(centre[None])[0]
     return moment / total
+
+
+def mass_centre(body: Body) -> Array:
+    """A body's centre of mass in its own frame, shape (3,), metres: its file's, or that of a uniform density."""
+    if body.center_of_mass is None:
+        return centre_of_mass(body.parts)
+    return np.array(body.center_of_mass, dtype=float)
 
 
 def floor_under(scene: Scene) -> tuple[Array, Array]:

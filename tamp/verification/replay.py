@@ -27,6 +27,8 @@ from tamp.verification.violation_log import Log
 
 JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""
+TOGETHER = 5e-4
+"""Metres of air up to which bodies count as touching each other at the start."""
 CLOCK = 1e-4
 """Seconds by which times that should meet may differ."""
 BOUNDING = frozenset({"time", "limit", "velocity"})
@@ -81,6 +83,7 @@ class Replay:
             self.log.action, self.log.time = (index, action.name), self.course.time
             state = self._apply(state, action)
             self._move(action)
+            self._part()
             self._agreement.follows(action)
             self._agreement.compare(state, self.course)
             self._standing.check_relations(state, self.course.in_hand)
@@ -98,10 +101,19 @@ class Replay:
         scene = self._world.scene
         for first, second in itertools.combinations(scene.bodies, 2):
             if scene.bodies[first].movable or scene.bodies[second].movable:
-                depth = -self._world.body_distance(first, second, 0.0)
+                depth = -self._world.body_distance(first, second, TOGETHER)
+                if -TOGETHER <= depth <= TOLERANCE:
+                    self._sweeper.together[min(first, second), max(first, second)] = max(0.0, depth)
                 if depth > TOLERANCE:
                     message = f"{first} and {second} penetrate by {1000 * depth:.1f} mm at the start"
                     self.log.add("collision", message, first, second, time=0.0, depth=depth)
+
+    def _part(self) -> None:
+        """Bodies that touched each other at the start and were moved apart must not come together again."""
+        together = self._sweeper.together
+        for pair in list(together):
+            if self._world.body_distance(*pair, TOGETHER) > TOGETHER:
+                del together[pair]
 
     def _apply(self, state: State, action: TimedAction) -> State:
         lifted = self._semantics.actions.get(action.name)
@@ -241,6 +253,7 @@ class Replay:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
                 resting |= self._standing.stand(body, None).on
+                resting |= {name for pair in self._sweeper.together if body in pair for name in pair}
                 held = Held(body, segment.attach.T_tool_body)
             if segment.detach is not None and held is not None:
                 before = self._world.pose(held.body)

@@ -9,7 +9,7 @@ import numpy as np
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.simulation.physics import World
-from tamp.simulation.shapes import body_points, centre_of_mass
+from tamp.simulation.shapes import body_points, mass_centre
 
 GAP = 0.010
 """Metres of air below a body that still count as resting: it will drop onto what is there."""
@@ -60,7 +60,7 @@ class Supports:
         self._world = world
         bodies = world.scene.bodies
         self._points = {name: body_points(body.parts) for name, body in bodies.items()}
-        self._centres = {name: centre_of_mass(body.parts) for name, body in bodies.items()}
+        self._centres = {name: mass_centre(body) for name, body in bodies.items()}
         self._sizes = {name: float(np.linalg.norm(points, axis=1).max()) for name, points in self._points.items()}
         self._stands: dict[tuple[tuple[str, bytes], ...], Stand] = {}
         self._undersides: dict[tuple[str, bytes], Array] = {}

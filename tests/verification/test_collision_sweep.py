@@ -147,3 +147,17 @@ def test_pieces_of_a_motion_join_to_the_motion(world: World, rng: np.random.Gene
     assert np.allclose(pieces[-1][0][-1, :2], rows[-1, :2])
     turned = pieces[-1][0][-1, 2] - rows[-1, 2]
     assert math.sin(turned / 2) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_only_a_pair_that_lay_in_each_other_at_the_start_may_stay_so(world: World) -> None:
+    rows, times = np.array([row(), row()]), np.array([0.0, 1.0])
+    depths = []
+    for together in ({}, {("post", "stick"): 0.0009}, {("other", "stick"): 0.0009}):
+        sweeper, findings = Sweeper(world, ROBOT), Findings()
+        sweeper.together |= together
+        T_world_tool = sweeper.tool(row())
+        T_world_stick = Pose((2.0 - 0.02 + 0.0011, 0.0, 1.0)).matrix
+        held = Held("stick", np.linalg.inv(T_world_tool) @ T_world_stick)
+        sweeper.sweep(rows, times, held, findings, against=frozenset({"post"}))
+        depths.append([round(contact.distance, 4) for contact in findings.worst.values()])
+    assert depths == [[-0.0011], [], [-0.0011]]

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.footing import Ground
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cavity, Cylinder, Part, RobotStart, Room, Scene, Sphere, Surface
+from tamp.geometric.stability.stable_poses import stable_faces
 from tamp.simulation.physics import World
+from tamp.simulation.settle import settle
 from tamp.verification.support_geometry import Supports, outside
 
 TABLE = Body(
@@ -50,6 +54,20 @@ def test_a_block_on_a_table(x: float, z: float, on: set[str], stable: bool) -> N
         if stable:
             assert stand.on == on
         assert np.allclose(world.pose("block"), Pose((x, 0, z)).matrix)
+
+
+@pytest.mark.parametrize(("x", "centre", "stable"), [(0.49, 0.02, False), (0.51, -0.02, True), (0.49, -0.02, True)])
+def test_the_files_centre_of_mass_counts(x: float, centre: float, stable: bool) -> None:
+    """The planner's side, the judge's and physics agree on a body whose file says where its mass is."""
+    uneven = replace(block(x, 0.601), center_of_mass=(centre, 0.0, 0.0))
+    with World(scene(uneven)) as world:
+        assert Supports(world).stand("block").stable is stable
+    assert (Ground(scene(uneven).bodies).footing(uneven).why is None) is stable
+    settled = settle(scene(uneven), {"block": uneven.pose}, 1.0)["block"]
+    assert (settled.moved < 0.003) is stable
+    assert all(
+        abs(abs(face.centre).max() - abs(centre)) < 1e-9 or not face.centre.any() for face in stable_faces(uneven)
+    )
 
 
 @pytest.mark.parametrize("shape", [Sphere(0.04), Cylinder(0.04, 0.08)])

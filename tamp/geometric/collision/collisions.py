@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,6 +101,7 @@ class Collisions:
         attachment: Attachment | None = None,
         opening: float | None = None,
         fixed: bool = True,
+        without: Container[str] = (),
     ) -> Arrangement:
         """The robot among the fixed bodies (if `fixed`) and the movable ones at `poses`.
 
@@ -108,11 +109,12 @@ class Collisions:
             poses: T_world_body by name; the attached body is left out.
             attachment: What the hand holds.
             opening: Of the fingers, metres; by default the attachment's, or fully open.
+            without: Fixed bodies that are left out.
         """
         held = attachment.body if attachment else None
         standing = [(name, self._place(name, pose)) for name, pose in poses.items() if name != held]
         if fixed:
-            standing = self._fixed + standing
+            standing = [one for one in self._fixed if one[0] not in without] + standing
         if opening is None:
             opening = attachment.opening if attachment else self._robot.robot.opening
         parts = self._complete(opening, attachment)

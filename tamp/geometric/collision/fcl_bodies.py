@@ -47,3 +47,15 @@ def touch(first: fcl.CollisionObject, second: fcl.CollisionObject, padding: floa
     if padding <= 0.0:
         return fcl.collide(first, second) > 0
     return fcl.distance(first, second) < padding
+
+
+def gap(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
+    """Metres between two objects; 0 where they intersect."""
+    return max(0.0, fcl.distance(first, second))
+
+
+def depth(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
+    """Metres by which one object has to move to leave another; 0 where they are apart."""
+    result = fcl.CollisionResult()
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=20, enable_contact=True), result)
+    return max((abs(float(contact.penetration_depth)) for contact in result.contacts), default=0.0)

@@ -104,7 +104,9 @@ class Ground:
 
 
 def center_of_mass(body: Body) -> Array:
-    """In the body's frame, metres, shape (3,): of parts of one density."""
+    """In the body's frame, metres, shape (3,): the one that its file gives, or of parts of one density."""
+    if body.center_of_mass is not None:
+        return np.array(body.center_of_mass)
     masses = [_mass(part) for part in body.parts]
     centres = [part.pose.apply(centre[None])[0] for part, (_, centre) in zip(body.parts, masses, strict=True)]
     return np.average(centres, axis=0, weights=[volume for volume, _ in masses])

@@ -34,7 +34,9 @@ def body_hull(body: Body) -> tuple[Array, Triangles]:
 
 
 def centre_of_mass(body: Body) -> Array:
-    """Of its parts, all of one density; shape (3,), metres."""
+    """The one that its file gives, or of its parts, all of one density; in the body's frame, shape (3,), metres."""
+    if body.center_of_mass is not None:
+        return np.array(body.center_of_mass)
     volumes, centres = zip(*(_mass(*_placed(part)) for part in body.parts), strict=True)
     return np.average(np.array(centres), axis=0, weights=np.array(volumes))
 

@@ -46,7 +46,12 @@ class Solid:
             corners.append(np.stack([a, b, c], axis=1)[kept])
         self._normals, self._offsets = np.concatenate(normals), np.concatenate(offsets)
         self._first = np.array(first)
-        self._last = np.append(self._first[1:], len(self._normals))
+        last = np.append(self._first[1:], len(self._normals))
+        # The planes of each part, (p, most), the first one repeated behind the last: one look for all parts.
+        places = np.arange((last - self._first).max())
+        self._planes = np.where(
+            places < (last - self._first)[:, None], self._first[:, None] + places, self._first[:, None]
+        )
         self._corners = np.concatenate(corners)
         self._cumulative = np.cumsum(np.concatenate(areas))
         self.centre = centre_of_mass(body)
@@ -78,11 +83,8 @@ class Solid:
         outside = (np.abs(slope) < 1e-12) & (room < 0)
         enter = np.where(outside, np.inf, np.where(slope < -1e-12, t, -np.inf))
         leave = np.where(slope > 1e-12, t, np.inf)
-        shape = (len(origins), len(self._first))
-        start_plane, end_plane = np.empty(shape, dtype=np.intp), np.empty(shape, dtype=np.intp)
-        for part, (low, high) in enumerate(zip(self._first, self._last, strict=True)):
-            start_plane[:, part] = low + np.argmax(enter[:, low:high], axis=1)
-            end_plane[:, part] = low + np.argmin(leave[:, low:high], axis=1)
+        start_plane = self._first + np.argmax(enter[:, self._planes], axis=2)
+        end_plane = self._first + np.argmin(leave[:, self._planes], axis=2)
         rows = np.arange(len(origins))[:, None]
         return enter[rows, start_plane], leave[rows, end_plane], start_plane, end_plane
 

@@ -24,6 +24,9 @@ FLAT = 0.02
 PROBES = (0.0, 0.5, 1.0)
 """Where on the way the hand is looked at."""
 
+SLIDES = 9
+"""Where on each stretch of the way out a body is looked at that leaves what it touches."""
+
 
 def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: Call) -> bool | Rejection:
     """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
@@ -58,13 +61,24 @@ def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[t
     standing = list(others)
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     back = -RETREAT * T_world_tool[:3, 2]
-    up = np.array([0.0, 0.0, LIFT])
+    up = context.touching.way_out(grasp.body, pose, LIFT)
     away = [_moved(T_world_tool, share * back) for share in PROBES]
     out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in PROBES)]
-    hand = context.hand
-    return hand.hits(away, context.robot.opening, None, standing) or hand.hits(
-        out, grasp.opening, context.attachment(grasp), standing
-    )
+    hand, touching = context.hand, context.touching
+    hit = hand.hits(away, context.robot.opening, None, standing)
+    if hit is not None:
+        return hit
+    leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
+    if leaving:  # the hand must not touch them, the body in it only while it leaves them
+        steps = [_moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, SLIDES)]
+        steps += [_moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]]
+        bodies = [step @ grasp.T_tool_body.matrix for step in steps]
+        for name in leaving:
+            if not touching.separates(grasp.body, bodies, name):
+                return name
+        hit = hand.hits(out, grasp.opening, None, [one for one in standing if one[0] in leaving])
+        standing = [one for one in standing if one[0] not in leaving]
+    return hit or hand.hits(out, grasp.opening, context.attachment(grasp), standing)
 
 
 def _moved(matrix: Array, offset: Array) -> Array:

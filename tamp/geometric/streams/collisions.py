@@ -8,6 +8,7 @@ import numpy as np
 
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Pose
+from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.reach import arm_length
 from tamp.geometric.values import BaseConf, Grasp, Reach
 from tamp.stream import Call, Rejection
@@ -55,7 +56,7 @@ def test_reach_clear(
     aside = np.array([approach[0], out])
     if (
         empty.path_hits(approach, padding=HAIR)
-        or loaded.path_hits(lift, padding=HAIR)
+        or lift_hits(context, pose, grasp, lift, place, HAIR)
         or empty.path_hits(aside, padding=HAIR)
     ):
         return Rejection(f"hits {other}", (other,))

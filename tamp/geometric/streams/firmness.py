@@ -23,6 +23,9 @@ SHAKE = 0.3
 FIRM = 0.5
 """The strain up to which a grasp is taken for firm; at 1 the body is about to slip or turn in the hand."""
 
+FAIR = 0.75
+"""The strain up to which a grasp at the body's middle is not put off for random ones, of which few are firmer."""
+
 SIDES = np.concatenate([np.eye(3), -np.eye(3)])
 """Directions (6, 3) in which the hand may accelerate."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.approach import LIFT, RETREAT
+from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.heights import too_high
 from tamp.geometric.values import BaseConf, Grasp, Reach
 from tamp.stream import Call, Rejection
@@ -64,7 +65,7 @@ def inverse_kinematics(
             if refused is not None:
                 reason = reason or refused
                 continue
-            found = _reaching(context, grasp, base, T_world_tool, call)
+            found = _reaching(context, pose, grasp, base, T_world_tool, call)
             if not isinstance(found, Rejection):
                 failures = -math.inf
                 yield found
@@ -107,7 +108,7 @@ def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool
 
 
 def _reaching(
-    context: Context, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
+    context: Context, pose: Pose, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
 ) -> tuple[BaseConf, Reach] | Rejection:
     empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
     T_base_tool = np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
@@ -117,6 +118,7 @@ def _reaching(
     # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch possible.
     order = np.argsort(np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions)))
     reason = Rejection("no straight approach")
+    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(grasp.body, pose, LIFT)
     confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs
@@ -125,11 +127,15 @@ def _reaching(
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
-        reach = _approach(context, T_base_tool, conf[3:])
+        reach = _approach(context, T_base_tool, conf[3:], up)
         if reach is None:
             continue
         approach, lift = (np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift))
-        hit = empty.path_hits(approach) or loaded.path_hits(lift) or empty.path_hits(np.array([approach[0], lift[-1]]))
+        hit = (
+            empty.path_hits(approach)
+            or lift_hits(context, pose, grasp, lift)
+            or empty.path_hits(np.array([approach[0], lift[-1]]))
+        )
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
@@ -140,17 +146,17 @@ def _reaching(
     return reason
 
 
-def _approach(context: Context, T_base_tool: Array, q: Array) -> Reach | None:
-    """The straight lines away from the grasp: back along the tool's axis; and up, then back."""
+def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Reach | None:
+    """The straight lines away from the grasp: back along the tool's axis; and by `lift` (3,), then back."""
     back = T_base_tool[:3, 2]
     away = follow_line(context, T_base_tool, -RETREAT * back, q)
     if away is None:
         return None
-    up = follow_line(context, T_base_tool, np.array([0.0, 0.0, LIFT]), q)
+    up = follow_line(context, T_base_tool, lift, q)
     if up is None:
         return None
     lifted = T_base_tool.copy()
-    lifted[2, 3] += LIFT
+    lifted[:3, 3] += lift
     out = follow_line(context, lifted, -RETREAT * back, up[-1])
     if out is None:
         return None

@@ -17,7 +17,7 @@ from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, S
 from tamp.geometric.stability.ray_crossings import Solid
 from tamp.geometric.streams.firmness import GRAVITY, strain
 from tamp.geometric.streams.grasps import sample_grasps
-from tamp.geometric.streams.hand_fit import CLEARANCE, CONE
+from tamp.geometric.streams.hand_fit import CLEARANCE, CONE, Closed, HandFit
 from tamp.geometric.streams.sampling import sample_grasp
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import load_problem
@@ -199,6 +199,8 @@ def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
     aside = [abs(grasp.T_tool_body.inverse().position[0]) for grasp in first(robot, long, 40)]
     assert max(aside[:8]) < 0.03
     assert max(aside) > 0.06  # none is lost
+    uneven = replace(long, center_of_mass=(0.1, 0.0, 0.0))
+    assert all(abs(grasp.T_tool_body.inverse().position[0] - 0.1) < 0.03 for grasp in first(robot, uneven, 8))
 
 
 def load(folder: Path, thing: str) -> list[object]:
@@ -220,3 +222,24 @@ def test_what_is_too_heavy_is_refused_in_words(tmp_path: Path) -> None:
     assert isinstance(said, Rejection) and said.given_up
     assert "would slip: with its friction of 0.1 the fingers, at 50 N, hold 1 kg" in said.reason
     assert all(isinstance(one, Grasp) for one in load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0"))
+
+
+def test_a_fair_grasp_does_not_wait_for_random_ones(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither do firm random ones wait for each other."""
+    closed: list[bool] = []
+    close = HandFit.close
+
+    def counted(fit: HandFit, T_body_tool: np.ndarray) -> Closed | None:
+        found = close(fit, T_body_tool)
+        closed.append(found is not None)
+        return found
+
+    monkeypatch.setattr(HandFit, "close", counted)
+    heavy = replace(body(Box((0.05, 0.06, 0.15))), mass=2.1)
+    assert len(first(robot, heavy, 3)) == 3
+    assert sum(closed) < 20
+    closed.clear()
+    ring = [Pose.from_xyz_yaw(0.08 * math.cos(a), 0.08 * math.sin(a), 0.0, a) for a in np.arange(8) * math.pi / 4]
+    hollow = replace(body(Box((0.01, 0.07, 0.06))), parts=tuple(Part(Box((0.01, 0.07, 0.06)), pose) for pose in ring))
+    assert len(first(robot, hollow, 1)) == 1
+    assert sum(closed) == 1
