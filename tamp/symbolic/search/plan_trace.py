@@ -27,6 +27,7 @@ class Step:
         added: What it makes true there.
         deleted: What of the state it makes false.
         guards: Those triggered there.
+        unguarded: Those of the static facts that it rests on whether or not they lift a guard.
     """
 
     operator: Operator
@@ -38,6 +39,7 @@ class Step:
     added: Facts = NONE
     deleted: Facts = NONE
     guards: tuple[Guard, ...] = ()
+    unguarded: Facts = NONE
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,11 +120,12 @@ def _applied(
         raise ValueError(f"{operator} is not applicable")
     derived, read, heads = supports(why, operator.positive)
     static = set(operator.static)
+    lifting: set[Fact] = set()
     guards = triggered(operator, state)
     for guard in guards:
         if guard.lifted_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
-        static.add(guard.lifted_by)
+        lifting.add(guard.lifted_by)
     added, deleted = operator.added, operator.deleted
     for effect in operator.conditional:
         if effect.positive <= holds and effect.negative.isdisjoint(holds):
@@ -133,7 +136,8 @@ def _applied(
             derived, read, heads = derived | more.static, read | more.read, heads | more.heads
     after = (state - deleted) | added
     gone = state - after
-    return Step(operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards), after
+    own = frozenset(static | derived)
+    return Step(operator, state, own | lifting, derived, read, heads, added, gone, guards, own), after
 
 
 def triggered(operator: Operator, state: Facts) -> tuple[Guard, ...]:

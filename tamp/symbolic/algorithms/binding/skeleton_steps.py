@@ -50,7 +50,6 @@ def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tu
             for guard in step.guards
             if guard.lifted_by is not None and guard.lifted_by[0] != NOGOOD
         ]
-        used = {usage.fact for usage in usages}
         steps.append(
             Step(
                 name=operator.name,
@@ -59,7 +58,7 @@ def to_steps(grounded: Grounded, plan: Plan, prices: Mapping[Fact, float]) -> tu
                 read=step.read,
                 added=step.added,
                 deleted=step.deleted,
-                static=frozenset(fact for fact in step.static if fact[0] != NOGOOD and fact not in used),
+                static=step.unguarded,
                 derived=step.derived,
                 usages=tuple(sorted(usages, key=lambda usage: (usage.fact, sorted(usage.present)))),
                 cost=operator.cost,
