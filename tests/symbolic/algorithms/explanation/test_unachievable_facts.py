@@ -49,7 +49,8 @@ RAW = ("raw", "egg")
         ),
         (
             (RAW, ("lit", "ring")),
-            "eat needs (cooked egg), and cook needs (hot some s), and being hot needs (gas ring), which nothing makes true",
+            "eat needs (cooked egg), and cook needs (hot some s), and being hot needs (gas ring), "
+            "which nothing makes true",
         ),
         ((("hot", "ring"),), "eat needs (cooked egg), and cook needs (raw egg), which nothing makes true"),
     ],
