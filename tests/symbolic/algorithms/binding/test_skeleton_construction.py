@@ -52,15 +52,17 @@ GUARD = """
 (define (domain guard)
   (:requirements :adl)
   (:types spot grip)
-  (:predicates (grip ?s - spot ?g - grip) (firm ?g - grip) (on ?s - spot) (held ?g - grip))
+  (:constants s - spot)
+  (:predicates (grip ?s - spot ?g - grip) (firm ?g - object ?s - spot) (on ?s - spot) (held ?g - grip))
+  (:action lift :parameters (?s - spot) :precondition (firm s s) :effect (on ?s))
   (:action hold :parameters (?g - grip ?s - spot)
-    :precondition (and (firm ?g) (forall (?q - spot) (imply (on ?q) (firm ?g)))) :effect (held ?g)))
+    :precondition (and (firm ?g ?s) (forall (?q - spot) (imply (on ?q) (firm ?g s)))) :effect (held ?g)))
 """
 
 GUARD_STREAMS = """
 (define (stream guard)
   (:stream sample-grip :inputs (?s) :domain (spot ?s) :outputs (?g) :certified (grip ?s ?g))
-  (:stream test-firm :inputs (?s ?g) :domain (grip ?s ?g) :certified (firm ?g)))
+  (:stream test-firm :inputs (?s ?g) :domain (grip ?s ?g) :certified (firm ?g ?s)))
 """
 
 
@@ -70,7 +72,7 @@ def test_what_is_asked_for_and_lifts_a_guard_as_well_is_one_value() -> None:
 
     functions = {"sample-grip": grips, "test-firm": lambda spot, grip, call: grip == 3}
     goal = "(exists (?g - grip) (held ?g))"
-    problem = stream_task(GUARD, GUARD_STREAMS, functions, {"s": ("spot",)}, "(on s)", goal)
+    problem = stream_task(GUARD, GUARD_STREAMS, functions, {}, "(on s)", goal)
     run = Adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
     plan = run.search().plan
     assert plan is not None
