@@ -108,7 +108,7 @@ class Incremental(Run):
             for stream in self.useful
             if not stream.is_test
         ]
-        first: tuple[Optimism, Grounded] | None = None
+        imagined: list[tuple[Optimism, Grounded]] = []
         for streams in (self.useful, [*self.useful, *twins]):
             optimism = imagine(streams, self.known)
             if not optimism.complete:
@@ -118,9 +118,8 @@ class Incremental(Run):
             grounded = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
             if excluded(grounded, self.deadline) is None:
                 return False
-            first = first or (optimism, grounded)
-        assert first is not None
-        self.optimism, self.grounded = first
+            imagined.append((optimism, grounded))
+        self.optimism, self.grounded = imagined[0]
         return True
 
     def promise(self, name: str) -> Fact | None:
