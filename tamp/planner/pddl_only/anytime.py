@@ -70,16 +70,22 @@ def optimize_symbolic(
                     deadline=within,
                     below=best.cost,
                 )
-                best = _counted(best, found.expanded, found.evaluated, time.perf_counter() - started)
+                best = _counted(
+                    best, found.expanded, found.evaluated, time.perf_counter() - started
+                )
                 if refutation(problem.task, found.plan) is not None:
                     best = replace(best, refuted=best.refuted + 1)
                     break
-                if last or found.reason is Reason.UNSOLVABLE:  # there is none: the bound is the cost
+                if (
+                    last or found.reason is Reason.UNSOLVABLE
+                ):  # there is none: the bound is the cost
                     proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
                     bound = best.cost if found.plan is None and proven else found.bound
                     best = replace(best, bound=max(best.bound, min(bound, best.cost)))
                 if found.plan is not None:
-                    best = _better(best, found.plan, name, heuristic, deadline.elapsed(), optimal=last)
+                    best = _better(
+                        best, found.plan, name, heuristic, deadline.elapsed(), optimal=last
+                    )
                     improved(best)
                 if found.plan is None:
                     break
@@ -90,9 +96,13 @@ def optimize_symbolic(
     return replace(best, optimal=optimal, seconds={**best.seconds, "total": deadline.elapsed()})
 
 
-def _counted(best: SymbolicSolution, expanded: int, evaluated: int, seconds: float) -> SymbolicSolution:
+def _counted(
+    best: SymbolicSolution, expanded: int, evaluated: int, seconds: float
+) -> SymbolicSolution:
     spent = {**best.seconds, "search": best.seconds["search"] + seconds}
-    return replace(best, expanded=best.expanded + expanded, evaluated=best.evaluated + evaluated, seconds=spent)
+    return replace(
+        best, expanded=best.expanded + expanded, evaluated=best.evaluated + evaluated, seconds=spent
+    )
 
 
 def _better(
@@ -104,6 +114,8 @@ def _better(
     *,
     optimal: bool,
 ) -> SymbolicSolution:
-    found = replace(best, outcome=Outcome.SOLVED, plan=plan.operators, search=search, heuristic=heuristic)
+    found = replace(
+        best, outcome=Outcome.SOLVED, plan=plan.operators, search=search, heuristic=heuristic
+    )
     history = (*best.history, (elapsed, found.cost))
     return replace(found, history=history, bound=found.cost if optimal else best.bound)

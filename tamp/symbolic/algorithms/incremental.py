@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from tamp.symbolic.algorithms.bound_stream import Instance
+from tamp.symbolic.algorithms.optimistic.anything import distinguishes
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import Optimism, imagine
 from tamp.symbolic.algorithms.planning_run import Run
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, StreamTask
@@ -29,6 +31,9 @@ ROUNDS = 4
 
 DRY = 50
 """Rounds without anything left to draw after which prices have moved all that they can."""
+
+TWIN = " again"
+"""Ends the name of a stream's double; no PDDL name has a blank."""
 
 TRIES, BUDGET = 4, 200
 """Draws a visit, and in all, when the fluent streams of a plan are bound."""
@@ -91,16 +96,30 @@ class Incremental(Run):
             return self.stopped(Outcome.INTERRUPTED)
 
     def _excluded_from_the_start(self) -> bool:
-        """Whether goals exclude each other whatever the streams give: sampling would never say so."""
-        optimism = imagine(self.useful, self.known)
-        if not optimism.complete:
+        """Whether goals exclude each other whatever the streams give: sampling would never say so.
+
+        A placeholder stands for all values of a call, which hides plans that take two of them: with a second one for
+        each call the goals have to exclude each other as well, and no condition may want such values to differ.
+        """
+        if distinguishes(self.task, [types for stream in self.useful for types in stream.output_types]):
             return False
-        optimism.assumed = self.assumed
-        types = {**self.objects.types, **optimism.types}
-        instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
-        if excluded(instantiated, self.deadline) is None:
-            return False
-        self.optimism, self.instantiated = optimism, instantiated
+        twins = [
+            replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN}"))
+            for stream in self.useful
+            if not stream.is_test
+        ]
+        imagined: list[tuple[Optimism, InstantiatedTask]] = []
+        for streams in (self.useful, [*self.useful, *twins]):
+            optimism = imagine(streams, self.known)
+            if not optimism.complete:
+                return False
+            optimism.assumed = self.assumed
+            types = {**self.objects.types, **optimism.types}
+            instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
+            if excluded(instantiated, self.deadline) is None:
+                return False
+            imagined.append((optimism, instantiated))
+        self.optimism, self.instantiated = imagined[0]
         return True
 
     def promise(self, name: str) -> Fact | None:

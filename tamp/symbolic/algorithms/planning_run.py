@@ -16,13 +16,13 @@ from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.binding.skeleton_construction import build_skeleton
 from tamp.symbolic.algorithms.binding.skeleton_steps import to_steps, with_nogoods
 from tamp.symbolic.algorithms.bound_stream import Streams
-from tamp.symbolic.algorithms.experience.elsewhere import elsewhere
+from tamp.symbolic.algorithms.experience.elsewhere import choices, elsewhere
 from tamp.symbolic.algorithms.experience.exploration_prices import doubts
 from tamp.symbolic.algorithms.experience.failure_counts import Tally, tallies
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.algorithms.explanation.explanation import explain_attempts, explain_failures, explain_infeasible
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
 from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
 from tamp.symbolic.algorithms.result import Outcome, PlanAction, Progress, Result, StreamTask
 from tamp.symbolic.pddl.structs import Fact, Formula
@@ -95,7 +95,7 @@ class Run(Imagination):
         if self.doubtful and self.excluded():
             return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
         instantiated, prices = with_nogoods(self.instantiated, self.experience)
-        self.searched = instantiated = elsewhere(instantiated, self.experience)
+        self.searched = instantiated = elsewhere(instantiated, self.experience, self.optimism)
         prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
         unit = self._usual_cost()
         if unit > 1.0:
@@ -140,11 +140,19 @@ class Run(Imagination):
         known = self.skeletons.get(key) if traced is self.instantiated and not self.experience.exact else None
         if known is None:
             steps, trace = to_steps(self.searched, plan, self.prices)
-            key = (tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static)
+            chosen: dict[tuple[int, Fact], Guess] = {}
+            if self.optimism.several:
+                for number, at in enumerate((*trace.steps, trace.end)):
+                    some = choices(self.optimism, self.experience, at.static, at.state)
+                    chosen |= {(number, fact): guess for fact, guess in some.items()}
+            calls = tuple((place, guess.call) for place, guess in chosen.items())
+            key = (
+                tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static, calls,
+            )  # fmt: skip
             known = self.skeletons.get(key)
             if known is None or not self.is_open(known):
                 maker, promise = self.optimism.maker, self.promise
-                known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given)
+                known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given, chosen)
                 self.effort.skeletons = len(self.skeletons)
             self.traced[operators] = (None if trace.open else self.instantiated), key
         return known

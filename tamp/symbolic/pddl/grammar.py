@@ -30,7 +30,9 @@ ONLY_GROUPS = frozenset(
         ":goal",
     )
 )
-MANY_GROUPS = frozenset(("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric"))
+MANY_GROUPS = frozenset(
+    ("and", "or", ":predicates", ":init", ":goal", ":functions", ":function", ":axiom", ":metric")
+)
 KEYWORDED = frozenset((":action", ":stream", ":wild-stream", ":rule"))
 """Sections with a name and `:keyword value` pairs."""
 

@@ -116,7 +116,9 @@ def _aligned(token: Token, tokens: Sequence[Token], open_: Sequence[_Open]) -> b
     if not token.first or token.place.column == 1:  # a file without indentation says nothing by it
         return False
     places = (tokens[group.index].place for group in open_[1:])
-    return any(place.column == token.place.column and place.line < token.place.line for place in places)
+    return any(
+        place.column == token.place.column and place.line < token.place.line for place in places
+    )
 
 
 def _repairs(tokens: Sequence[Token], start: int, depth: int) -> bool:
@@ -146,7 +148,9 @@ def _fits_inside(tokens: Sequence[Token], index: int, parent: _Open) -> bool:
     if index == parent.index + 1:
         return True  # its head
     head, previous = _word(tokens, parent.index + 1), _word(tokens, index - 1)
-    return may_contain(head, parent.groups, _word(tokens, index), _word(tokens, index + 1), previous)
+    return may_contain(
+        head, parent.groups, _word(tokens, index), _word(tokens, index + 1), previous
+    )
 
 
 def _starts_define(tokens: Sequence[Token], index: int) -> bool:

@@ -59,13 +59,17 @@ class Relation:
         facts.
         """
         terms = {**names, **{pose: at[names[body]] for pose, body in self.poses.items()}}
-        return tuple((atom.predicate, *(terms.get(term, term) for term in atom.terms)) for atom in self.facts)
+        return tuple(
+            (atom.predicate, *(terms.get(term, term) for term in atom.terms)) for atom in self.facts
+        )
 
 
 def relation_names(streams: StreamFile) -> tuple[str, ...]:
     """Return every R of which there is a stream sample-R or test-R."""
     split = [stream.name.partition("-") for stream in streams.streams]
-    return tuple(dict.fromkeys(name for verb, _, name in split if verb in ("sample", "test") and name))
+    return tuple(
+        dict.fromkeys(name for verb, _, name in split if verb in ("sample", "test") and name)
+    )
 
 
 def relation_of(streams: StreamFile, domain: Domain, name: str) -> Relation | None:
@@ -77,7 +81,9 @@ def relation_of(streams: StreamFile, domain: Domain, name: str) -> Relation | No
     stream = test or sample
     if stream is None or (test is not None and test.outputs):
         return None
-    others = {atom.predicate for one in streams.streams if one is not stream for atom in one.certified}
+    others = {
+        atom.predicate for one in streams.streams if one is not stream for atom in one.certified
+    }
     facts = stream.certified
     if test is None:
         facts = tuple(atom for atom in facts if atom.predicate not in others | {POSE})
@@ -143,7 +149,11 @@ def needed_false(domain: Domain, goal: Formula, predicates: Collection[str]) -> 
     for action in domain.actions:
         roots += signed_atoms(action.precondition)
         for effect in action.effects:
-            roots += [(atom, sign) for atom, one in signed_atoms(effect.condition) for sign in (one, not one)]
+            roots += [
+                (atom, sign)
+                for atom, one in signed_atoms(effect.condition)
+                for sign in (one, not one)
+            ]
     return next((atom for atom, sign in roots if _leads(atom, sign, domain, predicates)), None)
 
 
@@ -159,7 +169,9 @@ def _leads(atom: Atom, sign: bool, domain: Domain, predicates: Collection[str]) 
         if (predicate, helps) not in seen:
             seen.add((predicate, helps))
             bodies = (rule.body for rule in domain.derived if rule.head.predicate == predicate)
-            stack += [(one.predicate, way) for body in bodies for one, way in signed_atoms(body, helps)]
+            stack += [
+                (one.predicate, way) for body in bodies for one, way in signed_atoms(body, helps)
+            ]
     return False
 
 
@@ -168,8 +180,12 @@ def failing(relation: Relation, domain: Domain) -> Stream:
     conditions = [Atom(POSE, (body, pose)) for pose, body in relation.poses.items()]
     for variable in relation.arguments:
         types, kinds = _wanted(relation.stream, relation.facts, domain, variable)
-        conditions += [Atom(one, (variable,)) for one in (*(one[0] for one in types if len(one) == 1), *kinds)]
-    certified = tuple(Atom(complement_name(atom.predicate, domain), atom.terms) for atom in relation.facts)
+        conditions += [
+            Atom(one, (variable,)) for one in (*(one[0] for one in types if len(one) == 1), *kinds)
+        ]
+    certified = tuple(
+        Atom(complement_name(atom.predicate, domain), atom.terms) for atom in relation.facts
+    )
     inputs = tuple(_in_order(relation))
     return Stream(
         f"test-not-{relation.name}",
@@ -210,10 +226,20 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
     """
     positions = {*POSITIONS}
     for one in domain.predicates.values():
-        positions |= {(one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types}
+        positions |= {
+            (one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types
+        }
     if sample is not None:
-        atoms = [(atom.predicate, at, term) for atom in sample.certified for at, term in enumerate(atom.terms)]
-        positions |= {(one, at) for one, at, term in atoms if term in sample.outputs and _may_be_pose(domain, one, at)}
+        atoms = [
+            (atom.predicate, at, term)
+            for atom in sample.certified
+            for at, term in enumerate(atom.terms)
+        ]
+        positions |= {
+            (one, at)
+            for one, at, term in atoms
+            if term in sample.outputs and _may_be_pose(domain, one, at)
+        }
     atoms = [(atom.predicate, at, term) for atom in (*stream.domain, *stream.certified)
              for at, term in enumerate(atom.terms)]  # fmt: skip
     return {term for predicate, at, term in atoms if (predicate, at) in positions}
@@ -221,7 +247,9 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
 
 def _may_be_pose(domain: Domain, predicate: str, at: int) -> bool:
     declared = domain.predicates.get(predicate)
-    return declared is not None and any(one in ("object", POSE) for one in declared.parameters[at].types)
+    return declared is not None and any(
+        one in ("object", POSE) for one in declared.parameters[at].types
+    )
 
 
 def _wanted(
@@ -240,5 +268,9 @@ def _wanted(
             kinds[atom.predicate] = None
         else:
             pairs = zip(atom.terms, declared.parameters, strict=True)
-            types |= {one.types: None for term, one in pairs if term == variable and "object" not in one.types}
+            types |= {
+                one.types: None
+                for term, one in pairs
+                if term == variable and "object" not in one.types
+            }
     return list(types), list(kinds)

@@ -11,6 +11,9 @@ from tamp.symbolic.search.operators import Axiom, InstantiatedTask
 ALTERNATIVES = 512
 """Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
 
+MOST_WORK = 100_000
+"""Rules opened and conjunctions joined for one part of the goal at most; what is left then excludes nothing."""
+
 Literal = tuple[Fact, bool]
 """A fact, and whether it is to hold."""
 
@@ -35,7 +38,7 @@ def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
     for literal in literals:
         for part in _opened(literal, rules, instantiated.meanings.keys(), ()):
             opened[part] = None
-    return [Part(literal, tuple(_ways(literal, rules, frozenset()))) for literal in opened]
+    return [Part(literal, tuple(_Opener(rules).ways(literal))) for literal in opened]
 
 
 Rules = dict[Fact, list[Axiom]]
@@ -49,10 +52,15 @@ def _by_head(axioms: Iterable[Axiom]) -> Rules:
 
 
 def _body(axiom: Axiom) -> list[Literal]:
-    return [*((fact, True) for fact in sorted(axiom.positive)), *((fact, False) for fact in sorted(axiom.negative))]
+    return [
+        *((fact, True) for fact in sorted(axiom.positive)),
+        *((fact, False) for fact in sorted(axiom.negative)),
+    ]
 
 
-def _opened(literal: Literal, rules: Rules, auxiliary: Iterable[str], above: tuple[Fact, ...]) -> Iterator[Literal]:
+def _opened(
+    literal: Literal, rules: Rules, auxiliary: Iterable[str], above: tuple[Fact, ...]
+) -> Iterator[Literal]:
     """The conjuncts that an auxiliary fact stands for; the literal itself where it stands for something else."""
     fact, wanted = literal
     made = rules.get(fact, [])
@@ -73,30 +81,42 @@ ANY: list[Way] = [frozenset()]
 """How a literal holds of which nothing is known."""
 
 
-def _ways(literal: Literal, rules: Rules, above: frozenset[Fact]) -> list[Way]:
-    """Conjunctions of fluent literals of which one holds wherever the literal does."""
-    fact, wanted = literal
-    if fact not in rules:
-        return [frozenset((literal,))]
-    if fact in above:
-        return ANY
-    above |= {fact}
-    if wanted:
-        ways: list[Way] = []
-        for axiom in rules[fact]:
-            ways += _product([_ways(part, rules, above) for part in _body(axiom)])
-        return ways if len(ways) <= ALTERNATIVES else ANY
-    return _product(
-        [[way for part, sign in _body(axiom) for way in _ways((part, not sign), rules, above)] for axiom in rules[fact]]
-    )
+class _Opener:
+    """Opens literals by their rules, with a bound on the work: where rules lead in circles there is no end of ways."""
 
+    def __init__(self, rules: Rules) -> None:
+        self._rules, self._work = rules, 0
 
-def _product(choices: list[list[Way]]) -> list[Way]:
-    """One of each, joined; without those that contradict themselves. Choices beyond ALTERNATIVES are left open."""
-    ways = ANY
-    for choice in sorted(choices, key=len):
-        if len(ways) * len(choice) > ALTERNATIVES:
-            continue
-        joined = (a | b for a in ways for b in choice)
-        ways = [way for way in joined if not any((fact, not sign) in way for fact, sign in way)]
-    return ways
+    def ways(self, literal: Literal, above: frozenset[Fact] = frozenset()) -> list[Way]:
+        """List conjunctions of fluent literals of which one holds wherever the literal does."""
+        fact, wanted = literal
+        if fact not in self._rules:
+            return [frozenset((literal,))]
+        self._work += 1
+        if fact in above or self._work > MOST_WORK:
+            return ANY
+        above |= {fact}
+        if wanted:
+            ways: list[Way] = []
+            for axiom in self._rules[fact]:
+                ways += self._product([self.ways(part, above) for part in _body(axiom)])
+                if len(ways) > ALTERNATIVES:
+                    return ANY
+            return ways
+        return self._product(
+            [
+                [way for part, sign in _body(axiom) for way in self.ways((part, not sign), above)]
+                for axiom in self._rules[fact]
+            ]
+        )
+
+    def _product(self, choices: list[list[Way]]) -> list[Way]:
+        """One of each, joined; without those that contradict themselves. Choices beyond ALTERNATIVES are left open."""
+        ways = ANY
+        for choice in sorted(choices, key=len):
+            if len(ways) * len(choice) > ALTERNATIVES:
+                continue
+            self._work += len(ways) * len(choice)
+            joined = (a | b for a in ways for b in choice)
+            ways = [way for way in joined if not any((fact, not sign) in way for fact, sign in way)]
+        return ways

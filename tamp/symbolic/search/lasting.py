@@ -51,7 +51,9 @@ def lasting(instantiated: InstantiatedTask) -> Lasting:
         alive = kept
 
 
-def forbidden_by(instantiated: InstantiatedTask, facts: frozenset[Fact]) -> list[tuple[Operator, frozenset[Fact]]]:
+def forbidden_by(
+    instantiated: InstantiatedTask, facts: frozenset[Fact]
+) -> list[tuple[Operator, frozenset[Fact]]]:
     """The operators that a state forbids whatever streams give, each with the facts that it wants not to hold."""
     state = set(facts)
     _derive(state, [axiom for axiom in instantiated.axioms if not axiom.negative])
@@ -66,7 +68,9 @@ def forbidden_by(instantiated: InstantiatedTask, facts: frozenset[Fact]) -> list
     return found
 
 
-def _final(operator: Operator, refused: dict[DerivedGuards, dict[Row, list[Guard]]]) -> Iterator[Guard]:
+def _final(
+    operator: Operator, refused: dict[DerivedGuards, dict[Row, list[Guard]]]
+) -> Iterator[Guard]:
     """The guards of an operator that nothing lifts; those that only a price would ask for are not made."""
     guards = operator.guards
     if isinstance(guards, LazyGuards):

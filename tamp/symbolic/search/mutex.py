@@ -36,7 +36,9 @@ def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Litera
     """
     try:
         parts = goal_parts(instantiated)
-        return Mutexes(replace(instantiated, operators=lasting(instantiated).operators), parts, deadline).conflict()
+        return Mutexes(
+            replace(instantiated, operators=lasting(instantiated).operators), parts, deadline
+        ).conflict()
     except Undecided:
         return None
 
@@ -53,13 +55,20 @@ class Mutexes:
         Undecided: There are too many facts, or the time was up.
     """
 
-    def __init__(self, instantiated: InstantiatedTask, parts: list[Part], deadline: Deadline) -> None:
+    def __init__(
+        self, instantiated: InstantiatedTask, parts: list[Part], deadline: Deadline
+    ) -> None:
         self._parts, self._deadline = parts, deadline
-        absent = {literal for part in parts for way in part.ways for literal in way if not literal[1]}
+        absent = {
+            literal for part in parts for way in part.ways for literal in way if not literal[1]
+        }
         heads = {axiom.head for axiom in instantiated.axioms}
         facts = {(fact, True) for fact in (instantiated.initial | instantiated.reachable) - heads}
         facts |= {literal for part in parts for way in part.ways for literal in way}
-        self._number = {literal: i for i, literal in enumerate([*sorted(facts), *((head, True) for head in heads)])}
+        self._number = {
+            literal: i
+            for i, literal in enumerate([*sorted(facts), *((head, True) for head in heads)])
+        }
         if len(self._number) ** 2 > MOST_PAIRS:
             raise Undecided
         self._with = [0] * len(self._number)
@@ -76,7 +85,10 @@ class Mutexes:
 
     def conflict(self) -> tuple[Literal, ...] | None:
         """The fewest parts of the goal that cannot hold together, as far as pairs of facts show it."""
-        possible = [[way for way in map(self._numbers, part.ways) if self._consistent(way)] for part in self._parts]
+        possible = [
+            [way for way in map(self._numbers, part.ways) if self._consistent(way)]
+            for part in self._parts
+        ]
         for part, ways in zip(self._parts, possible, strict=True):
             if not ways:
                 return (part.literal,)
@@ -110,7 +122,9 @@ class Mutexes:
                 steps += 1
                 if steps > STEPS:
                     return True
-                if all(allowed >> k & 1 for k in way) and choose(index + 1, allowed & self._partners(way)):
+                if all(allowed >> k & 1 for k in way) and choose(
+                    index + 1, allowed & self._partners(way)
+                ):
                     return True
             return False
 
@@ -118,8 +132,15 @@ class Mutexes:
 
     def _fixpoint(self, instantiated: InstantiatedTask) -> None:
         """Apply operators and rules to pairs until no new one comes."""
-        moves = list(dict.fromkeys(move for operator in instantiated.operators for move in self._moves(operator)))
-        rules = [(self._number[a.head, True], self._body(a.positive, a.negative)) for a in instantiated.axioms]
+        moves = list(
+            dict.fromkeys(
+                move for operator in instantiated.operators for move in self._moves(operator)
+            )
+        )
+        rules = [
+            (self._number[a.head, True], self._body(a.positive, a.negative))
+            for a in instantiated.axioms
+        ]
         seen: list[tuple[int, ...] | None] = [None] * len(moves)
         changed = True
         while changed:
@@ -168,7 +189,9 @@ class Mutexes:
         gone = set(operator.deleted)
         for effect in operator.conditional:
             if not effect.negative:  # what is removed whenever it is there is gone afterwards
-                gone |= {fact for fact in effect.deleted if effect.positive <= operator.positive | {fact}}
+                gone |= {
+                    fact for fact in effect.deleted if effect.positive <= operator.positive | {fact}
+                }
         gone -= operator.added
         perhaps = {fact for effect in operator.conditional for fact in effect.added}
         removed = self._bits(self._numbers((fact, True) for fact in gone - perhaps))
@@ -192,14 +215,18 @@ class Mutexes:
 
     def _body(self, positive: Iterable[Fact], negative: Iterable[Fact]) -> tuple[int, ...]:
         literals = [(fact, True) for fact in positive] + [(fact, False) for fact in negative]
-        return tuple(sorted(self._number.get(literal, -1) for literal in literals if self._known(literal)))
+        return tuple(
+            sorted(self._number.get(literal, -1) for literal in literals if self._known(literal))
+        )
 
     def _known(self, literal: Literal) -> bool:
         """Whether a literal is looked at: absences only where the goal wants them."""
         return literal[1] or literal in self._absent
 
     def _numbers(self, literals: Iterable[Literal]) -> tuple[int, ...]:
-        return tuple(sorted(self._number[literal] for literal in literals if literal in self._number))
+        return tuple(
+            sorted(self._number[literal] for literal in literals if literal in self._number)
+        )
 
     def _mask(self, literals: Iterable[Literal]) -> int:
         return self._bits(self._numbers(literals))

@@ -31,6 +31,7 @@ class Step:
         added: What it makes true there.
         deleted: What of the state it makes false.
         guards: Those triggered there.
+        unguarded: Those of the static facts that it rests on whether or not they lift a guard.
     """
 
     operator: Operator
@@ -42,6 +43,7 @@ class Step:
     added: Facts = NONE
     deleted: Facts = NONE
     guards: tuple[Guard, ...] = ()
+    unguarded: Facts = NONE
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,12 +139,13 @@ def _applied(
         raise ValueError(f"{operator} is not applicable")
     derived, read, heads = supports(why, operator.positive)
     static = set(operator.static)
+    lifting: set[Fact] = set()
     guards = triggered(operator, state)
 
     for guard in guards:
         if guard.waived_by is None:
             raise ValueError(f"{operator} is forbidden while {sorted(guard.facts)} hold")
-        static.add(guard.waived_by)
+        lifting.add(guard.waived_by)
 
     added, deleted = operator.added, operator.deleted
 
@@ -156,9 +159,10 @@ def _applied(
 
     after = (state - deleted) | added
     gone = state - after
+    own = frozenset(static | derived)
 
     return Step(
-        operator, state, frozenset(static | derived), derived, read, heads, added, gone, guards
+        operator, state, own | lifting, derived, read, heads, added, gone, guards, own
     ), after
 
 

@@ -48,7 +48,9 @@ class Successors:
     def __init__(self, instantiated: InstantiatedTask, price: Price) -> None:
         self.instantiated = instantiated
         self._listed: Mapping[Fact, float] | None = None if callable(price) else price
-        self._ask: Callable[[Fact], float] = price if callable(price) else lambda fact: price.get(fact, 0.0)
+        self._ask: Callable[[Fact], float] = (
+            price if callable(price) else lambda fact: price.get(fact, 0.0)
+        )
         self._prices: dict[Fact, float] = {}
         self.operators = instantiated.operators
         self._guarded: dict[Facts, list[tuple[int, Fact | None]]] = {}
@@ -65,7 +67,10 @@ class Successors:
         self.added = [mask(o.added) for o in self.operators]
         self.kept = [~mask(o.deleted) for o in self.operators]
         self.conditional = [
-            tuple((mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted)) for c in o.conditional)
+            tuple(
+                (mask(c.positive), mask(c.negative), mask(c.added), mask(c.deleted))
+                for c in o.conditional
+            )
             for o in self.operators
         ]
         self.initial = mask(instantiated.initial)
@@ -197,7 +202,11 @@ class Successors:
         """Return the operator's cost in the state, with the prices of its triggered guards;
         infinite where it is forbidden.
         """
-        return self.cost[index] + self.extras(state).get(index, 0.0) if self._has_guards[index] else self.cost[index]
+        return (
+            self.cost[index] + self.extras(state).get(index, 0.0)
+            if self._has_guards[index]
+            else self.cost[index]
+        )
 
     def apply(self, index: int, state: State, closed: State) -> State:
         """Apply the operator (adding wins over deleting); return the state after it."""
@@ -235,9 +244,13 @@ class Successors:
 
     def _mentioned(self) -> set[Fact]:
         instantiated = self.instantiated
-        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(*self._guarded)
+        mentioned = set(instantiated.goal.positive | instantiated.goal.negative).union(
+            *self._guarded
+        )
         fluents = {source.fluent for source in self._blocked}
-        mentioned |= {fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents}
+        mentioned |= {
+            fact for fact in instantiated.reachable | instantiated.initial if fact[0] in fluents
+        }
         for operator in instantiated.operators:
             mentioned |= operator.positive
             mentioned |= operator.negative

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from random import Random
 
 import pytest
@@ -80,3 +81,25 @@ def test_what_can_be_had_together_is_not_named() -> None:
     assert told("(and (forall (?b - ball) (at ?b den)) (free))", 5) is None
     assert told("(and (carried b0) (not (at b1 hall)) (not (free)))", 5) is None
     assert told("(or (and (at b0 den) (at b0 loft)) (at b1 den))", 5) is None
+
+
+CIRCLES = """
+(define (domain circles)
+  (:requirements :typing :derived-predicates)
+  (:types room)
+  (:predicates (door ?a ?b - room) (reach ?a ?b - room) (shut))
+  (:derived (reach ?a ?b - room) (door ?a ?b))
+  (:derived (reach ?a ?b - room) (exists (?k - room) (and (reach ?a ?k) (reach ?k ?b))))
+  (:action build :parameters (?a ?b - room) :precondition (not (shut)) :effect (door ?a ?b)))
+"""
+
+
+@pytest.mark.parametrize("goal", ["(reach r0 r9)", "(not (reach r0 r9))", "(and (reach r0 r9) (not (reach r9 r0)))"])
+def test_rules_that_lead_in_circles_come_to_an_end(goal: str) -> None:
+    """The ways to reach a room through all others are as many as their orders."""
+    names = " ".join(f"r{i}" for i in range(10))
+    text = f"(define (problem p) (:domain circles) (:objects {names} - room) (:init) (:goal {goal}))"
+    instantiated = instantiate(parse_task(text, parse_domain(CIRCLES, None), None))
+    began = time.process_time()
+    assert excluded(instantiated, Deadline()) is None
+    assert time.process_time() - began < 10.0

@@ -211,8 +211,8 @@ class Binder:
             present = frozenset(fact for _, fact in node.fluents)
             words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
             if not any(word.startswith(MARK) for word in words):
-                for fact in self._streams.certified(instance, node.guess[1]):
-                    self._experience.note_exact(fact, node.stream.declaration.fluents, present)
+                call = (node.stream.name, node.guess[0])
+                self._experience.note_exact(call, node.stream.declaration.fluents, present)
             if present:  # nobody says what of the state is to blame
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)

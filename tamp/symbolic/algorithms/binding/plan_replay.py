@@ -87,7 +87,7 @@ class Standing:
         actions = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
         reason = self._replayed(actions, facts, given)
         if reason is not None:
-            return Fault(reason, len(set(values.values())) < len(values))
+            return Fault(reason, self._coincide(skeleton, values))
         wild = set(self._streams.wild)
         if self._absent:  # what was found out about the plan's values, for this plan or another
             names = {*self._task.objects, *self._task.domain.constants}
@@ -97,6 +97,13 @@ class Standing:
         if wild - facts:
             reason = self._replayed(actions, facts | wild, given)
         return None if reason is None else Fault(reason, True)
+
+    def _coincide(self, skeleton: Skeleton, values: Mapping[int, str]) -> bool:
+        """Whether a variable has the value of another one, or of an object that the task or the plan names."""
+        named = {*self._task.objects, *self._task.domain.constants}
+        lifted = (*skeleton.actions, *skeleton.certified)
+        named.update(term for _, terms in lifted for term in terms if isinstance(term, str))
+        return len(set(values.values())) < len(values) or not named.isdisjoint(values.values())
 
     def _take(self, node: Node, values: Mapping[int, str], given: _Certified) -> str | None:
         """Add what a call certified of a state; what is wrong if it never gave these values."""

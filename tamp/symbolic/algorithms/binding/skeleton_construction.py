@@ -18,6 +18,7 @@ def build_skeleton(
     maker: Callable[[Fact], Guess | None],
     promise: Callable[[str], Fact | None],
     given: Iterable[Fact] = (),
+    chosen: Mapping[tuple[int, Fact], Guess] | None = None,
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
@@ -30,8 +31,9 @@ def build_skeleton(
         maker: Who certifies an optimistic fact; None for known ones.
         promise: What the call that gives a placeholder, or a value, certifies of it; None for the task's own objects.
         given: Facts that no action changes: they are shown to the streams that ask for them.
+        chosen: For a step's number and a fact that it rests on who certifies that there, where several may.
     """
-    builder = _Builder(maker, promise, given)
+    builder = _Builder(maker, promise, given, chosen or {})
     for number, step in enumerate(steps):
         builder.take(number, step)
     builder.finish(len(steps), end)
@@ -46,7 +48,9 @@ class _Builder:
         maker: Callable[[Fact], Guess | None],
         promise: Callable[[str], Fact | None],
         given: Iterable[Fact],
+        chosen: Mapping[tuple[int, Fact], Guess],
     ) -> None:
+        self._chosen = chosen
         self._maker, self._promise, self._given = maker, promise, frozenset(given)
         self._parent: list[int] = []
         self._producer: dict[int, Node] = {}
@@ -111,15 +115,15 @@ class _Builder:
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
+        for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
+            if argument.startswith(MARK):
+                self._anything(argument, local, number)
         for usage in step.usages:
             around = dict(local)
             for fact in sorted(usage.present):
                 self._adopt(fact, around)
             self._require(usage.fact, around, number)
             self._certify((usage.fact,), around)
-        for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
-            if argument.startswith(MARK):
-                self._anything(argument, local, number)
         self._actions.append((step.name, self._lift(step.arguments, local)))
         self._certify(step.static, local)
         for fact in step.added:
@@ -193,7 +197,7 @@ class _Builder:
         if fact[0] == ANY:
             self._anything(fact[1], local, number)
             return None
-        guess = self._maker(fact)
+        guess = self._chosen.get((number, fact)) or self._maker(fact)
         if guess is None:
             return None
         node = None

@@ -52,7 +52,6 @@ def to_steps(
             for guard in step.guards
             if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
         ]
-        used = {usage.fact for usage in usages}
         steps.append(
             Step(
                 name=operator.name,
@@ -61,7 +60,7 @@ def to_steps(
                 read=step.read,
                 added=step.added,
                 deleted=step.deleted,
-                static=frozenset(fact for fact in step.static if fact[0] != NOGOOD and fact not in used),
+                static=step.unguarded,
                 derived=step.derived,
                 usages=tuple(sorted(usages, key=lambda usage: (usage.fact, sorted(usage.present)))),
                 cost=operator.cost,

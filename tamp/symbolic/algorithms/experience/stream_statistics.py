@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+Call = tuple[str, tuple[str, ...]]
+"""A stream call: the stream's name, and its inputs."""
+
 
 @dataclass
 class StreamStatistics:
@@ -50,12 +53,13 @@ class Experience:
     """What binding learned about the symbolic facts of the optimistic task, priced for the next search.
 
     A test that fails blocks exactly the facts it read: `facts` prices the optimistic static facts that need it, and
-    `nogoods` prices a static fact in the presence of named fluent facts.
+    `nogoods` prices a static fact in the presence of named fluent facts. `exact` is final: to each call the predicates
+    of the state that it is shown, and their facts in the states in which it gave nothing.
     """
 
     def __init__(self) -> None:
         self.facts: dict[tuple[str, ...], Record] = {}
-        self.exact: dict[tuple[tuple[str, ...], tuple[str, ...]], dict[frozenset[tuple[str, ...]], None]] = {}
+        self.exact: dict[Call, tuple[tuple[str, ...], dict[frozenset[tuple[str, ...]], None]]] = {}
         self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], Record] = {}
 
     def note(self, fact: tuple[str, ...], reason: str | None) -> None:
@@ -66,9 +70,9 @@ class Experience:
         """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
 
-    def note_exact(self, fact: tuple[str, ...], predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
-        """Note that a fact does not hold in the states that have just these facts of the predicates."""
-        self.exact.setdefault((fact, predicates), {})[state] = None
+    def note_exact(self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
+        """Note that a call gives nothing in the states that have just these facts of the predicates."""
+        self.exact.setdefault(call, (predicates, {}))[1][state] = None
 
     def prices(self) -> dict[tuple[str, ...], float]:
         """The extra cost of an action that rests on a fact, for those that cost something."""

@@ -24,25 +24,41 @@ def anything(task: Task) -> set[Types]:
     return found
 
 
-def distinguishes(task: Task) -> bool:
-    """Whether a condition wants two things to differ."""
+def distinguishes(task: Task, kinds: Iterable[Types] | None = None) -> bool:
+    """Whether a condition wants two things to differ.
+
+    Args:
+        task: Gives the conditions.
+        kinds: The types of the things that matter; by default all do.
+    """
     domain = task.domain
-    conditions = [task.goal, *(rule.body for rule in domain.derived)]
-    conditions += [action.precondition for action in domain.actions]
-    conditions += [effect.condition for action in domain.actions for effect in action.effects]
-    return any(_differs(condition) for condition in conditions)
+    conditions: list[tuple[tuple[Parameter, ...], Formula]] = [((), task.goal)]
+    conditions += [(rule.parameters, rule.body) for rule in domain.derived]
+    for action in domain.actions:
+        conditions.append((action.parameters, action.precondition))
+        conditions += [((*action.parameters, *effect.parameters), effect.condition) for effect in action.effects]
+
+    own = None if kinds is None else list(kinds)
+
+    def matters(types: Types) -> bool:
+        return own is None or any(domain.fits(kind, types) for kind in own)
+
+    return any(matters(types) for parameters, one in conditions for types in _differing(one, True, parameters))
 
 
-def _differs(formula: Formula) -> bool:
+def _differing(formula: Formula, sign: bool, scope: tuple[Parameter, ...]) -> Iterator[Types]:
+    """The types of the variables that are to differ from something."""
     match formula:
-        case Atom():
-            return False
+        case Atom(predicate, terms):
+            if predicate == "=" and not sign:
+                yield from (one.types for one in scope if one.name in terms)
         case Not(body):
-            return (isinstance(body, Atom) and body.predicate == "=") or _differs(body)
+            yield from _differing(body, not sign, scope)
         case And(parts) | Or(parts):
-            return any(_differs(part) for part in parts)
-        case Exists(_, body) | Forall(_, body):
-            return _differs(body)
+            for part in parts:
+                yield from _differing(part, sign, scope)
+        case Exists(parameters, body) | Forall(parameters, body):
+            yield from _differing(body, sign, (*scope, *parameters))
 
 
 def _unnamed(parameters: Iterable[Parameter], condition: Formula) -> Iterator[Types]:

@@ -43,6 +43,11 @@ class Guess:
     level: int
 
     @property
+    def call(self) -> tuple[str, tuple[str, ...]]:
+        """The stream's name and the inputs."""
+        return self.stream.name, self.inputs
+
+    @property
     def has_real_inputs(self) -> bool:
         """Whether all inputs are real, so that what its function says of them is final."""
         return not any(name.startswith(MARK) for name in self.inputs)
@@ -62,6 +67,8 @@ class Optimism:
 
     Attributes:
         makers: Fact to the guess that certifies it, the first one of several.
+        several: Fact to all guesses that certify it, where one of them looks at the state: one may fail in a state in
+            which another does not.
         guesses: All of them.
         types: Placeholder to its types.
         assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
@@ -70,6 +77,7 @@ class Optimism:
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
+    several: dict[Fact, list[Guess]] = field(default_factory=dict[Fact, list[Guess]])
     guesses: list[Guess] = field(default_factory=list[Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
@@ -174,6 +182,8 @@ def imagine(
                 optimism.makers[fact] = made
                 level_of[fact] = level
                 queue.append(fact)
+            elif fact in optimism.makers and (stream.is_fluent or optimism.makers[fact].stream.is_fluent):
+                optimism.several.setdefault(fact, [optimism.makers[fact]]).append(made)
 
     for stream in streams:
         if not stream.declaration.domain and not stream.declaration.inputs:

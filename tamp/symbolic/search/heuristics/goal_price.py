@@ -21,7 +21,9 @@ class GoalPrice:
         if any(s.axiom_cost):
             for axiom, cost in zip(s.instantiated.axioms, s.axiom_cost, strict=True):
                 price = 0.0 if axiom.negative else cost
-                self._axioms.append(([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price))
+                self._axioms.append(
+                    ([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price)
+                )
 
     def __call__(self, state: State) -> float:
         """Price the goal in a state without its derived facts, in which the goal holds."""

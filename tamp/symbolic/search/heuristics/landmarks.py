@@ -37,7 +37,9 @@ class Landmarks:
             relaxed_state.needed.lists(),
         )
         here = relaxation.holding(initial)
-        sets: list[Mask] = [0] * len(needed)  # 0: not reached yet; every reached set contains the fact itself
+        sets: list[Mask] = [0] * len(
+            needed
+        )  # 0: not reached yet; every reached set contains the fact itself
         for fact in (*here, *relaxed_state.paid):
             sets[fact] = 1 << fact
         start = set(here)
@@ -108,7 +110,9 @@ class Landmarks:
                     weights[fact] = min(weights.get(fact, math.inf), float(costs[i]))
         return {fact: weights.get(fact, 0.0) for fact in self.landmarks}
 
-    def _first_needs(self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]) -> dict[int, Mask]:
+    def _first_needs(
+        self, sets: list[Mask], before: list[list[int]], effects: list[list[int]]
+    ) -> dict[int, Mask]:
         """Return for each landmark what all its first achievers need: those that do not need
         itself.
         """

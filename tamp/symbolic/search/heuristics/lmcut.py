@@ -54,7 +54,9 @@ class LandmarkCut:
         dead end.
         """
         kernels = self.relaxed_state.kernels
-        here = kernels.integers((*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid))
+        here = kernels.integers(
+            (*self._relaxation.holding(closed), self._true, *self.relaxed_state.paid)
+        )
         return kernels.landmark_cut(
             *self._rows,
             self._costs,

@@ -166,10 +166,11 @@ class PredicateKinds:
         return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
 
     def unnamed(self, literals: Literals) -> tuple[Atom, ...]:
-        """Return for each variable that no positive atom names: that there is the object that it
-        stands for.
+        """Return for each variable that no positive atom names but for its type: that there is the
+        object that it stands for.
         """
-        covered = {term for atom in literals.positive for term in atom.terms}
+        named = (atom for atom in literals.positive if not atom.predicate.startswith("type "))
+        covered = {term for atom in named for term in atom.terms}
         return tuple(Atom(ANY, (name,)) for name, _ in literals.variables if name not in covered)
 
     def type_atom(self, variable: str, types: Types) -> Atom:

@@ -158,10 +158,9 @@ class Instantiation:
         for atom in (*kinds.positive, *kinds.derived):
             needs.positive.append((atom.predicate, *atom.terms))
         for atom in kinds.static:
-            fact = (atom.predicate, *atom.terms)
-            (static if atom.terms in relations.rows(atom.predicate) else needs.positive).append(
-                fact
-            )
+            known = atom.terms in relations.rows(atom.predicate)
+            if not (known and atom.predicate.startswith("type ")):
+                (static if known else needs.positive).append((atom.predicate, *atom.terms))
 
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
