@@ -214,7 +214,7 @@ def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     (tmp_path / "mine.yaml").write_text(text)
     monkeypatch.chdir(tmp_path)
     assert run(["mine.yaml"]) == BAD_INPUT  # there is no mine.streams.pddl
-    assert "mine.streams.pddl: cannot read it" in capsys.readouterr().err
+    assert "mine.streams.pddl: no such file" in capsys.readouterr().err
     assert run(["mine.yaml", "--streams", "streams/other.pddl", "--sampler", "on=surface", "--seed", "3"]) == SOLVED
     capsys.readouterr()
     document = json.loads((tmp_path / "plan.json").read_text())

@@ -123,7 +123,7 @@ def _solve(arguments: Arguments, started: float) -> int:
     given = sampler_files((*problem.samplers.values(), *given_names.values()))
     check_outputs(arguments.outputs, (*(file for files in problem.files.values() for file in files), *given))
     if arguments.html is not None and not arguments.allow_outside:
-        check_inside(problem.files["meshes"], problem.files["problem"][0])
+        check_inside((*problem.files["meshes"], *problem.files["drawn"]), problem.files["problem"][0])
     if arguments.statistics is not None:
         known = read_statistics(arguments.statistics, domain_name)
         problem = replace(problem, stream_task=replace(problem.stream_task, known=known))

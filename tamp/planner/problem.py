@@ -153,6 +153,7 @@ def load_problem(
             "domain": (domain_path.resolve(),),
             "streams": (streams_path.resolve(),),
             "meshes": tuple(path.resolve() for path in loaded.meshes),
+            "drawn": tuple(path.resolve() for path in loaded.drawn),
         },
         samplers={relation: choice.text for relation, choice in served.choices.items()},
         warnings=(
