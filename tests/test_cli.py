@@ -203,6 +203,15 @@ def test_an_interrupt_before_planning(tmp_path: Path, capsys: pytest.CaptureFixt
     assert capsys.readouterr() == ("", "interrupted\n")
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [("--seed x", "error: --seed: no whole number: 'x'."), ("--time soon", "error: --time: no number: 'soon'.")],
+)
+def test_a_value_that_is_no_number_is_said_in_words(words: str, says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["one_object", *words.split()]) == BAD_INPUT
+    assert capsys.readouterr().err.startswith(says)
+
+
 def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

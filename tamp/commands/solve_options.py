@@ -160,7 +160,7 @@ def unread() -> SystemExit:
 
 
 def sentence(box: str) -> str:
-    """What tyro says in the first paragraph of its frame."""
+    """What tyro says in the first paragraph of its frame, in words that are no programmer's."""
     lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
     title, *said = [line for line in lines if line] or ["bad arguments"]
     paragraph: list[str] = []
@@ -170,4 +170,6 @@ def sentence(box: str) -> str:
                 break
             continue
         paragraph.append(line)
-    return " ".join(paragraph).rstrip(".") or title
+    text = " ".join(paragraph).rstrip(".") or title
+    text = text.removeprefix("Error parsing ").replace("invalid literal for int() with base 10:", "no whole number:")
+    return text.replace("could not convert string to float:", "no number:")
