@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -42,6 +43,9 @@ MOST_MEMORY = 1_000_000
 
 PATIENCE = 90.0
 """Seconds of waiting for a case, on a busy machine."""
+
+BESIDE_THE_ERROR = r"warning: |  [a-z ]+ +\d+\.\d s$"
+"""Warnings, and what is said where a busy machine is silent for two seconds."""
 
 TEXTS = ("json", "lines", "text", "yaml")
 
@@ -201,10 +205,11 @@ def judge(ended: Ended, words: list[str], before: dict[str, bytes | None], folde
     if any(ord(sign) < 32 and sign not in "\n\t\r" for sign in said) or "\u202e" in said:
         faults.append("control characters are shown")
     if ended.code == 2:
-        lines = [line for line in ended.err.splitlines() if not line.startswith("warning: ")]
+        lines = [line for line in ended.err.splitlines() if not re.match(BESIDE_THE_ERROR, line)]
         if len(lines) != 1 or not lines[0].startswith("error: "):
             faults.append(f"{len(lines)} lines of error")
-        names = {Path(name).name for name in (*before, *words)} | {"lefty"}
+        named = (*before, *words, *(word.partition("=")[2] for word in words))
+        names = ({Path(name).name for name in named} - {""}) | {"lefty"}
         if "words" not in ended.faults and not any(name in ended.err for name in names):
             faults.append("the error names no file")
         if after != before and not {name for name in after if name not in before} <= {"out.json"}:

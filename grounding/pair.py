@@ -41,11 +41,13 @@ def write_pair(path: Path, content: bytes, card: Mapping[str, Any]) -> None:
     beside = path.with_suffix(".json")
     waiting = _waiting(beside, digest)
 
-    write_whole(waiting, text.encode())
     try:
+        write_whole(waiting, text.encode())
         write_whole(path, content)
-    except BaseException:
+    except BaseException as error:
         waiting.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            error.filename = str(path)  # what the caller asked for, not the name of a moment
         raise
     waiting.replace(beside)
 

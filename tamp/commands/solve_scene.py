@@ -85,7 +85,8 @@ def load(request: Request) -> Loaded:
     read = [file for files in problem.files.values() for file in files]
     check_outputs(options.outputs, (*read, *sampler_files((*problem.samplers.values(), *named.values()))))
     if options.scene.html is not None and not options.scene.allow_outside:
-        check_inside(problem.files["meshes"], problem.files["problem"][0])
+        shown_meshes = (*problem.files["meshes"], *problem.files["drawn"])
+        check_inside(shown_meshes, problem.files["problem"][0])
 
     if options.scene.statistics is not None:
         domain_name = problem.stream_task.task.domain.name

@@ -158,6 +158,7 @@ class _Files:
             "domain": (self.domain_path.resolve(),),
             "streams": (self.streams_path.resolve(),),
             "meshes": tuple(path.resolve() for path in self.loaded.meshes),
+            "drawn": tuple(path.resolve() for path in self.loaded.drawn),
         }
 
 

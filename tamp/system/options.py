@@ -189,7 +189,7 @@ def unread() -> SystemExit:
 
 
 def sentence(box: str) -> str:
-    """Find what tyro says in the first paragraph of its frame."""
+    """Find what tyro says in the first paragraph of its frame, in words that are no programmer's."""
     lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
     title, *said = [line for line in lines if line] or ["bad arguments"]
 
@@ -200,7 +200,10 @@ def sentence(box: str) -> str:
                 break
             continue
         paragraph.append(line)
-    return " ".join(paragraph).removesuffix(" (required)").rstrip(".") or title
+    text = " ".join(paragraph).removesuffix(" (required)").rstrip(".") or title
+    text = text.removeprefix("Error parsing ")
+    text = text.replace("invalid literal for int() with base 10:", "no whole number:")
+    return text.replace("could not convert string to float:", "no number:")
 
 
 @dataclass(frozen=True)

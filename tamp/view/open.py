@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.geometric.loading.load import load_scene
+from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.robot.robot import ROBOTS
 from tamp.plan.open import open_plan
 from tamp.plan.read import read_plan
@@ -43,17 +43,22 @@ def open_film(
         stored = open_plan(what, problem)
         sources = [source.path for source in stored.plan.sources]
         beside = [Path(what).parent / path.name for path in sources]
-        read((stored.loaded.path, Path(what), *sources, *beside), stored.loaded.meshes)
+        read((stored.loaded.path, Path(what), *sources, *beside), _shown(stored.loaded))
         film = film_of(stored.loaded.scene, stored.robot, stored.plan)
         return film, story_of(stored.document, Path(what)), stored.document
     if problem is not None:
         raise InputError("--problem goes with a plan", remedy="Name a plan file before it")
     loaded = load_scene(what)
-    read((loaded.path,), loaded.meshes)
+    read((loaded.path,), _shown(loaded))
     scene = loaded.scene
     goal = " ".join(loaded.goal.text.split())
     head = f"{len(scene.bodies)} bodies, {len(scene.movable)} movable · goal {goal}"
     return film_of(scene, ROBOTS[scene.robot.model]()), Story(head), {}
+
+
+def _shown(loaded: LoadedProblem) -> tuple[Path, ...]:
+    """The mesh files that a film may show: those that a plan depends on, and those that are only drawn."""
+    return (*loaded.meshes, *loaded.drawn)
 
 
 def film_of_solution(solution: Solution) -> Opened:

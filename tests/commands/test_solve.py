@@ -203,6 +203,15 @@ def test_an_interrupt_before_planning(tmp_path: Path, capsys: pytest.CaptureFixt
     assert capsys.readouterr() == ("", "interrupted\n")
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [("--seed x", "error: --seed: no whole number: 'x'."), ("--time soon", "error: --time: no number: 'soon'.")],
+)
+def test_a_value_that_is_no_number_is_said_in_words(words: str, says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["one_object", *words.split()]) == BAD_INPUT
+    assert capsys.readouterr().err.startswith(says)
+
+
 def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -214,7 +223,7 @@ def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     (tmp_path / "mine.yaml").write_text(text)
     monkeypatch.chdir(tmp_path)
     assert run(["mine.yaml"]) == BAD_INPUT  # there is no mine.streams.pddl
-    assert "mine.streams.pddl: cannot read it" in capsys.readouterr().err
+    assert "mine.streams.pddl: no such file" in capsys.readouterr().err
     assert run(["mine.yaml", "--streams", "streams/other.pddl", "--sampler", "on=surface", "--seed", "3"]) == SOLVED
     capsys.readouterr()
     document = json.loads((tmp_path / "plan.json").read_text())

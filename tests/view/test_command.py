@@ -195,6 +195,46 @@ def test_meshes_from_elsewhere_are_given_away_only_when_that_is_said(
             page.unlink()
 
 
+def test_a_mesh_that_is_only_drawn_does_not_leave_the_folder_either(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    here = tmp_path / "here"
+    here.mkdir()
+    (tmp_path / "hidden.obj").write_text(
+        "v 0 0 0\nv 0.05 0 0\nv 0 0.05 0\nv 0 0 0.05\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    )
+    (here / "thing.urdf").write_text(
+        '<robot name="thing"><link name="l">'
+        '<visual><geometry><mesh filename="../hidden.obj"/></geometry></visual>'
+        '<collision><geometry><box size="0.05 0.05 0.1"/></geometry></collision></link></robot>'
+    )
+    problem, page = here / "p.yaml", here / "p.html"
+    problem.write_text(
+        "domain: cupboard\nrobot: {model: panda_mobile, base: [0, 0, 0]}\n"
+        "room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}\nbodies:\n"
+        "  table: {furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0, 0]}\n"
+        "  thing: {mesh: thing.urdf, on: table}\ngoal: (on thing table)\n"
+    )
+    plan = here / "plan.json"
+    assert solving.run([str(problem), "--out", str(plan)]) == 0
+
+    for command in (
+        lambda: main([str(problem), "--html", str(page)]),
+        lambda: main([str(plan), "--html", str(page)]),
+        lambda: solving.run([str(problem), "--html", str(page), "--out", str(here / "other.json")]),
+    ):
+        capsys.readouterr()
+        assert command() == 2
+        said = capsys.readouterr().err
+        assert "hidden.obj" in said and "--allow-outside" in said
+        assert not page.exists()
+
+    assert main([str(plan), "--html", str(page), "--allow-outside"]) == 0
+    kept = (tmp_path / "hidden.obj").read_bytes()
+    assert main([str(plan), "--html", str(tmp_path / "hidden.obj"), "--allow-outside"]) == 2
+    assert (tmp_path / "hidden.obj").read_bytes() == kept
+
+
 def test_a_pause_of_hours_makes_no_endless_picture(
     stored_plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -36,6 +36,9 @@ INSIDE = 1e-4
 CROWD = 400
 """Parts around a body; where there are more, they lie in each other, which is refused elsewhere."""
 
+PAIRS = 8_000
+"""Parts looked at for all bodies of a scene together: only in a crowd that lies in itself are there more."""
+
 FLOOR = "floor"
 """What the floor is called among bodies."""
 
@@ -67,6 +70,8 @@ class Ground:
 
     def __init__(self, bodies: Mapping[str, Body]) -> None:
         self._parts: list[tuple[str, Part, Array]] = []
+        self._fixed = {name for name, body in bodies.items() if not body.movable}
+        self._pairs = 0
         boxes: list[tuple[Array, Array]] = []
         for name, body in bodies.items():
             for part in body.parts:
@@ -82,8 +87,10 @@ class Ground:
         around &= (self._high[:, 2] > low[2] - GAP - EVEN) & (self._low[:, 2] < high[2])
         near = [i for i in np.flatnonzero(around) if self._parts[i][0] != body.name]
         others = [self._parts[i] for i in near]
-        if len(others) > CROWD:
-            return Footing(frozenset({others[0][0]}), 0.0)
+        self._pairs += len(others)
+        if len(others) > CROWD or self._pairs > PAIRS:
+            fixed = frozenset(name for name, _, _ in others if name in self._fixed)
+            return Footing(fixed or frozenset({others[0][0] if others else FLOOR}), 0.0)
         few = near[:EDGED]
         xy, under = _underside(body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE]))
         tops = np.zeros((len(xy), len(others) + 1))  # the floor's first

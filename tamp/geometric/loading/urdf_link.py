@@ -138,7 +138,7 @@ def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Ele
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
     if shape.tag == "plane":
-        raise UnknownGeometry(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
+        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
     raise UnknownGeometry(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
 
 

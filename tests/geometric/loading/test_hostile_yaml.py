@@ -83,7 +83,7 @@ def test_merges_that_are_no_mistake(tmp_path: Path) -> None:
 
 def crowd(count: int, step: float) -> str:
     return bodies(
-        "".join(f"  b{i}: {{box: [0.05, 0.05, 0.05], at: [{i * step:.2f}, -1.5, 0.025]}}\n" for i in range(count))
+        "".join(f"  b{i}: {{box: [0.05, 0.05, 0.05], at: [{i * step:.3f}, -1.5, 0.025]}}\n" for i in range(count))
     )
 
 
@@ -94,6 +94,15 @@ def test_thousands_of_bodies_in_one_place(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"'b0' and 'b1' overlap at the start, 50\.0 mm deep"):
         check_overlaps(loaded)
     assert time.process_time() - started < 4.0
+
+
+def test_thousands_of_bodies_that_lie_in_each_other_like_scales(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(crowd(2500, 0.001))
+    started = time.process_time()
+    loaded = load_scene(tmp_path / "mine.yaml")
+    with pytest.raises(InputError, match=r"'b0' and 'b1' overlap at the start"):
+        check_overlaps(loaded)
+    assert time.process_time() - started < 6.0
 
 
 def test_thousands_of_bodies_side_by_side(tmp_path: Path) -> None:
