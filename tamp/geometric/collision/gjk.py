@@ -28,8 +28,8 @@ JIT = {
 }
 """For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is, with them inside.
 
-They allocate nothing, so that nothing has to be counted (`_nrt`), nor is there an array expression to rewrite: both only
-cost time when they are compiled.
+They allocate nothing, so that nothing has to be counted (`_nrt`), and have no array expression to rewrite: both would
+only take time when they are compiled.
 """
 
 INLINE = {**JIT, "forceinline": True}
