@@ -119,6 +119,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
     signal.pthread_sigmask(signal.SIG_BLOCK, WATCHED)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     parent = os.getpid()
+    _prctl(PR_SET_CHILD_SUBREAPER, 1)  # before there is anybody who may end first and leave somebody behind
     try:
         child = os.fork()
     except OSError:  # no room for another process: it goes without
@@ -186,13 +187,15 @@ def _watch(child: int) -> NoReturn:
         if came is not None and came.si_signo in ENDING and not number:
             number, since, waited = came.si_signo, time.monotonic(), _waited(child)
             os.kill(child, number)
-            _prctl(PR_SET_CHILD_SUBREAPER, 1)
         if number and not killed:
             passed = time.monotonic() - since
             if passed > PATIENCE_AT_MOST or passed - (_waited(child) - waited) > PATIENCE:
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()
+    if not number:  # a terminal asks both at once, and the one who works may have left before this one looked
+        came = signal.sigtimedwait(ENDING, 0.0)
+        number = came.si_signo if came is not None else 0
     if number:
         _end_orphans()
     if os.WIFEXITED(status):
@@ -252,6 +255,6 @@ def _session(process: int) -> int:
 def _prctl(option: int, value: int) -> None:
     """linux/prctl.h; does nothing elsewhere."""
     if sys.platform == "linux":
-        import ctypes  # takes 5 ms, which who only watches does not spend
+        import ctypes
 
         ctypes.CDLL(None).prctl(option, value, 0, 0, 0)

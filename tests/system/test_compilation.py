@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from numba.core.compiler import Flags
 
 from tamp.system import compilation
 from tamp.system.deadline import STANDSTILL, Deadline
@@ -62,3 +63,13 @@ def test_where_nothing_can_be_written_it_says_so_once_and_goes_on(tmp_path: Path
     (tmp_path / "cache").write_text("neither")
     said = run(tmp_path, 0, XDG_CACHE_HOME=str(tmp_path / "cache"), HOME=str(tmp_path / "cache"))
     assert said.count("RuntimeWarning") == 1 and "compiled kernels cannot be kept" in said
+
+
+def test_options_compare_as_numba_would_have_them() -> None:
+    plain, named, changed = Flags(), Flags(), Flags()
+    default = Flags.options["nrt"].default
+    setattr(named, "nrt", default)  # noqa: B010
+    setattr(changed, "nrt", not default)  # noqa: B010
+    assert plain == named and hash(plain) == hash(named) and named.values() == plain.values()
+    assert plain != changed and changed.values() != plain.values() and plain != 3
+    assert hash(plain) == hash(tuple(sorted(plain.values())))

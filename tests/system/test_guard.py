@@ -134,6 +134,22 @@ def test_what_it_started_ends_with_it(tmp_path: Path) -> None:
     assert process.returncode == 128 + TERM and all(map(gone, pids))
 
 
+@pytest.mark.parametrize("number", [INT, TERM])
+def test_so_does_it_when_the_one_who_works_leaves_first(number: int, tmp_path: Path) -> None:
+    """As at a terminal, whose Ctrl-C comes to both: who watches is stopped until the other has gone."""
+    code = PARENT.replace("import time; time.sleep(600)", "import os, time; os.setpgid(0, 0); time.sleep(600)")
+    process = start(tmp_path, code.replace("    print(os", "    time.sleep(1.0)\n    print(os"))
+    assert process.stdout is not None
+    worker, child = (int(word) for word in process.stdout.readline().split())
+    assert process.stdout.readline() == "ready\n"
+    os.kill(process.pid, signal.SIGSTOP)
+    os.killpg(process.pid, number)
+    assert gone(worker, within=SLACK)
+    os.kill(process.pid, signal.SIGCONT)
+    process.communicate(timeout=SLACK)
+    assert process.returncode == 128 + number and gone(child)
+
+
 def test_killed_it_takes_the_one_who_works_along(tmp_path: Path) -> None:
     process = start(tmp_path, f"import os\nprint(os.getpid(), flush=True)\n{WORKING}")
     assert process.stdout is not None

@@ -111,7 +111,7 @@ def test_the_story_tells_streams_skeletons_and_time(document: dict[str, Any]) ->
     rows = {row[0]: row for row in story["streams"]}
     _, _, calls, share, seconds = rows["inverse-kinematics"]
     assert int(calls) > 0 and share.endswith("%") and seconds.endswith(" s")
-    assert [row[0] for row in story["time"]] == ["total", "search", "timing"]
+    assert [row[0] for row in story["time"]] == ["total", "search", "timing", "explaining", "other tries"]
     assert re.fullmatch(r"1 skeleton · \d+ search(es)? · \d+ states expanded", story["search"])
 
 

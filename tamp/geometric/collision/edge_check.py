@@ -55,7 +55,7 @@ def _box(i, margin, parts, placed, reach, box):
         box[i, r], box[i, 3 + r] = reach[i, r] - half, reach[i, r] + half
 
 
-@njit(**INLINE)
+@njit(**{**JIT, "_nrt": True})
 def unpack(packed, index):
     """Table `index` of `Tables.packed`, (rows, columns)."""
     start, rows, columns = int(packed[3 * index]), int(packed[3 * index + 1]), int(packed[3 * index + 2])

@@ -18,8 +18,19 @@ from tamp.system.compilation import njit
 APART, CLOSE, BETWEEN, UNSURE = 0, 1, 2, 3
 """At least `far` apart; nearer than `near`; certainly between the two; rounding keeps it from saying."""
 
-JIT = {"nogil": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is, with them inside."""
+JIT = {
+    "nogil": True,
+    "error_model": "numpy",
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+    "no_rewrites": True,
+    "_nrt": False,
+}
+"""For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is, with them inside.
+
+They allocate nothing, so that nothing has to be counted (`_nrt`), and have no array expression to rewrite: both would
+only take time when they are compiled.
+"""
 
 INLINE = {**JIT, "forceinline": True}
 """For the small ones among them: a call passes each array as nine numbers."""
@@ -41,12 +52,43 @@ def _farthest(vertices, first, last, x, y, z):
     return first
 
 
+@njit(**INLINE)
+def turned(poses, i, x, y, z):
+    """A direction of frame i, in the world's frame."""
+    return (
+        poses[i, 0] * x + poses[i, 1] * y + poses[i, 2] * z,
+        poses[i, 3] * x + poses[i, 4] * y + poses[i, 5] * z,
+        poses[i, 6] * x + poses[i, 7] * y + poses[i, 8] * z,
+    )
+
+
+@njit(**INLINE)
+def turned_back(poses, i, x, y, z):
+    """A direction of the world's frame, in frame i."""
+    return (
+        poses[i, 0] * x + poses[i, 3] * y + poses[i, 6] * z,
+        poses[i, 1] * x + poses[i, 4] * y + poses[i, 7] * z,
+        poses[i, 2] * x + poses[i, 5] * y + poses[i, 8] * z,
+    )
+
+
+@njit(**INLINE)
+def placed_at(poses, i, x, y, z):
+    """A point of frame i, in the world's frame."""
+    x, y, z = turned(poses, i, x, y, z)
+    return x + poses[i, 9], y + poses[i, 10], z + poses[i, 11]
+
+
+@njit(**INLINE)
+def in_frame(poses, i, x, y, z):
+    """A point of the world's frame, in frame i."""
+    return turned_back(poses, i, x - poses[i, 9], y - poses[i, 10], z - poses[i, 11])
+
+
 @njit(**JIT)
 def support(shapes, i, poses, vertices, dx, dy, dz):
     """World point of part i's core that is farthest along the world direction (dx, dy, dz)."""
-    x = poses[i, 0] * dx + poses[i, 3] * dy + poses[i, 6] * dz
-    y = poses[i, 1] * dx + poses[i, 4] * dy + poses[i, 7] * dz
-    z = poses[i, 2] * dx + poses[i, 5] * dy + poses[i, 8] * dz
+    x, y, z = turned_back(poses, i, dx, dy, dz)
     kind = shapes[i, KIND]
     if kind == POINT:
         return poses[i, 9], poses[i, 10], poses[i, 11]
@@ -62,22 +104,13 @@ def support(shapes, i, poses, vertices, dx, dy, dz):
         first = int(shapes[i, VERTICES])
         k = _farthest(vertices, first, first + int(shapes[i, VERTEX_COUNT]), x, y, z)
         px, py, pz = vertices[0, k], vertices[1, k], vertices[2, k]
-    return (
-        poses[i, 0] * px + poses[i, 1] * py + poses[i, 2] * pz + poses[i, 9],
-        poses[i, 3] * px + poses[i, 4] * py + poses[i, 5] * pz + poses[i, 10],
-        poses[i, 6] * px + poses[i, 7] * py + poses[i, 8] * pz + poses[i, 11],
-    )
+    return placed_at(poses, i, px, py, pz)
 
 
 @njit(**INLINE)
 def centre(shapes, i, poses):
     """World position of the centre of part i's box."""
-    x, y, z = shapes[i, CENTRE], shapes[i, CENTRE + 1], shapes[i, CENTRE + 2]
-    return (
-        poses[i, 0] * x + poses[i, 1] * y + poses[i, 2] * z + poses[i, 9],
-        poses[i, 3] * x + poses[i, 4] * y + poses[i, 5] * z + poses[i, 10],
-        poses[i, 6] * x + poses[i, 7] * y + poses[i, 8] * z + poses[i, 11],
-    )
+    return placed_at(poses, i, shapes[i, CENTRE], shapes[i, CENTRE + 1], shapes[i, CENTRE + 2])
 
 
 @njit(**INLINE)
@@ -99,22 +132,25 @@ def _on_segment(s, i, j):
 @njit(**JIT)
 def _on_triangle(s, i, j, k):
     """Weights of rows i, j, k of s at the point of their triangle nearest to the origin (Ericson 2005, 5.1.5)."""
-    abx, aby, abz = s[j, 0] - s[i, 0], s[j, 1] - s[i, 1], s[j, 2] - s[i, 2]
-    acx, acy, acz = s[k, 0] - s[i, 0], s[k, 1] - s[i, 1], s[k, 2] - s[i, 2]
-    d1 = -(abx * s[i, 0] + aby * s[i, 1] + abz * s[i, 2])
-    d2 = -(acx * s[i, 0] + acy * s[i, 1] + acz * s[i, 2])
+    ix, iy, iz = s[i, 0], s[i, 1], s[i, 2]
+    jx, jy, jz = s[j, 0], s[j, 1], s[j, 2]
+    kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]
+    abx, aby, abz = jx - ix, jy - iy, jz - iz
+    acx, acy, acz = kx - ix, ky - iy, kz - iz
+    d1 = -(abx * ix + aby * iy + abz * iz)
+    d2 = -(acx * ix + acy * iy + acz * iz)
     if d1 <= 0.0 and d2 <= 0.0:
         return 1.0, 0.0, 0.0
-    d3 = -(abx * s[j, 0] + aby * s[j, 1] + abz * s[j, 2])
-    d4 = -(acx * s[j, 0] + acy * s[j, 1] + acz * s[j, 2])
+    d3 = -(abx * jx + aby * jy + abz * jz)
+    d4 = -(acx * jx + acy * jy + acz * jz)
     if d3 >= 0.0 and d4 <= d3:
         return 0.0, 1.0, 0.0
     vc = d1 * d4 - d3 * d2
     if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
         a, b = _on_segment(s, i, j)
         return a, b, 0.0
-    d5 = -(abx * s[k, 0] + aby * s[k, 1] + abz * s[k, 2])
-    d6 = -(acx * s[k, 0] + acy * s[k, 1] + acz * s[k, 2])
+    d5 = -(abx * kx + aby * ky + abz * kz)
+    d6 = -(acx * kx + acy * ky + acz * kz)
     if d6 >= 0.0 and d5 <= d6:
         return 0.0, 0.0, 1.0
     vb = d5 * d2 - d1 * d6
@@ -135,11 +171,14 @@ def _on_triangle(s, i, j, k):
 @njit(**JIT)
 def _outside(s, i, j, k, other):
     """Whether the origin lies beyond the face i, j, k, seen from row `other`; true too when the four are flat."""
-    abx, aby, abz = s[j, 0] - s[i, 0], s[j, 1] - s[i, 1], s[j, 2] - s[i, 2]
-    acx, acy, acz = s[k, 0] - s[i, 0], s[k, 1] - s[i, 1], s[k, 2] - s[i, 2]
+    ix, iy, iz = s[i, 0], s[i, 1], s[i, 2]
+    jx, jy, jz = s[j, 0], s[j, 1], s[j, 2]
+    kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]
+    abx, aby, abz = jx - ix, jy - iy, jz - iz
+    acx, acy, acz = kx - ix, ky - iy, kz - iz
     nx, ny, nz = aby * acz - abz * acy, abz * acx - abx * acz, abx * acy - aby * acx
-    origin = -(nx * s[i, 0] + ny * s[i, 1] + nz * s[i, 2])
-    apex = nx * (s[other, 0] - s[i, 0]) + ny * (s[other, 1] - s[i, 1]) + nz * (s[other, 2] - s[i, 2])
+    origin = -(nx * ix + ny * iy + nz * iz)
+    apex = nx * (s[other, 0] - ix) + ny * (s[other, 1] - iy) + nz * (s[other, 2] - iz)
     flat = 1e-9 * math.sqrt(nx * nx + ny * ny + nz * nz)
     return abs(apex) <= flat or origin * apex < 0.0
 

@@ -21,7 +21,19 @@ from __future__ import annotations
 
 import math
 
-from tamp.geometric.collision.gjk import APART, BETWEEN, CLOSE, INLINE, JIT, centre, separation, support
+from tamp.geometric.collision.gjk import (
+    APART,
+    BETWEEN,
+    CLOSE,
+    INLINE,
+    JIT,
+    centre,
+    in_frame,
+    placed_at,
+    separation,
+    support,
+    turned,
+)
 from tamp.geometric.collision.tables import (
     BOX,
     CENTRE,
@@ -101,10 +113,8 @@ def place_part(i, frames, change, parts, part_poses, placed, reach):
 @njit(**INLINE)
 def _from_core(shapes, i, poses, x, y, z):
     """Lower bound of a world point's distance from part i: exact but for hulls, whose box stands in for them."""
-    dx, dy, dz = x - poses[i, 9], y - poses[i, 10], z - poses[i, 11]
-    lx = poses[i, 0] * dx + poses[i, 3] * dy + poses[i, 6] * dz - shapes[i, CENTRE]
-    ly = poses[i, 1] * dx + poses[i, 4] * dy + poses[i, 7] * dz - shapes[i, CENTRE + 1]
-    lz = poses[i, 2] * dx + poses[i, 5] * dy + poses[i, 8] * dz - shapes[i, CENTRE + 2]
+    lx, ly, lz = in_frame(poses, i, x, y, z)
+    lx, ly, lz = lx - shapes[i, CENTRE], ly - shapes[i, CENTRE + 1], lz - shapes[i, CENTRE + 2]
     kind = shapes[i, KIND]
     if kind == POINT:
         return math.sqrt(lx * lx + ly * ly + lz * lz) - shapes[i, MARGIN]
@@ -121,28 +131,19 @@ def _from_core(shapes, i, poses, x, y, z):
 @njit(**JIT)
 def _away(shapes, i, poses, x, y, z, out):
     """Into `out`, the direction from the nearest point of part i's box to a world point, or from its centre to that."""
-    dx, dy, dz = x - poses[i, 9], y - poses[i, 10], z - poses[i, 11]
-    lx = poses[i, 0] * dx + poses[i, 3] * dy + poses[i, 6] * dz - shapes[i, CENTRE]
-    ly = poses[i, 1] * dx + poses[i, 4] * dy + poses[i, 7] * dz - shapes[i, CENTRE + 1]
-    lz = poses[i, 2] * dx + poses[i, 5] * dy + poses[i, 8] * dz - shapes[i, CENTRE + 2]
+    lx, ly, lz = in_frame(poses, i, x, y, z)
+    lx, ly, lz = lx - shapes[i, CENTRE], ly - shapes[i, CENTRE + 1], lz - shapes[i, CENTRE + 2]
     hx, hy, hz = shapes[i, SIZE], shapes[i, SIZE + 1], shapes[i, SIZE + 2]
     if abs(lx) > hx or abs(ly) > hy or abs(lz) > hz:
         lx -= min(hx, max(-hx, lx))
         ly -= min(hy, max(-hy, ly))
         lz -= min(hz, max(-hz, lz))
-    out[0] = poses[i, 0] * lx + poses[i, 1] * ly + poses[i, 2] * lz
-    out[1] = poses[i, 3] * lx + poses[i, 4] * ly + poses[i, 5] * lz
-    out[2] = poses[i, 6] * lx + poses[i, 7] * ly + poses[i, 8] * lz
+    out[0], out[1], out[2] = turned(poses, i, lx, ly, lz)
 
 
 @njit(**INLINE)
 def _leaf_centre(leaves, k, poses, i):
-    x, y, z = leaves[k, 0], leaves[k, 1], leaves[k, 2]
-    return (
-        poses[i, 0] * x + poses[i, 1] * y + poses[i, 2] * z + poses[i, 9],
-        poses[i, 3] * x + poses[i, 4] * y + poses[i, 5] * z + poses[i, 10],
-        poses[i, 6] * x + poses[i, 7] * y + poses[i, 8] * z + poses[i, 11],
-    )
+    return placed_at(poses, i, leaves[k, 0], leaves[k, 1], leaves[k, 2])
 
 
 @njit(**INLINE)
@@ -185,10 +186,7 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
     for m in range(int(parts[i, LEAVES]), int(parts[i, LEAVES]) + int(parts[i, LEAF_COUNT])):
         x, y, z = _leaf_centre(leaves, m, placed, i)
         radius = leaves[m, 3]
-        dx, dy, dz = x - placed[k, 9], y - placed[k, 10], z - placed[k, 11]
-        lx = placed[k, 0] * dx + placed[k, 3] * dy + placed[k, 6] * dz
-        ly = placed[k, 1] * dx + placed[k, 4] * dy + placed[k, 7] * dz
-        lz = placed[k, 2] * dx + placed[k, 5] * dy + placed[k, 8] * dz
+        lx, ly, lz = in_frame(placed, k, x, y, z)
         ox = lx - cx - min(hx, max(-hx, lx - cx))
         oy = ly - cy - min(hy, max(-hy, ly - cy))
         oz = lz - cz - min(hz, max(-hz, lz - cz))
@@ -206,9 +204,7 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
             if limit > 0.0 and square < limit * limit:
                 best = math.sqrt(square) - radius - leaves[n, 3]
                 bx, by, bz = dx, dy, dz
-    guess[0] = placed[k, 0] * bx + placed[k, 1] * by + placed[k, 2] * bz
-    guess[1] = placed[k, 3] * bx + placed[k, 4] * by + placed[k, 5] * bz
-    guess[2] = placed[k, 6] * bx + placed[k, 7] * by + placed[k, 8] * bz
+    guess[0], guess[1], guess[2] = turned(placed, k, bx, by, bz)
     return best
 
 

@@ -15,7 +15,7 @@ from tamp.system.compilation import njit
 
 TWO_PI = 2.0 * np.pi
 
-INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """For functions that only compiled code calls; they are kept with the ones that call them."""
 
 _ANGLES, _ROWS, _POSES = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
@@ -133,6 +133,7 @@ def _step(J, error, q, lower, upper, drift, step):
 @njit(
     _ROWS(_POSES, _ROWS, _ANGLES, _ANGLES, _ROWS, _ROWS, types.float64),
     cache=True,
+    error_model="numpy",
     no_cfunc_wrapper=True,
 )
 def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, tolerance):
@@ -164,6 +165,7 @@ def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, toleran
 @njit(
     types.Tuple((_ROWS, types.int64))(_POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64),
     cache=True,
+    error_model="numpy",
     no_cfunc_wrapper=True,
 )
 def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
