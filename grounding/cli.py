@@ -107,7 +107,8 @@ def _explore(chosen: Explore, show: Show) -> None:
     )
     show("", last=True)
     print(
-        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, {data.card['by type']}"
+        f"{out} written: {len(data):,} scenes of {data.card['trials']:,} trials, "
+        f"{data.card['by type']}"
     )
 
 

@@ -57,7 +57,7 @@ def open_film(
 
 
 def _shown(loaded: LoadedProblem) -> tuple[Path, ...]:
-    """The mesh files that a film may show: those that a plan depends on, and those that are only drawn."""
+    """List the mesh files that a film may show: those a plan depends on, and those only drawn."""
     return (*loaded.meshes, *loaded.drawn)
 
 

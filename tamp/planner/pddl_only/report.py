@@ -35,7 +35,8 @@ def summary(solution: SymbolicSolution) -> str:
         lines += [f"warning: {line}" for line in solution.explanation]
         optimal = " (optimal)" if solution.optimal else ""
         lines += [
-            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, cost {solution.cost:g}{optimal}",
+            f"Solved in {total:.2f} s: {_count(len(solution.plan), 'action')}, "
+            f"cost {solution.cost:g}{optimal}",
             "",
             *(f"  {number:2d}  {operator}" for number, operator in enumerate(solution.plan, 1)),
         ]

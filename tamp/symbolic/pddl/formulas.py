@@ -265,7 +265,8 @@ def _count(group: Group, head: Symbol, wanted: int, what: str) -> None:
         found = len(group.items) - 1
         raise error(
             group,
-            f"'{head.text}' takes {what}, found {found} part{'' if found == 1 else 's'}: {show(group)}",
+            f"'{head.text}' takes {what}, found {found} "
+            f"part{'' if found == 1 else 's'}: {show(group)}",
         )
 
 

@@ -40,7 +40,8 @@ def redefinition(
     if declared is not None and len(declared.parameters) != len(listed):
         note = warning(
             head,
-            f"'{declared.name}' is declared with {len(declared.parameters)}, defined with {len(listed)}",
+            f"'{declared.name}' is declared with {len(declared.parameters)}, "
+            f"defined with {len(listed)}",
         )
         yield (
             declared.name,
@@ -89,7 +90,8 @@ def _parts(section: Section) -> tuple[Group, Node]:
         found = len(section.items)
         raise error(
             section.group,
-            f"'{keyword}' takes a fact and a condition, found {found} part{'' if found == 1 else 's'}",
+            f"'{keyword}' takes a fact and a condition, found {found} "
+            f"part{'' if found == 1 else 's'}",
         )
     head = as_group(section.items[0], "a fact such as (on ?a ?b)")
     if head.head in ("and", "or", "not", "forall", "exists", "imply"):

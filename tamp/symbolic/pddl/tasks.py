@@ -148,7 +148,8 @@ def _fact(node: Node, scope: Scope) -> Fact:
     if atom.predicate not in scope.domain.predicates:
         raise error(
             group,
-            f"'{atom.predicate}' is a type; it is given where the object is declared, not as a fact",
+            f"'{atom.predicate}' is a type; it is given where the object is declared, "
+            "not as a fact",
         )
     if atom.predicate in scope.domain.derived_predicates:
         raise error(

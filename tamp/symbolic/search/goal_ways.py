@@ -12,7 +12,7 @@ ALTERNATIVES = 512
 """Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
 
 MOST_WORK = 100_000
-"""Rules opened and conjunctions joined for one part of the goal at most; what is left then excludes nothing."""
+"""Rules opened and conjunctions joined for a part of the goal, at most: the rest excludes none."""
 
 Literal = tuple[Fact, bool]
 """A fact, and whether it is to hold."""
@@ -61,7 +61,7 @@ def _body(axiom: Axiom) -> list[Literal]:
 def _opened(
     literal: Literal, rules: Rules, auxiliary: Iterable[str], above: tuple[Fact, ...]
 ) -> Iterator[Literal]:
-    """The conjuncts that an auxiliary fact stands for; the literal itself where it stands for something else."""
+    """Yield the conjuncts that an auxiliary fact stands for; of other facts the literal itself."""
     fact, wanted = literal
     made = rules.get(fact, [])
     if fact[0] in auxiliary and fact not in above:
@@ -82,7 +82,7 @@ ANY: list[Way] = [frozenset()]
 
 
 class _Opener:
-    """Opens literals by their rules, with a bound on the work: where rules lead in circles there is no end of ways."""
+    """Opens literals by their rules, with bounded work: rules in circles have no end of ways."""
 
     def __init__(self, rules: Rules) -> None:
         self._rules, self._work = rules, 0
@@ -111,7 +111,7 @@ class _Opener:
         )
 
     def _product(self, choices: list[list[Way]]) -> list[Way]:
-        """One of each, joined; without those that contradict themselves. Choices beyond ALTERNATIVES are left open."""
+        """Join one of each without contradictions; choices beyond ALTERNATIVES stay open."""
         ways = ANY
         for choice in sorted(choices, key=len):
             if len(ways) * len(choice) > ALTERNATIVES:

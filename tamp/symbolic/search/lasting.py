@@ -54,7 +54,7 @@ def lasting(instantiated: InstantiatedTask) -> Lasting:
 def forbidden_by(
     instantiated: InstantiatedTask, facts: frozenset[Fact]
 ) -> list[tuple[Operator, frozenset[Fact]]]:
-    """The operators that a state forbids whatever streams give, each with the facts that it wants not to hold."""
+    """List the operators that a state forbids whatever streams give, and what must be absent."""
     state = set(facts)
     _derive(state, [axiom for axiom in instantiated.axioms if not axiom.negative])
     refused: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
@@ -71,7 +71,7 @@ def forbidden_by(
 def _final(
     operator: Operator, refused: dict[DerivedGuards, dict[Row, list[Guard]]]
 ) -> Iterator[Guard]:
-    """The guards of an operator that nothing lifts; those that only a price would ask for are not made."""
+    """List an operator's guards that nothing waives; those that only a price asks for stay away."""
     guards = operator.guards
     if isinstance(guards, LazyGuards):
         for source, row in guards.blocked:

@@ -1,7 +1,8 @@
-"""Pairs of facts that no reachable state contains, and goals that exclude each other because of them.
+"""Mutexes: pairs of facts that no reachable state contains, and goals that exclude each other.
 
-The h2 reachability of Haslum and Geffner (AIPS 2000), each fact's partners in one integer, as Alcazar and Torralba do
-(ICAPS 2015). It forgets triples, guards and what conditional effects delete, so it only ever proves too little.
+The h2 reachability of Haslum and Geffner (AIPS 2000), each fact's partners in one integer, as
+Alcazar and Torralba do (ICAPS 2015). It forgets triples, guards and what conditional effects
+delete, so it only ever proves too little.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Undecided(Exception):
 
 
 def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Literal, ...] | None:
-    """The fewest parts of the goal that are proven not to hold together; None where nothing is proven.
+    """Find the fewest parts of the goal that are proven not to hold together; None if none is.
 
     Args:
         instantiated: The task; its guards are not looked at.
@@ -44,7 +45,7 @@ def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Litera
 
 
 class Mutexes:
-    """Which pairs of facts a reachable state may contain; a fact's absence counts as a fact where the goal wants it.
+    """Which pairs of facts a reachable state may contain; an absence that the goal wants is a fact.
 
     Args:
         instantiated: The task.
@@ -84,7 +85,7 @@ class Mutexes:
         self._fixpoint(instantiated)
 
     def conflict(self) -> tuple[Literal, ...] | None:
-        """The fewest parts of the goal that cannot hold together, as far as pairs of facts show it."""
+        """Find the fewest parts of the goal that cannot hold together, as far as pairs show it."""
         possible = [
             [way for way in map(self._numbers, part.ways) if self._consistent(way)]
             for part in self._parts
@@ -110,7 +111,7 @@ class Mutexes:
         return tuple(self._parts[k].literal for k in kept)
 
     def _all(self, possible: list[list[tuple[int, ...]]]) -> bool:
-        """Whether ways can be chosen, one a part, that go together pair by pair; true where that is not decided."""
+        """Check that ways, one a part, can go together pair by pair; true where it is undecided."""
         order = sorted(possible, key=len)
         steps = 0
 
@@ -158,7 +159,7 @@ class Mutexes:
                     changed |= self._meet(k, after)
 
     def _derive(self, rules: list[tuple[int, tuple[int, ...]]]) -> bool:
-        """Give the derived facts the partners of what they follow from; whether there were new ones."""
+        """Give derived facts the partners of what they follow from; say if there were new ones."""
         any_new, changed = False, True
         while changed:
             changed = False
@@ -184,7 +185,7 @@ class Mutexes:
         return True
 
     def _moves(self, operator: Operator) -> Iterator[tuple[tuple[int, ...], tuple[int, ...], int]]:
-        """What an operator needs, adds, and surely removes; once more for each effect with a condition."""
+        """Yield what an operator needs, adds, surely removes; again for each conditional effect."""
         needs = self._body(operator.positive, operator.negative)
         gone = set(operator.deleted)
         for effect in operator.conditional:
