@@ -119,7 +119,8 @@ def _machine(value: Any) -> bool:
     return (
         isinstance(value, dict)
         and _word(value.get("cpu"))
-        and (value.get("cores") is None or _count(value["cores"]))
+        and "cores" in value  # Python does not know how many there are everywhere: None
+        and (value["cores"] is None or _count(value["cores"]))
     )
 
 

@@ -119,6 +119,7 @@ WRONG = [
     ("parts_s", {"ik": "x"}, "'parts_s' is {'ik': 'x'}"),
     ("machine", None, "'machine' is None, not a machine"),
     ("machine", {"cpu": 1}, "'machine' is"),
+    ("machine", {"cpu": "x"}, "'machine' is"),
     ("commit", {"a": None}, "'commit' is"),
     ("explanation", "text", "'explanation' is 'text'"),
     ("warnings", [1], "'warnings' is [1]"),

@@ -131,7 +131,9 @@ def _stl(content: bytes, path: Path) -> Triangles:
 
 def _stl_records(content: bytes, count: int) -> Array:
     records = np.frombuffer(content, dtype=np.uint8, count=50 * count, offset=84).reshape(count, 50)
-    return np.ascontiguousarray(records[:, 12:48]).view("<f4").reshape(-1, 3).astype(np.float64)
+    corners = np.ascontiguousarray(records[:, 12:48]).view("<f4").reshape(-1, 3)
+    with np.errstate(invalid="ignore"):  # bytes of anything may be a signalling NaN: refused later
+        return corners.astype(np.float64)
 
 
 def _soup(corners: Array) -> Triangles:

@@ -72,6 +72,7 @@ def test_odd_files_are_read(tmp_path: Path, name: str, content: bytes) -> None:
         ("a.obj", TETRAHEDRON.replace("f 1 4 3", "f 1 4 99999999999").encode(), "missing corner|does not hold"),
         ("a.obj", TETRAHEDRON.replace("0.07", "1e308").encode(), "m large"),
         ("a.stl", STL[: len(STL) // 2], "cut off"),
+        ("a.stl", BINARY_STL[:96] + b"\x00\x00\xa0\x7f" + BINARY_STL[100:], "not finite"),
         ("a.stl", BINARY_STL[:-100], "its header tells of 12 triangles, it holds 10"),
         ("a.stl", BINARY_STL[:80] + struct.pack("<I", 4_000_000_000) + BINARY_STL[84:], "cut off"),
         ("a.ply", PLY[:-80], "cut off"),
