@@ -69,7 +69,9 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         InputError: Anything wrong with it, with the line.
     """
     if not NAME.fullmatch(name):
-        raise node.error(f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'")
+        raise node.error(
+            f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'"
+        )
     kind = _kind(node)
     entries = node.mapping((*_SHAPES, *_COMMON, *_options(kind, node)))
     mesh: Mesh | None = None
@@ -90,7 +92,9 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     _check_size(parts, entries[kind], movable)
     derived = furniture.surfaces
     if kind != "furniture" and not movable:
-        triangles = mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
+        triangles = (
+            mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
+        )
         top = top_of(name, parts, _stance(entries), triangles)
         derived = (top,) if top and min(top.size) >= NARROWEST - 1e-9 else ()
     body = Body(
@@ -98,11 +102,21 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         parts,
         Pose(),
         movable,
-        mass=_number(entries.get("mass"), mesh and mesh.mass, Body.mass, positive=True, high=LARGEST_MASS),
-        friction=_number(entries.get("friction"), mesh and mesh.friction, Body.friction, low=0.0, high=_MOST_FRICTION),
+        mass=_number(
+            entries.get("mass"), mesh and mesh.mass, Body.mass, positive=True, high=LARGEST_MASS
+        ),
+        friction=_number(
+            entries.get("friction"),
+            mesh and mesh.friction,
+            Body.friction,
+            low=0.0,
+            high=_MOST_FRICTION,
+        ),
         colour=_colour(entries.get("colour"), kind, mesh),
         surfaces=_surfaces(name, entries["surfaces"]) if "surfaces" in entries else derived,
-        cavities=_cavities(name, entries["cavities"]) if "cavities" in entries else furniture.cavities,
+        cavities=_cavities(name, entries["cavities"])
+        if "cavities" in entries
+        else furniture.cavities,
         visuals=_visuals(mesh, "colour" in entries),
         center_of_mass=mesh.center_of_mass if mesh else None,
     )
@@ -124,7 +138,9 @@ def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, 
     """
     given = [key for key in ("quaternion", "rpy", "yaw") if key in entries]
     if len(given) > 1:
-        raise entries[given[1]].error(f"'{given[0]}' and '{given[1]}' both say how it is turned: keep one")
+        raise entries[given[1]].error(
+            f"'{given[0]}' and '{given[1]}' both say how it is turned: keep one"
+        )
     if not given:
         return Pose().quaternion
     node = entries[given[0]]
@@ -136,9 +152,14 @@ def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, 
     values = np.array(node.numbers(4))
     norm = float(np.linalg.norm(values))
     if norm < 1e-9:
-        raise node.error("a quaternion of norm 0 is no rotation", remedy="No rotation is [0, 0, 0, 1] (x, y, z, w)")
+        raise node.error(
+            "a quaternion of norm 0 is no rotation",
+            remedy="No rotation is [0, 0, 0, 1] (x, y, z, w)",
+        )
     if abs(norm - 1) > 0.01:
-        raise node.error(f"the quaternion's norm is {norm:.3g}, not 1", remedy="Is its order x, y, z, w?")
+        raise node.error(
+            f"the quaternion's norm is {norm:.3g}, not 1", remedy="Is its order x, y, z, w?"
+        )
     x, y, z, w = (float(value) for value in values / norm)
     return (x, y, z, w)
 
@@ -149,7 +170,9 @@ def _kind(node: Node) -> str:
         keys = [key for key in node.mapping() if key not in _COMMON]
         raise node.error("it has no shape", found=keys[0] if keys else None, choices=_SHAPES)
     if len(found) > 1:
-        raise node.mapping()[found[1]].error(f"'{found[0]}' and '{found[1]}' both give a shape: keep one")
+        raise node.mapping()[found[1]].error(
+            f"'{found[0]}' and '{found[1]}' both give a shape: keep one"
+        )
     return found[0]
 
 
@@ -209,12 +232,17 @@ def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
     if kind == "sphere":
         return (Part(Sphere(node.number(positive=True))),)
     entries = node.mapping(("radius", "height"), required=("radius", "height"))
-    radius, height = entries["radius"].number(positive=True), entries["height"].number(positive=True)
+    radius, height = (
+        entries["radius"].number(positive=True),
+        entries["height"].number(positive=True),
+    )
     if kind == "cylinder":
         return (Part(Cylinder(radius, height)),)
     if height <= 2 * radius:
         remedy = "The height of a capsule counts its round ends; at 2 radii it is a sphere"
-        raise entries["height"].error(f"a capsule of radius {radius:g} is higher than {2 * radius:g}", remedy=remedy)
+        raise entries["height"].error(
+            f"a capsule of radius {radius:g} is higher than {2 * radius:g}", remedy=remedy
+        )
     return tuple(capsule_parts(radius, height - 2 * radius))
 
 
@@ -231,7 +259,12 @@ def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
 
 
 def _number(
-    node: Node | None, read: float | None, default: float, positive: bool = False, low: float = 0.0, high: float = 0.0
+    node: Node | None,
+    read: float | None,
+    default: float,
+    positive: bool = False,
+    low: float = 0.0,
+    high: float = 0.0,
 ) -> float:
     """What the problem says, else what the mesh's file says, else the default."""
     if node is not None:
@@ -247,7 +280,9 @@ def _check_size(parts: tuple[Part, ...], node: Node, movable: bool) -> None:
     if smallest < _SMALLEST:
         raise node.error(f"it is {smallest:g} m thin", remedy="Lengths are metres")
     if movable and largest > _LARGEST_MOVABLE:
-        raise node.error(f"it is {largest:g} m large, too large to be moved", remedy="Lengths are metres")
+        raise node.error(
+            f"it is {largest:g} m large, too large to be moved", remedy="Lengths are metres"
+        )
 
 
 def _surfaces(body: str, node: Node) -> tuple[Surface, ...]:
@@ -255,8 +290,12 @@ def _surfaces(body: str, node: Node) -> tuple[Surface, ...]:
     for name, entry in node.mapping().items():
         entries = entry.mapping(("at", "yaw", "size", "clearance"), required=("at", "size"))
         width, depth = entries["size"].numbers(2, positive=True)
-        clearance = entries["clearance"].number(positive=True) if "clearance" in entries else float("inf")
-        surfaces.append(Surface(_name(name, entry), body, _frame(entries), (width, depth), clearance))
+        clearance = (
+            entries["clearance"].number(positive=True) if "clearance" in entries else float("inf")
+        )
+        surfaces.append(
+            Surface(_name(name, entry), body, _frame(entries), (width, depth), clearance)
+        )
     return tuple(surfaces)
 
 
@@ -271,7 +310,9 @@ def _cavities(body: str, node: Node) -> tuple[Cavity, ...]:
 
 def _name(name: str, node: Node) -> str:
     if not NAME.fullmatch(name):
-        raise node.error(f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'")
+        raise node.error(
+            f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'"
+        )
     return name
 
 

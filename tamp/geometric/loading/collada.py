@@ -34,7 +34,9 @@ def read_collada(path: Path, most: int) -> tuple[Array, NDArray[np.int64]]:
     for element in root.iter():  # the namespace has changed with the version, the names have not
         element.tag = str(element.tag).rpartition("}")[2]
     if root.tag != "COLLADA":
-        raise InputError(f"cannot read the mesh '{path.name}': it is no COLLADA file, but <{root.tag[:40]}>")
+        raise InputError(
+            f"cannot read the mesh '{path.name}': it is no COLLADA file, but <{root.tag[:40]}>"
+        )
     return _Document(path, root).triangles()
 
 
@@ -42,7 +44,9 @@ class _Document:
     def __init__(self, path: Path, root: ElementTree.Element) -> None:
         self.path = path
         self.root = root
-        self.named = {element.get("id", ""): element for element in root.iter() if element.get("id")}
+        self.named = {
+            element.get("id", ""): element for element in root.iter() if element.get("id")
+        }
         self.vertices: list[Array] = []
         self.faces: list[NDArray[np.int64]] = []
         self.count = 0
@@ -75,7 +79,9 @@ class _Document:
         for child in node:
             if child.tag in _TRANSFORMS:
                 length, transform = _TRANSFORMS[child.tag]
-                matrix = matrix @ transform(self.numbers(child.text or "", f"<{child.tag}>", length))
+                matrix = matrix @ transform(
+                    self.numbers(child.text or "", f"<{child.tag}>", length)
+                )
         for child in node:
             if child.tag == "node":
                 self.node(child, matrix, depth + 1)

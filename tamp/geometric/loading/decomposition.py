@@ -100,11 +100,15 @@ def _positions(along: Array, air: Array, margin: float) -> list[float]:
     low, high = float(along.min()), float(along.max())
     positions = [low + (high - low) * part / _PARTS for part in range(1, _PARTS)]
     if len(air):
-        positions += [float(along[np.argmin(np.abs(along - end))]) for end in (air.min(), air.max())]
+        positions += [
+            float(along[np.argmin(np.abs(along - end))]) for end in (air.min(), air.max())
+        ]
     return [position for position in positions if low + margin < position < high - margin]
 
 
-def _halves(piece: _Piece, direction: Array, position: float, size: float, voxel: float) -> list[_Piece] | None:
+def _halves(
+    piece: _Piece, direction: Array, position: float, size: float, voxel: float
+) -> list[_Piece] | None:
     halves: list[_Piece] = []
     for sign in (1.0, -1.0):
         normal, offset = sign * direction, sign * position
@@ -112,7 +116,9 @@ def _halves(piece: _Piece, direction: Array, position: float, size: float, voxel
         if not len(triangles) or float((triangles @ normal - offset).min()) > -1e-6 * size:
             return None
         solid, air = (points[points @ normal < offset] for points in (piece.solid, piece.air))
-        halves.append(_piece(triangles, np.vstack([piece.planes, [*normal, offset]]), solid, air, voxel))
+        halves.append(
+            _piece(triangles, np.vstack([piece.planes, [*normal, offset]]), solid, air, voxel)
+        )
     return halves
 
 
@@ -204,7 +210,10 @@ def _closed(piece: _Piece, triangles: Array) -> Array:
         if abs(np.linalg.det(planes[:, :3])) < 1e-6:
             continue
         corner = np.linalg.solve(planes[:, :3], planes[:, 3])
-        if np.all(piece.planes[:, :3] @ corner <= piece.planes[:, 3] + 1e-9) and _winding(corner, triangles) > 0.5:
+        if (
+            np.all(piece.planes[:, :3] @ corner <= piece.planes[:, 3] + 1e-9)
+            and _winding(corner, triangles) > 0.5
+        ):
             points.append(corner[None])
     return np.concatenate(points)
 
@@ -218,7 +227,11 @@ def _coarser(triangles: Array) -> Array:
         flat = (index == np.roll(index, 1, axis=1)).all(axis=2).any(axis=1)
         index = index[~flat]
         # Keep the sense of turning, so that a triangle and its reverse remain two.
-        first = np.lexsort(index.transpose(2, 0, 1))[:, :1] if len(index) else np.zeros((0, 1), dtype=np.int64)
+        first = (
+            np.lexsort(index.transpose(2, 0, 1))[:, :1]
+            if len(index)
+            else np.zeros((0, 1), dtype=np.int64)
+        )
         index = np.take_along_axis(index, ((first + np.arange(3)) % 3)[:, :, None], axis=1)
         triangles = low + np.unique(index.reshape(-1, 9), axis=0).reshape(-1, 3, 3) * (size / cells)
         cells //= 2
@@ -237,7 +250,9 @@ def _grown(cells: list[Array], vertices: Array) -> list[Array]:
     # The box of the mesh is kept exactly.
     farthest = np.concatenate([np.argmin(vertices, axis=0), np.argmax(vertices, axis=0)])
     out[farthest] = distances.min(axis=0)[farthest] > _EXACT
-    return [np.concatenate([points, vertices[out & (nearest == i)]]) for i, points in enumerate(cells)]
+    return [
+        np.concatenate([points, vertices[out & (nearest == i)]]) for i, points in enumerate(cells)
+    ]
 
 
 def _winding(point: Array, triangles: Array) -> float:

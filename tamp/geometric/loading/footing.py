@@ -83,7 +83,9 @@ class Ground:
     def footing(self, body: Body) -> Footing:
         """How a body stands, among the others as they are; it may be elsewhere than when the ground was made."""
         low, high = bounds(body.parts, body.pose)
-        around = (self._low[:, :2] < high[:2]).all(axis=1) & (self._high[:, :2] > low[:2]).all(axis=1)
+        around = (self._low[:, :2] < high[:2]).all(axis=1) & (self._high[:, :2] > low[:2]).all(
+            axis=1
+        )
         around &= (self._high[:, 2] > low[2] - GAP - EVEN) & (self._low[:, 2] < high[2])
         near = [i for i in np.flatnonzero(around) if self._parts[i][0] != body.name]
         others = [self._parts[i] for i in near]
@@ -92,7 +94,9 @@ class Ground:
             fixed = frozenset(name for name, _, _ in others if name in self._fixed)
             return Footing(fixed or frozenset({others[0][0] if others else FLOOR}), 0.0)
         few = near[:EDGED]
-        xy, under = _underside(body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE]))
+        xy, under = _underside(
+            body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE])
+        )
         tops = np.zeros((len(xy), len(others) + 1))  # the floor's first
         for column, (_, part, T_world_part) in enumerate(others, start=1):
             _, tops[:, column] = vertical(part, T_world_part, xy)
@@ -115,7 +119,10 @@ def center_of_mass(body: Body) -> Array:
     if body.center_of_mass is not None:
         return np.array(body.center_of_mass)
     masses = [_mass(part) for part in body.parts]
-    centres = [part.pose.apply(centre[None])[0] for part, (_, centre) in zip(body.parts, masses, strict=True)]
+    centres = [
+        part.pose.apply(centre[None])[0]
+        for part, (_, centre) in zip(body.parts, masses, strict=True)
+    ]
     return np.average(centres, axis=0, weights=[volume for volume, _ in masses])
 
 
@@ -166,7 +173,9 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
     points = body.pose.apply(body_points(body))
     lowest = points[points[:, 2] < low[2] + 2 * EVEN][:, :2]
     middle = (low + high)[:2] / 2
-    xy = np.concatenate([grid, middle + (lowest - middle) * 0.998])  # a line along an edge may miss it
+    xy = np.concatenate(
+        [grid, middle + (lowest - middle) * 0.998]
+    )  # a line along an edge may miss it
     under = np.full(len(xy), np.inf)
     for part in body.parts:
         enter, _ = vertical(part, body.pose.matrix @ part.pose.matrix, xy)
@@ -217,9 +226,14 @@ def _points(part: Part) -> Array:
     turn = np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
     circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(48)])
     if isinstance(shape, Cylinder):
-        return np.concatenate([circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)])
+        return np.concatenate(
+            [circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)]
+        )
     tilts = np.linspace(-np.pi / 2, np.pi / 2, 17)
-    return np.concatenate([circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts]) * shape.radius
+    return (
+        np.concatenate([circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts])
+        * shape.radius
+    )
 
 
 def _mass(part: Part) -> tuple[float, Array]:
@@ -233,6 +247,8 @@ def _mass(part: Part) -> tuple[float, Array]:
         return 4 / 3 * math.pi * shape.radius**3, np.zeros(3)
     inside = shape.vertices.mean(axis=0)
     corners = shape.vertices[shape.faces] - inside
-    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    volumes = (
+        np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    )
     volume = max(float(volumes.sum()), 1e-15)
     return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume

@@ -60,9 +60,17 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
     thickness = options.thickness or 0.04
     top = Surface(name, name, _at(0, 0, height), (width, depth))
     if not options.legs:
-        return Furniture((_board((-width / 2, width / 2), (-depth / 2, depth / 2), (0, height)),), (top,))
-    _need(height > thickness, f"a table {height:g} m high has no room under a top {thickness:g} m thick")
-    _need(min(width, depth) > 2 * _LEG, f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false")
+        return Furniture(
+            (_board((-width / 2, width / 2), (-depth / 2, depth / 2), (0, height)),), (top,)
+        )
+    _need(
+        height > thickness,
+        f"a table {height:g} m high has no room under a top {thickness:g} m thick",
+    )
+    _need(
+        min(width, depth) > 2 * _LEG,
+        f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false",
+    )
     across, along = (width - _LEG) / 2, (depth - _LEG) / 2
     legs = [
         Part(Box((_LEG, _LEG, height - thickness)), _at(x, y, (height - thickness) / 2))
@@ -85,7 +93,10 @@ def _shelf(name: str, size: Size, options: Options) -> Furniture:
 
 def _cupboard(name: str, size: Size, options: Options) -> Furniture:
     parts, compartments = _carcass(size, options, back=options.back is not False)
-    cavities = tuple(Cavity(f"{name}_{i}", name, pose, inner) for i, (pose, inner) in enumerate(compartments, start=1))
+    cavities = tuple(
+        Cavity(f"{name}_{i}", name, pose, inner)
+        for i, (pose, inner) in enumerate(compartments, start=1)
+    )
     return Furniture(parts, (Surface(f"{name}_top", name, _at(0, 0, size[2]), size[:2]),), cavities)
 
 
@@ -115,17 +126,27 @@ FURNITURE: Mapping[str, Kind] = {
 """Builders by name. Each raises ValueError, with a sentence for the user, when the boards leave no room."""
 
 
-def _carcass(size: Size, options: Options, back: bool) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
+def _carcass(
+    size: Size, options: Options, back: bool
+) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
     """Sides, boards and dividers, and the compartments (floor's centre, inner size): bottom up, then left to right."""
     width, depth, height = size
-    board, foot, rows, columns = options.thickness or 0.02, options.plinth, options.rows, options.columns
+    board, foot, rows, columns = (
+        options.thickness or 0.02,
+        options.plinth,
+        options.rows,
+        options.columns,
+    )
     behind = board if back else 0.0
     inner = (
         (width - (columns + 1) * board) / columns,
         depth - behind,
         (height - foot - (rows + 1) * board) / rows,
     )
-    _need(min(inner) > 0, f"{rows} x {columns} compartments with boards {board:g} m thick leave no room inside")
+    _need(
+        min(inner) > 0,
+        f"{rows} x {columns} compartments with boards {board:g} m thick leave no room inside",
+    )
     half, front, rear = width / 2, -depth / 2, depth / 2 - behind
     parts = [_board((side - board / 2, side + board / 2), (front, rear), (foot, height)) for side in (
         board / 2 - half, half - board / 2)]  # fmt: skip
@@ -134,7 +155,10 @@ def _carcass(size: Size, options: Options, back: bool) -> tuple[tuple[Part, ...]
     parts += [_board(inside, (front, rear), (floor - board, floor)) for floor in floors]
     lefts = [board - half + column * (inner[0] + board) for column in range(columns)]
     for left in lefts[1:]:
-        parts += [_board((left - board, left), (front, rear), (floor, floor + inner[2])) for floor in floors[:-1]]
+        parts += [
+            _board((left - board, left), (front, rear), (floor, floor + inner[2]))
+            for floor in floors[:-1]
+        ]
     if back:
         parts.append(_board((-half, half), (rear, depth / 2), (foot, height)))
     if foot > 0:

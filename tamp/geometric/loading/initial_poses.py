@@ -154,7 +154,9 @@ class _Placing:
             self.place(name, above)
             top = _top(self.placed[name])
             if top is None:
-                raise node.error(f"'{name}' has no flat top to stand on", remedy="Declare one with 'surfaces:'")
+                raise node.error(
+                    f"'{name}' has no flat top to stand on", remedy="Declare one with 'surfaces:'"
+                )
             return top
         known = sorted({*self.owners, *self.drafts, FLOOR} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=known)
@@ -168,7 +170,9 @@ class _Placing:
         """A movable body given by its pose: snapped to what is within 2 mm under its lowest point."""
         low, high = bounds(body.parts, body.pose)
         if low[2] < -_SNAP:
-            raise node.error(f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'")
+            raise node.error(
+                f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'"
+            )
         base = np.array([*(low + high)[:2] / 2, low[2]])
         places = [_Place(None, Pose(), (math.inf, math.inf))]
         for index in np.flatnonzero(np.abs(self.heights - low[2]) <= _SNAP):

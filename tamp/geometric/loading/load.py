@@ -91,13 +91,24 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         metric=entries["metric"].passage() if "metric" in entries else None,
         samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
-        drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
-        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
+        drawn=tuple(
+            dict.fromkeys(
+                one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None
+            )
+        ),
+        warnings=(
+            *(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings),
+            *warnings,
+            *unsteady,
+        ),
         entry_lines={
             **{(key,): node.line for key, node in entries.items()},
             **{("samplers", relation): node.line for relation, node in samplers.items()},
         },
-        lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
+        lines={
+            "robot": entries["robot"].line,
+            **{body: draft.node.line for body, draft in drafts.items()},
+        },
     )
 
 
@@ -109,7 +120,9 @@ def _room(node: Node) -> Room:
         if not low < high:
             raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
         if max(-low, high) > FARTHEST:
-            raise entries[axis].error(f"the room reaches farther than {FARTHEST:g} m from the world's origin")
+            raise entries[axis].error(
+                f"the room reaches farther than {FARTHEST:g} m from the world's origin"
+            )
         limits.append((low, high))
     return Room(*limits)
 
@@ -154,6 +167,8 @@ def _check_names(drafts: Mapping[str, Draft]) -> None:
         for place in (*draft.body.surfaces, *draft.body.cavities):
             key = place.name.lower()
             if key in owners and not (own and place.name == name):
-                raise draft.node.error(f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}")
+                raise draft.node.error(
+                    f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}"
+                )
             own = own and place.name != name
             owners[key] = f"a surface or cavity of '{name}'"

@@ -25,7 +25,9 @@ _VERSION = 2
 _ONE_HULL = 1.15
 
 
-def mesh_pieces(path: Path, scale: Scale, turned: Quaternion | None = None) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
+def mesh_pieces(
+    path: Path, scale: Scale, turned: Quaternion | None = None
+) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
     """Convex pieces that contain the mesh, in metres in the file's frame, and what had to be repaired.
 
     Args:
@@ -74,7 +76,11 @@ def compute_pieces(
     from tamp.geometric.scene.convex import hull_of, simplified
 
     surface = read_surface(path, scale)
-    vertices = surface.vertices if turned is None else surface.vertices @ Pose(quaternion=turned).rotation.T
+    vertices = (
+        surface.vertices
+        if turned is None
+        else surface.vertices @ Pose(quaternion=turned).rotation.T
+    )
     try:
         whole = float(ConvexHull(vertices).volume)
         if surface.volume is not None and whole <= _ONE_HULL * surface.volume:
@@ -84,7 +90,9 @@ def compute_pieces(
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         hulls = tuple(_hull(*hull_of(_within(piece, low, high))) for piece in pieces)
     except (QhullError, ValueError):
-        raise InputError(f"the mesh '{path.name}' is degenerate: it is flat, no closed hull can be made") from None
+        raise InputError(
+            f"the mesh '{path.name}' is degenerate: it is flat, no closed hull can be made"
+        ) from None
     return hulls, surface.warnings
 
 
@@ -111,10 +119,15 @@ def packed(hulls: tuple[Hull, ...], warnings: tuple[str, ...]) -> bytes:
 def _read(file: Path) -> tuple[tuple[Hull, ...], tuple[str, ...]] | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
-            vertices, faces, counts, warnings = (kept[key] for key in ("vertices", "faces", "counts", "warnings"))
+            vertices, faces, counts, warnings = (
+                kept[key] for key in ("vertices", "faces", "counts", "warnings")
+            )
         first_vertex, first_face = np.cumsum(np.vstack([[0, 0], counts]), axis=0).T
         hulls = tuple(
-            _hull(vertices[first_vertex[i] : first_vertex[i + 1]], faces[first_face[i] : first_face[i + 1]])
+            _hull(
+                vertices[first_vertex[i] : first_vertex[i + 1]],
+                faces[first_face[i] : first_face[i + 1]],
+            )
             for i in range(len(counts))
         )
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):

@@ -78,7 +78,11 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
             if mesh.is_watertight:
                 mesh.fix_normals(multibody=True)
         left = open_edges(mesh.faces)
-        what = f"{left} stay open, it was taken as a surface with holes" if left else "they were closed"
+        what = (
+            f"{left} stay open, it was taken as a surface with holes"
+            if left
+            else "they were closed"
+        )
         warnings = (f"the mesh '{name}' is not watertight ({gaps} open edges): {what}",)
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces)
     volume = None
@@ -115,8 +119,13 @@ def _check_size(name: str, extents: Array) -> None:
     size = " x ".join(f"{side:.4g}" for side in extents)
     if largest > LARGEST:
         factor = 0.001 if largest > 20 else 0.01
-        raise InputError(f"the mesh '{name}' is {size} m large", remedy=f"Lengths are metres: say scale: {factor:g}")
+        raise InputError(
+            f"the mesh '{name}' is {size} m large",
+            remedy=f"Lengths are metres: say scale: {factor:g}",
+        )
     if largest < SMALLEST:
-        raise InputError(f"the mesh '{name}' is {size} m small", remedy="Lengths are metres: say scale: 1000")
+        raise InputError(
+            f"the mesh '{name}' is {size} m small", remedy="Lengths are metres: say scale: 1000"
+        )
     if np.sort(extents)[1] < 1e-6:
         raise InputError(f"the mesh '{name}' is degenerate: its points lie on one line")

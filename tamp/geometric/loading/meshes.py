@@ -60,7 +60,11 @@ def find_mesh(name: str, folder: Path) -> Path:
     shown = name if len(name) <= 80 else f"{name[:77]}..."
     if path.parts[:1] == (_PYBULLET,):
         spec = importlib.util.find_spec(_PYBULLET)
-        roots = [Path(place).parent for place in (spec.submodule_search_locations or ())] if spec else []
+        roots = (
+            [Path(place).parent for place in (spec.submodule_search_locations or ())]
+            if spec
+            else []
+        )
         if not roots:
             raise InputError(f"no mesh file '{shown}'", remedy="pybullet is not installed")
     else:
@@ -73,7 +77,9 @@ def find_mesh(name: str, folder: Path) -> Path:
     except OSError as error:  # a name too long to be one, a folder that may not be read
         raise InputError(f"no mesh file '{shown}': {error.strerror}") from None
     nearest = closest(name, beside) if len(name) < 1000 else None
-    raise InputError(f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else "")
+    raise InputError(
+        f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else ""
+    )
 
 
 def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
@@ -103,7 +109,13 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
         return _load_urdf(path, scale)
     hulls, warnings = mesh_pieces(path, scale)
     sources = ((path, scale, Pose()),) if len(hulls) > 1 else ()
-    return Mesh(tuple(Part(hull) for hull in hulls), (path,), warnings, (Visual(path, scale=scale),), sources=sources)
+    return Mesh(
+        tuple(Part(hull) for hull in hulls),
+        (path,),
+        warnings,
+        (Visual(path, scale=scale),),
+        sources=sources,
+    )
 
 
 def mesh_triangles(mesh: Mesh) -> Array | None:
@@ -124,7 +136,10 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
     """Every collision element is a part or several; its visual elements are drawn."""
     factor = scale[0]
     if scale != (factor, factor, factor) or factor < 0:
-        raise InputError(f"'{path.name}' can only be scaled alike in all directions", remedy="scale: one number > 0")
+        raise InputError(
+            f"'{path.name}' can only be scaled alike in all directions",
+            remedy="scale: one number > 0",
+        )
     described = read_object(path)
     parts: list[Part] = []
     sources: list[tuple[Path, Scale, Pose]] = []
@@ -133,9 +148,13 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
         made, repaired = _parts(element, factor)
         parts += made
         if element.mesh is not None:
-            sources.append((element.mesh, _times(element.scale, factor), scale_pose(element.pose, factor)))
+            sources.append(
+                (element.mesh, _times(element.scale, factor), scale_pose(element.pose, factor))
+            )
         warnings += repaired
-    files = dict.fromkeys([path, *(element.mesh for element in described.collisions if element.mesh)])
+    files = dict.fromkeys(
+        [path, *(element.mesh for element in described.collisions if element.mesh)]
+    )
     centre, doubt = _centre(path, described, tuple(parts), factor)
     return Mesh(
         tuple(parts),
@@ -176,14 +195,22 @@ def primitive_parts(element: Element) -> list[Part]:
 def capsule_parts(radius: float, length: float, pose: Pose = Pose()) -> list[Part]:
     """A cylinder of that length along z, and a ball at each of its ends. Metres."""
     ends = (Pose((0.0, 0.0, side * length / 2)) for side in (-1, 1))
-    return [Part(Cylinder(radius, length), pose), *(Part(Sphere(radius), pose @ end) for end in ends)]
+    return [
+        Part(Cylinder(radius, length), pose),
+        *(Part(Sphere(radius), pose @ end) for end in ends),
+    ]
 
 
 def _visual(element: Element, factor: float) -> Visual:
     pose = scale_pose(element.pose, factor)
     if element.mesh is not None:
-        return Visual(element.mesh, scale=_times(element.scale, factor), pose=pose, colour=element.colour)
-    return Visual(shapes=tuple(scale_part(part, factor) for part in primitive_parts(element)), colour=element.colour)
+        return Visual(
+            element.mesh, scale=_times(element.scale, factor), pose=pose, colour=element.colour
+        )
+    return Visual(
+        shapes=tuple(scale_part(part, factor) for part in primitive_parts(element)),
+        colour=element.colour,
+    )
 
 
 def _centre(
@@ -196,7 +223,9 @@ def _centre(
     low, high = bounds(parts, Pose())
     if np.any(np.array((x, y, z)) < low - 1e-3) or np.any(np.array((x, y, z)) > high + 1e-3):
         where = f"[{x:.3g}, {y:.3g}, {z:.3g}]"
-        return None, (f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is taken",)
+        return None, (
+            f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is taken",
+        )
     return (x, y, z), ()
 
 

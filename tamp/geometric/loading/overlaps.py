@@ -55,7 +55,10 @@ def find_overlaps(scene: Scene) -> Iterator[Overlap]:
     lows, highs = (np.array([corners[end] for corners in limits]).reshape(-1, 3) for end in (0, 1))
     for index, body in enumerate(bodies):
         later = slice(index + 1, None)
-        near = np.all((lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE), axis=1)
+        near = np.all(
+            (lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE),
+            axis=1,
+        )
         for other in np.flatnonzero(near) + index + 1:
             depth = _depth(body, bodies[other])
             if depth > TOLERANCE:
@@ -80,7 +83,9 @@ def _part_depth(part: Part, body: Body, other: Part, other_body: Body) -> float:
 
     result = fcl.CollisionResult()
     request = fcl.CollisionRequest(num_max_contacts=20, enable_contact=True)
-    fcl.collide(_collision_object(part, body), _collision_object(other, other_body), request, result)
+    fcl.collide(
+        _collision_object(part, body), _collision_object(other, other_body), request, result
+    )
     return max((abs(float(contact.penetration_depth)) for contact in result.contacts), default=0.0)
 
 
@@ -95,7 +100,11 @@ def _collision_object(part: Part, body: Body):
     elif isinstance(shape, Sphere):
         geometry = fcl.Sphere(shape.radius)
     else:
-        polygons = np.hstack([np.full((len(shape.faces), 1), 3), shape.faces]).astype(np.int32).ravel()
+        polygons = (
+            np.hstack([np.full((len(shape.faces), 1), 3), shape.faces]).astype(np.int32).ravel()
+        )
         geometry = fcl.Convex(np.array(shape.vertices), len(shape.faces), polygons)
     pose = body.pose @ part.pose
-    return fcl.CollisionObject(geometry, fcl.Transform(np.array(pose.rotation), np.array(pose.position)))
+    return fcl.CollisionObject(
+        geometry, fcl.Transform(np.array(pose.rotation), np.array(pose.position))
+    )

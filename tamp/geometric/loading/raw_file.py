@@ -25,7 +25,11 @@ def read_raw(path: Path, most: int) -> bytes:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
-        why = error.strerror if isinstance(error, OSError) and error.strerror else "it is no name of a file"
+        why = (
+            error.strerror
+            if isinstance(error, OSError) and error.strerror
+            else "it is no name of a file"
+        )
         raise InputError(f"cannot read '{name}': {why}") from None
     if len(content) > most:
         raise InputError(f"cannot read '{name}': it is larger than {most / 1e6:g} MB")

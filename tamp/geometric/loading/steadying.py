@@ -9,7 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from tamp.geometric.loading.bodies import Draft
-from tamp.geometric.loading.footing import SINK, Footing, Ground, body_points, center_of_mass, outside
+from tamp.geometric.loading.footing import (
+    SINK,
+    Footing,
+    Ground,
+    body_points,
+    center_of_mass,
+    outside,
+)
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
@@ -24,7 +31,9 @@ ROLLS = 60
 """Edges over which a body is rolled, at most."""
 
 
-def steady(bodies: Mapping[str, Body], drafts: Mapping[str, Draft]) -> tuple[dict[str, Body], tuple[str, ...]]:
+def steady(
+    bodies: Mapping[str, Body], drafts: Mapping[str, Draft]
+) -> tuple[dict[str, Body], tuple[str, ...]]:
     """Compare how movable bodies stand with what the problem says, by the judge's rule.
 
     A body given by `on:` that would tip over a little is laid onto the face beside; one given by its pose gets the
@@ -48,7 +57,9 @@ def steady(bodies: Mapping[str, Body], drafts: Mapping[str, Draft]) -> tuple[dic
             why = _why_not(body, footing, bodies)
             if why:
                 remedy = "Move it ('at:'), turn it ('yaw:', 'rpy:'), or put it onto something else"
-                raise entries["on"].error(f"{name} does not stand on '{entries['on'].text()}': {why}", remedy=remedy)
+                raise entries["on"].error(
+                    f"{name} does not stand on '{entries['on'].text()}': {why}", remedy=remedy
+                )
         elif footing.why:
             say = "hangs in the air" if not footing.on else "does not stand still"
             warnings.append(f"{name} {say}: {footing.why} (say 'on:', or 'fixed: true')")
@@ -84,7 +95,9 @@ def _place(support: str | None, bodies: Mapping[str, Body]) -> Surface | Cavity 
     return next((place for place in places if place.name == support), None)
 
 
-def _tipped(body: Body, footing: Footing, ground: Ground, warnings: list[str]) -> tuple[Body, Footing]:
+def _tipped(
+    body: Body, footing: Footing, ground: Ground, warnings: list[str]
+) -> tuple[Body, Footing]:
     """The body on the face that it tips onto, when that is near and carries it; itself otherwise."""
     turn = tip(body)
     if turn is None:
@@ -100,7 +113,9 @@ def _tipped(body: Body, footing: Footing, ground: Ground, warnings: list[str]) -
     found = ground.footing(tipped)
     if found.why:
         return body, footing
-    warnings.append(f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: {footing.why}")
+    warnings.append(
+        f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: {footing.why}"
+    )
     return tipped, found
 
 

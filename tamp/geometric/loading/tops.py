@@ -53,7 +53,9 @@ class _Rectangle:
     yaw: float
 
 
-def top_of(name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None) -> Surface | None:
+def top_of(
+    name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None
+) -> Surface | None:
     """The highest level rectangle on which another body may stand, as the surface `name`.
 
     Faces at one height count together, what stands on them is left out, and a face that is at least 5 cm wide is
@@ -87,7 +89,9 @@ def top_of(name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles:
     return Surface(name, name, frame, best.size, _clearance(best, boxes))
 
 
-def _highest(parts: tuple[Part, ...], boxes: list[tuple[Array, Array]], triangles: Array | None) -> _Rectangle | None:
+def _highest(
+    parts: tuple[Part, ...], boxes: list[tuple[Array, Array]], triangles: Array | None
+) -> _Rectangle | None:
     faces = [
         face
         for part in parts
@@ -134,14 +138,24 @@ def _faces(part: Part) -> Iterator[_Face]:
         signs = np.zeros((4, 3))
         signs[:, axis], signs[:, u], signs[:, v] = up, (-1, 1, 1, -1), (-1, -1, 1, 1)
         corners = (signs * half) @ rotation.T + position
-        yield _Face(corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, u], rotation[0, u]))
+        yield _Face(
+            corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, u], rotation[0, u])
+        )
     elif isinstance(shape, Cylinder):
         if abs(rotation[2, 2]) < _LEVEL:
             return
-        side = shape.radius / 2**0.5  # half of the square in the circle, its sides along the cylinder's x and y
+        side = (
+            shape.radius / 2**0.5
+        )  # half of the square in the circle, its sides along the cylinder's x and y
         square = np.array([[-side, -side, 0], [side, -side, 0], [side, side, 0], [-side, side, 0]])
-        corners = square @ rotation.T + position + rotation[:, 2] * math.copysign(shape.height / 2, rotation[2, 2])
-        yield _Face(corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, 0], rotation[0, 0]))
+        corners = (
+            square @ rotation.T
+            + position
+            + rotation[:, 2] * math.copysign(shape.height / 2, rotation[2, 2])
+        )
+        yield _Face(
+            corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, 0], rotation[0, 0])
+        )
     elif isinstance(shape, Hull):
         yield from _hull_face(shape, rotation, position)
 
@@ -171,17 +185,23 @@ def _solid(face: _Face, triangles: Array | None) -> bool:
     near = triangles[np.all(np.abs(triangles[:, :, 2] - face.height) < _LID, axis=1)][:, :, :2]
     a, b, c = near.transpose(1, 0, 2)
     area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
-    a, b, c, area = (one[area > 1e-12] for one in (a, b, c, area))  # counter-clockwise from above: they face up
+    a, b, c, area = (
+        one[area > 1e-12] for one in (a, b, c, area)
+    )  # counter-clockwise from above: they face up
     x0, x1, y0, y1 = _inscribed(face.corners)
     steps = (np.arange(8) + 0.5) / 8
-    grid = np.stack(np.meshgrid(x0 + (x1 - x0) * steps, y0 + (y1 - y0) * steps), axis=-1).reshape(-1, 1, 2)
+    grid = np.stack(np.meshgrid(x0 + (x1 - x0) * steps, y0 + (y1 - y0) * steps), axis=-1).reshape(
+        -1, 1, 2
+    )
     v = ((grid - a)[..., 0] * (c - a)[:, 1] - (c - a)[:, 0] * (grid - a)[..., 1]) / area
     w = ((b - a)[:, 0] * (grid - a)[..., 1] - (grid - a)[..., 0] * (b - a)[:, 1]) / area
     covered = ((v >= -1e-9) & (w >= -1e-9) & (v + w <= 1 + 1e-9)).any(axis=1)
     return bool(covered.mean() >= 0.9)
 
 
-def _largest(level: list[_Face], height: float, boxes: list[tuple[Array, Array]]) -> _Rectangle | None:
+def _largest(
+    level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
+) -> _Rectangle | None:
     """The largest free rectangle in the union of level faces, its sides along one of theirs."""
     standing = [
         (low, high) for low, high in boxes if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM
@@ -201,7 +221,12 @@ def _largest(level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
         rectangles = rectangles[np.argsort(-areas, kind="stable")[:_MOST_FACES]]
         blocked = np.array([_flat_box(low, high, into) for low, high in standing]).reshape(-1, 4)
         (left, _, near, _), (_, right, _, far) = rectangles.min(axis=0), rectangles.max(axis=0)
-        over = (blocked[:, 0] < right) & (blocked[:, 1] > left) & (blocked[:, 2] < far) & (blocked[:, 3] > near)
+        over = (
+            (blocked[:, 0] < right)
+            & (blocked[:, 1] > left)
+            & (blocked[:, 2] < far)
+            & (blocked[:, 3] > near)
+        )
         if over.sum() > 2 * _MOST_FACES:
             return None
         x0, x1, y0, y1 = _union(rectangles, blocked[over])
@@ -213,7 +238,9 @@ def _largest(level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
 
 def _flat_box(low: Array, high: Array, into: Array) -> Array:
     corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ into.T
-    return np.array([corners[:, 0].min(), corners[:, 0].max(), corners[:, 1].min(), corners[:, 1].max()])
+    return np.array(
+        [corners[:, 0].min(), corners[:, 0].max(), corners[:, 1].min(), corners[:, 1].max()]
+    )
 
 
 def _inscribed(polygon: Array) -> Array:
@@ -267,7 +294,12 @@ def _union(rectangles: Array, blocked: Array) -> tuple[float, float, float, floa
                 area = (xs[last + 1] - xs[first]) * (ys[end] - ys[start])
                 if area > best + 1e-12:
                     best = float(area)
-                    chosen = (float(xs[first]), float(xs[last + 1]), float(ys[start]), float(ys[end]))
+                    chosen = (
+                        float(xs[first]),
+                        float(xs[last + 1]),
+                        float(ys[start]),
+                        float(ys[end]),
+                    )
     return chosen
 
 

@@ -64,7 +64,10 @@ def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
     """
     root = read_xml(path)
     colours = named_colours(root)
-    return {link.get("name", ""): elements(path, link, "visual", colours) for link in root.findall("link")}
+    return {
+        link.get("name", ""): elements(path, link, "visual", colours)
+        for link in root.findall("link")
+    }
 
 
 def elements(
@@ -79,7 +82,11 @@ def elements(
     for element in link.findall(kind)[: MOST_ELEMENTS + 1]:
         geometry, material = element.find("geometry"), element.find("material")
         if geometry is not None:
-            colour = None if material is None else _rgba(material) or (colours or {}).get(material.get("name", ""))
+            colour = (
+                None
+                if material is None
+                else _rgba(material) or (colours or {}).get(material.get("name", ""))
+            )
             found.append(_element(path, element, geometry, colour))
     if len(found) > MOST_ELEMENTS:
         raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} {kind} elements")
@@ -119,7 +126,9 @@ def _rgba(material: ElementTree.Element) -> Colour | None:
     return (r, g, b, a)
 
 
-def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None) -> Element:
+def _element(
+    path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None
+) -> Element:
     pose = origin_pose(path, element)
     if not len(geometry):
         raise InputError(f"'{path.name}' has an empty <geometry>")
@@ -138,8 +147,12 @@ def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Ele
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
     if shape.tag == "plane":
-        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
-    raise UnknownGeometry(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
+        raise InputError(
+            f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0"
+        )
+    raise UnknownGeometry(
+        f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}"
+    )
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
@@ -147,7 +160,9 @@ def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
     words = _numbers(path, mesh, "scale", None) if "scale" in mesh.attrib else (1.0,)
     if len(words) not in (1, 3) or 0.0 in words:
         text = mesh.get("scale", "")
-        raise InputError(f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, found '{text[:60]}'")
+        raise InputError(
+            f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, found '{text[:60]}'"
+        )
     x, y, z = words if len(words) == 3 else words * 3
     return (x, y, z)
 
@@ -162,7 +177,10 @@ def _mesh_file(path: Path, name: str) -> Path:
         below = below.removeprefix(start)
     tails, folders = [Path(below)], [path.parent]
     if not name.startswith("file://") and below != name:
-        tails, folders = [Path(below), Path(*Path(below).parts[1:])], [path.parent, *path.absolute().parents]
+        tails, folders = (
+            [Path(below), Path(*Path(below).parts[1:])],
+            [path.parent, *path.absolute().parents],
+        )
     for folder in folders:
         for tail in tails:
             try:
@@ -194,7 +212,11 @@ def _vector(
 
 
 def _numbers(
-    path: Path, element: ElementTree.Element, attribute: str, count: int | None, positive: bool = False
+    path: Path,
+    element: ElementTree.Element,
+    attribute: str,
+    count: int | None,
+    positive: bool = False,
 ) -> tuple[float, ...]:
     text = element.get(attribute, "")
     shown = text if len(text) <= 60 else f"{text[:57]}..."
@@ -207,7 +229,9 @@ def _numbers(
     if count is not None and len(values) != count:
         raise InputError(f"{where}: expected {count} numbers, found '{shown}'")
     if not all(math.isfinite(value) for value in values) or (positive and min(values) <= 0):
-        raise InputError(f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite")
+        raise InputError(
+            f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite"
+        )
     if max(map(abs, values), default=0.0) > FARTHEST:
         raise InputError(f"{where}: '{shown}' is beyond {FARTHEST:g}")
     return values

@@ -63,7 +63,9 @@ def read_object(path: Path) -> UrdfObject:
         links[name] = link
     if not links:
         what = "a soft body (<deformable>)" if root.find("deformable") is not None else "no link"
-        raise InputError(f"'{path.name}' has {what}: an object has one link, or several that joints hold together")
+        raise InputError(
+            f"'{path.name}' has {what}: an object has one link, or several that joints hold together"
+        )
     poses, warnings = _link_poses(path, root, links)
     visuals, reason = _visuals(path, root, links, poses)
     try:
@@ -85,7 +87,10 @@ def read_object(path: Path) -> UrdfObject:
     return UrdfObject(
         tuple(collisions),
         visuals,
-        next((one.colour for one in visuals if one.colour is not None), next(iter(named_colours(root).values()), None)),
+        next(
+            (one.colour for one in visuals if one.colour is not None),
+            next(iter(named_colours(root).values()), None),
+        ),
         mass,
         centre,
         _friction(path, links, poses),
@@ -106,7 +111,9 @@ def _link_poses(
         name = joint.get("name", "?")
         for link in (parent, child):
             if link not in links:
-                raise InputError(f"'{path.name}': joint '{name}' names the link '{link}', which the file does not have")
+                raise InputError(
+                    f"'{path.name}': joint '{name}' names the link '{link}', which the file does not have"
+                )
         if child in parents:
             raise InputError(f"'{path.name}': the link '{child}' hangs on two joints")
         parents[child] = parent
@@ -116,7 +123,11 @@ def _link_poses(
     roots = [name for name in links if name not in parents]
     if len(roots) != 1:
         shown = ", ".join(roots[:8])
-        found = f"{len(roots)} links ({shown}) that no joint holds together" if roots else "joints in a circle"
+        found = (
+            f"{len(roots)} links ({shown}) that no joint holds together"
+            if roots
+            else "joints in a circle"
+        )
         raise InputError(f"'{path.name}' has {found}: an object is one piece")
     poses = {roots[0]: Pose()}
     waiting = list(poses)
@@ -136,7 +147,9 @@ def _link_poses(
     return {name: poses[name] for name in links}, warnings
 
 
-def _collisions(path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]) -> list[Element]:
+def _collisions(
+    path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
+) -> list[Element]:
     """The collision elements of all links in the root's frame."""
     found: list[Element] = []
     for name, pose in poses.items():
@@ -147,7 +160,10 @@ def _collisions(path: Path, links: dict[str, ElementTree.Element], poses: dict[s
 
 
 def _visuals(
-    path: Path, root: ElementTree.Element, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
+    path: Path,
+    root: ElementTree.Element,
+    links: dict[str, ElementTree.Element],
+    poses: dict[str, Pose],
 ) -> tuple[tuple[Element, ...], str]:
     """The visual elements of all links, or none and the reason why they cannot be drawn."""
     colours = named_colours(root)
@@ -182,7 +198,9 @@ def _inertia(
         if inertial is None or mass is None or mass == 0.0:
             continue  # pybullet's mark of what cannot be moved
         if not 0.0 < mass <= LARGEST_MASS:
-            raise InputError(f"'{path.name}': the mass {mass:g} kg of link '{name}' is not between 0 and 1000 t")
+            raise InputError(
+                f"'{path.name}': the mass {mass:g} kg of link '{name}' is not between 0 and 1000 t"
+            )
         centre = (pose @ origin_pose(path, inertial)).position
         total += mass
         moment = [sum_ + mass * x for sum_, x in zip(moment, centre, strict=True)]
@@ -192,14 +210,18 @@ def _inertia(
     return total, (x, y, z)
 
 
-def _friction(path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]) -> float | None:
+def _friction(
+    path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
+) -> float | None:
     """The first link's <lateral_friction> (or <friction>) in <contact>."""
     for name in poses:
         for tag in ("lateral_friction", "friction"):
             value = _value(path, links[name].find(f"contact/{tag}"))
             if value is not None:
                 if value < 0.0:
-                    raise InputError(f"'{path.name}': the {tag} {value:g} of link '{name}' is negative")
+                    raise InputError(
+                        f"'{path.name}': the {tag} {value:g} of link '{name}' is negative"
+                    )
                 return value
     return None
 
@@ -214,5 +236,7 @@ def _value(path: Path, element: ElementTree.Element | None) -> float | None:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"'{path.name}': value of <{element.tag}>: '{text[:60]}' is not a finite number")
+        raise InputError(
+            f"'{path.name}': value of <{element.tag}>: '{text[:60]}' is not a finite number"
+        )
     return value

@@ -44,7 +44,9 @@ class Node:
         line: 1-based line; the key's line for a value of a mapping.
     """
 
-    def __init__(self, node: yaml.Node, file: Path, source: list[str], name: str, line: int) -> None:
+    def __init__(
+        self, node: yaml.Node, file: Path, source: list[str], name: str, line: int
+    ) -> None:
         self._node = node
         self._file = file
         self._source = source
@@ -52,17 +54,26 @@ class Node:
         self.line = line
 
     def error(
-        self, message: str, *, found: str | None = None, choices: Iterable[str] = (), remedy: str = ""
+        self,
+        message: str,
+        *,
+        found: str | None = None,
+        choices: Iterable[str] = (),
+        remedy: str = "",
     ) -> InputError:
         """An error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
-        message = " ".join(message[:_LONGEST].split())  # a word of the file may hold line breaks, or a megabyte
+        message = " ".join(
+            message[:_LONGEST].split()
+        )  # a word of the file may hold line breaks, or a megabyte
         found = None if found is None else found[:_LONGEST]
         return InputError(
             where + message, file=self._file, line=self.line, found=found, choices=choices, remedy=remedy
         )  # fmt: skip
 
-    def mapping(self, allowed: Collection[str] | None = None, required: Collection[str] = ()) -> dict[str, Node]:
+    def mapping(
+        self, allowed: Collection[str] | None = None, required: Collection[str] = ()
+    ) -> dict[str, Node]:
         """The entries of a mapping in the file's order.
 
         Args:
@@ -78,13 +89,17 @@ class Node:
         entries = self._entries(self._node, {}, 0)
         for key, entry in entries.items():
             if allowed is not None and key not in allowed:
-                raise _at(entry, self.error(f"unknown key '{_short(key)}'", found=key, choices=allowed))
+                raise _at(
+                    entry, self.error(f"unknown key '{_short(key)}'", found=key, choices=allowed)
+                )
         for key in required:
             if key not in entries:
                 raise self.error(f"'{key}' is missing")
         return entries
 
-    def _entries(self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int) -> dict[str, Node]:
+    def _entries(
+        self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int
+    ) -> dict[str, Node]:
         """The entries of a mapping, with those that it merges; `known`: of the mappings merged before, by identity."""
         if id(node) in known:
             found = known[id(node)]
@@ -92,7 +107,9 @@ class Node:
                 raise self.error("'<<' merges a mapping into itself")
             return found
         if depth > MAX_DEPTH or len(known) > MAX_MERGES:
-            raise self.error(f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep")
+            raise self.error(
+                f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep"
+            )
         known[id(node)] = None
         entries: dict[str, Node] = {}
         merged: list[yaml.Node] = []
@@ -105,7 +122,9 @@ class Node:
             child = self._child(value, key.value, key.start_mark.line + 1)
             if key.value in entries:
                 first = entries[key.value].line
-                raise _at(child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}"))
+                raise _at(
+                    child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}")
+                )
             entries[key.value] = child
         if len(merged) > MAX_MERGES:
             raise self.error(f"'<<' merges more than {MAX_MERGES} mappings")
@@ -129,7 +148,8 @@ class Node:
         if count is not None and len(self._node.value) != count:
             raise self.error(f"expected {count} numbers, found {len(self._node.value)}")
         return [
-            self._child(item, f"[{index}]", item.start_mark.line + 1) for index, item in enumerate(self._node.value)
+            self._child(item, f"[{index}]", item.start_mark.line + 1)
+            for index, item in enumerate(self._node.value)
         ]
 
     def text(self, choices: Collection[str] | None = None, kind: str = "value") -> str:
@@ -147,7 +167,9 @@ class Node:
             raise self.error(f"unknown {kind} '{_short(value)}'", found=value, choices=choices)
         return value
 
-    def number(self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf) -> float:
+    def number(
+        self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf
+    ) -> float:
         """A finite number.
 
         Raises:
@@ -162,7 +184,9 @@ class Node:
             raise self.error(f"{value:g} is not a whole number")
         return int(value)
 
-    def numbers(self, count: int, *, positive: bool = False, low: float = -math.inf) -> tuple[float, ...]:
+    def numbers(
+        self, count: int, *, positive: bool = False, low: float = -math.inf
+    ) -> tuple[float, ...]:
         """A list of `count` finite numbers."""
         return tuple(item.number(positive=positive, low=low) for item in self.items(count))
 
@@ -179,7 +203,10 @@ class Node:
         if unit in ("deg", "°"):
             return math.radians(value)
         if unit is None and abs(value) > 2 * math.pi + 1e-9:
-            raise self.error(f"{value:g} radians are more than a full turn", remedy=f"Write '{value:g} deg' or 'rad'")
+            raise self.error(
+                f"{value:g} radians are more than a full turn",
+                remedy=f"Write '{value:g} deg' or 'rad'",
+            )
         return value
 
     def flag(self) -> bool:
@@ -202,7 +229,9 @@ class Node:
             # The block's indicator stands on the line before its text, and what follows it is less indented.
             below = self._source[start.line + 1 :]
             indent = next(_indent(line) for line in below if line.strip())
-            block = list(itertools.takewhile(lambda line: not line.strip() or _indent(line) >= indent, below))
+            block = list(
+                itertools.takewhile(lambda line: not line.strip() or _indent(line) >= indent, below)
+            )
             return Passage("\n".join(block), start.line + 2, 1)
         lines = self._source[start.line : end.line + 1]
         lines[-1] = lines[-1][: end.column]
@@ -228,7 +257,13 @@ class Node:
 
     def _child(self, node: yaml.Node, key: str, line: int) -> Node:
         key = _short(key)
-        name = key if not self.name else f"{self.name}{key}" if key.startswith("[") else f"{self.name}.{key}"
+        name = (
+            key
+            if not self.name
+            else f"{self.name}{key}"
+            if key.startswith("[")
+            else f"{self.name}.{key}"
+        )
         return Node(node, self._file, self._source, name, line)
 
     def _described(self) -> str:
@@ -279,7 +314,9 @@ def _check_depth(text: str, file: Path) -> None:
             depth += 1
             if depth > MAX_DEPTH:
                 line, column = event.start_mark.line + 1, event.start_mark.column + 1
-                raise InputError(f"nested more than {MAX_DEPTH} deep", file=file, line=line, column=column)
+                raise InputError(
+                    f"nested more than {MAX_DEPTH} deep", file=file, line=line, column=column
+                )
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
 

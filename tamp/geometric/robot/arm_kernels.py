@@ -163,7 +163,9 @@ def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, toleran
 
 
 @njit(
-    types.Tuple((_ROWS, types.int64))(_POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64),
+    types.Tuple((_ROWS, types.int64))(
+        _POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64
+    ),
     cache=True,
     error_model="numpy",
     no_cfunc_wrapper=True,
@@ -188,7 +190,11 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
                 break
             for i in range(7):
                 ax, ay, az = joints[i, 0, 2], joints[i, 1, 2], joints[i, 2, 2]
-                rx, ry, rz = (tool[0, 3] - joints[i, 0, 3], tool[1, 3] - joints[i, 1, 3], tool[2, 3] - joints[i, 2, 3])
+                rx, ry, rz = (
+                    tool[0, 3] - joints[i, 0, 3],
+                    tool[1, 3] - joints[i, 1, 3],
+                    tool[2, 3] - joints[i, 2, 3],
+                )
                 J[0, i], J[1, i], J[2, i] = ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx
                 J[3, i], J[4, i], J[5, i] = ax, ay, az
             _step(J, error, q, lower, upper, 0.02 if iteration == 0 else 0.0, step)

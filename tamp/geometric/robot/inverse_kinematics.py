@@ -38,11 +38,15 @@ class ArmIK:
         self._T_tool_flange = np.linalg.inv(self._T_flange_tool)
         self._axes, self._offsets, self._unturn = _screws(origins, self._T_flange_tool)
         low, high = self.lower[6], self.upper[6]
-        self._sevenths = low + (high - low) * np.array([_van_der_corput(i) for i in range(1, fine + 1)])
+        self._sevenths = low + (high - low) * np.array(
+            [_van_der_corput(i) for i in range(1, fine + 1)]
+        )
         self._solvers: list[HPRobot | None] = [None] * fine
         self._reach = _reach(origins)
 
-    def solve(self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None) -> Array:
+    def solve(
+        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
+    ) -> Array:
         """Joint angles (n, 7) within the limits that put the tool at T_base_tool (4, 4), in a deterministic order.
 
         Each solution's FK was checked to 1e-6. No solution gives shape (0, 7).
@@ -63,7 +67,9 @@ class ArmIK:
             batch: list[Array] = []
             for index in self._within_reach(T_base_tool, sevenths, stage):
                 if rng is None:
-                    solver = self._solvers[index] = self._solvers[index] or self._solver(sevenths[index])
+                    solver = self._solvers[index] = self._solvers[index] or self._solver(
+                        sevenths[index]
+                    )
                 else:
                     solver = self._solver(sevenths[index])
                 solution = solver.IK(T)
@@ -82,7 +88,9 @@ class ArmIK:
                 break
         return np.concatenate(found) if found else np.empty((0, 7))
 
-    def follow(self, T_base_tools: Sequence[Array], q_start: Array, jump: float = 0.3) -> Array | None:
+    def follow(
+        self, T_base_tools: Sequence[Array], q_start: Array, jump: float = 0.3
+    ) -> Array | None:
         """Joint angles (k, 7) along tool poses (4, 4) that lie close together, continuing from q_start.
 
         Each pose is met to 1e-6 within the limits; None when one cannot be, or when a joint would have to move more
@@ -109,10 +117,15 @@ class ArmIK:
         # joint 6's frame in the flange's, by inverting joint 7: Rz(-q7) applied to the origin's inverse translation
         back = -self._origins[6, :3, :3].T @ self._origins[6, :3, 3]
         x, y = back[0] * np.cos(q) + back[1] * np.sin(q), back[1] * np.cos(q) - back[0] * np.sin(q)
-        wrist = T_base_flange[:3, 3] + np.column_stack([x, y, np.full_like(x, back[2])]) @ T_base_flange[:3, :3].T
+        wrist = (
+            T_base_flange[:3, 3]
+            + np.column_stack([x, y, np.full_like(x, back[2])]) @ T_base_flange[:3, :3].T
+        )
         distance = np.linalg.norm(wrist - self._origins[0, :3, 3], axis=1)
         near, far = self._reach
-        return [stage.start + int(i) for i in np.flatnonzero((distance >= near) & (distance <= far))]
+        return [
+            stage.start + int(i) for i in np.flatnonzero((distance >= near) & (distance <= far))
+        ]
 
 
 def _screws(origins: Array, T_flange_tool: Array) -> tuple[Array, Array, Array]:

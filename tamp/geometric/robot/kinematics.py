@@ -31,16 +31,27 @@ class Kinematics:
         for joint in robot.joints:
             if joint.kind != "revolute" or joint.axis != (0.0, 0.0, 1.0):
                 raise ValueError(f"{joint.name}: only revolute joints about z are supported")
-            parent = model.addJoint(parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name)
+            parent = model.addJoint(
+                parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name
+            )
             origin = Pose()
         self._tool = model.addFrame(
-            pinocchio.Frame("tool", parent, _se3(robot.T_flange_hand @ robot.T_hand_tool), pinocchio.FrameType.OP_FRAME)
+            pinocchio.Frame(
+                "tool",
+                parent,
+                _se3(robot.T_flange_hand @ robot.T_hand_tool),
+                pinocchio.FrameType.OP_FRAME,
+            )
         )
         self._model, self._data, self._flange = model, model.createData(), parent
-        self._joint_of_link = tuple((link.name, 4 + index) for index, link in enumerate(robot.links[2:-3]))
+        self._joint_of_link = tuple(
+            (link.name, 4 + index) for index, link in enumerate(robot.links[2:-3])
+        )
         self._T_base_arm = robot.T_base_arm.matrix
         self._T_flange_hand = robot.T_flange_hand.matrix
-        self._fingers = tuple((f.child, f.origin.matrix, f.origin.rotation @ np.array(f.axis)) for f in robot.fingers)
+        self._fingers = tuple(
+            (f.child, f.origin.matrix, f.origin.rotation @ np.array(f.axis)) for f in robot.fingers
+        )
 
     def link_poses(self, conf: Array, opening: float) -> dict[str, Array]:
         """T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
@@ -50,7 +61,9 @@ class Kinematics:
         poses = {links[0].name: T_world_base, links[1].name: T_world_base @ self._T_base_arm}
         for name, index in self._joint_of_link:
             poses[name] = data.oMi[index].homogeneous
-        T_world_hand = poses[links[-3].name] = data.oMi[self._flange].homogeneous @ self._T_flange_hand
+        T_world_hand = poses[links[-3].name] = (
+            data.oMi[self._flange].homogeneous @ self._T_flange_hand
+        )
         for name, origin, axis in self._fingers:
             T_hand_finger = origin.copy()
             T_hand_finger[:3, 3] += axis * (opening / 2)

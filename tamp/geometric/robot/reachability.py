@@ -67,11 +67,16 @@ class Reachability:
             follow = rng.random(count) >= BROAD
             drawn = self._from_table(level, direction, rng, count)
             bounded = np.clip(rng.normal(0.0, FRONT, count), -2.5 * FRONT, 2.5 * FRONT)
-            distance, heading = np.where(follow, drawn[0], distance), np.where(follow, drawn[1], heading)
+            distance, heading = (
+                np.where(follow, drawn[0], distance),
+                np.where(follow, drawn[1], heading),
+            )
             bearing = np.where(follow, bounded, bearing)
         turn = T_world_tool[:3, :3] @ self._rotations[direction].T
         yaw_of_tool = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-        towards = yaw_of_tool - heading  # world direction of the line from the arm's foot to the tool
+        towards = (
+            yaw_of_tool - heading
+        )  # world direction of the line from the arm's foot to the tool
         yaw = towards - bearing
         cos, sin = np.cos(yaw), np.sin(yaw)
         foot_x, foot_y = self._foot
@@ -79,7 +84,9 @@ class Reachability:
         y = T_world_tool[1, 3] - distance * np.sin(towards) - (sin * foot_x + cos * foot_y)
         return np.column_stack([x, y, (yaw + math.pi) % (2 * math.pi) - math.pi])
 
-    def _from_table(self, level: int, direction: int, rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    def _from_table(
+        self, level: int, direction: int, rng: np.random.Generator, count: int
+    ) -> tuple[Array, Array]:
         """Distances (count,) and headings (count,), uniform within cells that are drawn by their weights."""
         cumulative = self._cumulative[level, direction]
         cell = np.searchsorted(cumulative, rng.random(count) * cumulative[-1], side="right")

@@ -97,12 +97,19 @@ def panda_mobile() -> Robot:
     joints = tuple(named[f"panda_joint{i}"] for i in range(1, 8))
     base = Box((0.8, 0.7, 0.33))
     hulls = np.load(Path(__file__).parent / "assets" / "panda_mobile.npz")
-    names = [f"panda_link{i}" for i in range(8)] + ["panda_hand", "panda_leftfinger", "panda_rightfinger"]
+    names = [f"panda_link{i}" for i in range(8)] + [
+        "panda_hand",
+        "panda_leftfinger",
+        "panda_rightfinger",
+    ]
     return Robot(
         name="panda_mobile",
         links=(
             Link("base", (Part(base, Pose((0.0, 0.0, 0.02 + base.size[2] / 2))),)),
-            *(Link(name, (Part(_hull(hulls[f"{name}/vertices"], hulls[f"{name}/faces"])),)) for name in names),
+            *(
+                Link(name, (Part(_hull(hulls[f"{name}/vertices"], hulls[f"{name}/faces"])),))
+                for name in names
+            ),
         ),
         T_base_arm=Pose((0.3, 0.0, 0.35)),
         joints=joints,
@@ -153,7 +160,10 @@ def panda_urdf() -> Path:
     """Where pybullet_data's Panda is. Found without importing pybullet, which prints at import."""
     spec = importlib.util.find_spec("pybullet_data")
     if spec is None or spec.origin is None:
-        raise InputError("the robot 'panda_mobile' needs the package pybullet_data", remedy="pip install pybullet")
+        raise InputError(
+            "the robot 'panda_mobile' needs the package pybullet_data",
+            remedy="pip install pybullet",
+        )
     return Path(spec.origin).parent / "franka_panda" / "panda.urdf"
 
 
