@@ -1,4 +1,6 @@
-"""What the problem file says about one body, read into parts, surfaces and properties; placing it comes later."""
+"""Read what the problem file says about one body into parts, surfaces and properties; placing it
+comes later.
+"""
 
 from __future__ import annotations
 
@@ -124,14 +126,17 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
 
 
 def read_pose(node: Node) -> Pose:
-    """`{position: [x, y, z]}` with `quaternion: [x, y, z, w]`, `rpy: [r, p, y]` or `yaw:`; none of them is upright."""
+    """Read the pose `{position: [x, y, z]}` with `quaternion: [x, y, z, w]`, `rpy: [r, p, y]` or
+    `yaw:`; none of them is upright.
+    """
     entries = node.mapping(("position", "quaternion", "rpy", "yaw"), required=("position",))
     x, y, z = entries["position"].numbers(3)
     return Pose((x, y, z), read_orientation(entries))
 
 
 def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, float]:
-    """The unit quaternion that `quaternion:`, `rpy:` or `yaw:` among the entries means; upright when there is none.
+    """Read the unit quaternion from `quaternion:`, `rpy:` or `yaw:` among the entries; upright when
+    there is none.
 
     Raises:
         InputError: More than one of them, or a quaternion that is far from unit norm.
@@ -247,13 +252,15 @@ def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
 
 
 def _stance(entries: Mapping[str, Node]) -> Pose:
-    """How the body will be turned in the world, but for a turn about the vertical."""
+    """Return the orientation of the body in the world, but for a turn about the vertical."""
     given = entries["pose"].mapping() if "pose" in entries else entries
     return Pose((0.0, 0.0, 0.0), read_orientation(given))
 
 
 def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
-    """What is drawn of a mesh; the colour that the problem gives counts more than the file's own."""
+    """Return the visuals of a mesh; the colour that the problem gives counts more than the file's
+    own.
+    """
     visuals = mesh.visuals if mesh else ()
     return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
 
@@ -266,7 +273,7 @@ def _number(
     low: float = 0.0,
     high: float = 0.0,
 ) -> float:
-    """What the problem says, else what the mesh's file says, else the default."""
+    """Read what the problem says, else what the mesh's file says, else the default."""
     if node is not None:
         return node.number(positive=positive, low=low, high=high)
     return default if read is None else read

@@ -1,6 +1,8 @@
-"""The triangles in a COLLADA file: its nodes' transforms and its unit applied, its axes as they are.
+"""The triangles in a COLLADA file: its nodes' transforms and its unit applied, its axes as they
+are.
 
-pybullet and most of robotics do not turn a file whose `<up_axis>` is Y; many writers say Y_UP whatever they write.
+pybullet and most of robotics do not turn a file whose `<up_axis>` is Y; many writers say Y_UP
+whatever they write.
 """
 
 from __future__ import annotations
@@ -20,8 +22,8 @@ _MOST_DEPTH = 100
 
 
 def read_collada(path: Path, most: int) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices (n, 3) in metres and triangles (m, 3) of all that the file's scene shows, or of all its geometries
-    when it has no scene.
+    """Read vertices (n, 3) in metres and triangles (m, 3) of all that the file's scene shows, or of
+    all its geometries when it has no scene.
 
     Args:
         path: The file.
@@ -72,7 +74,9 @@ class _Document:
         return np.concatenate(self.vertices), np.concatenate(self.faces)
 
     def node(self, node: ElementTree.Element, above: Array, depth: int) -> None:
-        """What a node shows, in a frame in which it stands by `above` (4, 4) and its own transforms."""
+        """Return the triangles that a node shows, in a frame in which it stands by `above` (4, 4)
+        and its own transforms.
+        """
         if depth > _MOST_DEPTH:
             raise self.error("its nodes are nested too deeply")
         matrix = above
@@ -104,7 +108,7 @@ class _Document:
             self.geometry(target, matrix)
 
     def geometry(self, geometry: ElementTree.Element, matrix: Array) -> None:
-        """The triangles of a geometry; lines and splines are passed over."""
+        """Return the triangles of a geometry; lines and splines are passed over."""
         mesh = geometry.find("mesh")
         if mesh is None:
             return
@@ -136,7 +140,7 @@ class _Document:
         self.count += len(positions)
 
     def positions(self, source: str) -> Array:
-        """Corners (n, 3) of a <source>, or of the <vertices> that name one."""
+        """Return the corners (n, 3) of a <source>, or of the <vertices> that name one."""
         element = self.named.get(source)
         if element is not None and element.tag == "vertices":
             inputs = [one for one in element.findall("input") if one.get("semantic") == "POSITION"]
@@ -178,7 +182,7 @@ class _Document:
 
 
 def _faces(kind: str, corners: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Triangles (m, 3) of one list of corners."""
+    """Return the triangles (m, 3) of one list of corners."""
     if kind == "triangles":
         return corners[: len(corners) - len(corners) % 3].reshape(-1, 3)
     if kind == "tristrips":
@@ -205,7 +209,7 @@ def _translate(values: list[float]) -> Array:
 
 
 def _rotate(values: list[float]) -> Array:
-    """About an axis by degrees (Rodrigues)."""
+    """Return the rotation about an axis by degrees (Rodrigues)."""
     axis, angle = np.array(values[:3]), np.radians(values[3])
     axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])

@@ -1,8 +1,9 @@
 """Convex pieces that together contain a triangle mesh, found by cutting it with planes.
 
-CoACD takes 10 to 60 s for a mug and V-HACD leaves 9 mm of it uncovered; this takes about a second, contains the mesh by
-construction, and needs no closed surface. A piece is the convex hull of what lies in one cell of a tree of cuts; the
-piece whose hull holds the most air is cut next, by the plane that leaves the least volume of hulls.
+CoACD takes 10 to 60 s for a mug and V-HACD leaves 9 mm of it uncovered; this takes about a second,
+contains the mesh by construction, and needs no closed surface. A piece is the convex hull of what
+lies in one cell of a tree of cuts; the piece whose hull holds the most air is cut next, by the
+plane that leaves the least volume of hulls.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class _Piece:
     Attributes:
         triangles: (m, 3, 3), the surface.
         planes: (k, 4), normal and offset: the cell is where normal @ x <= offset.
-        solid, air: Grid points (n, 3) inside the solid, and outside of it but inside the mesh's hull.
+        solid, air: Grid points (n, 3) inside the solid, and outside of it but inside the mesh's
+            hull.
         volume: Of the hull of the triangles, cubic metres.
         filled: Of the air in that hull, cubic metres.
     """
@@ -49,7 +51,8 @@ class _Piece:
 
 
 def decompose(vertices: Array, faces: NDArray[np.integer], most: int = MOST_PIECES) -> list[Array]:
-    """Vertices (n, 3) of convex pieces that contain the surface, and the solid when the surface is closed.
+    """Decompose a mesh into convex pieces, vertices (n, 3) each, that contain the surface, and the
+    solid when the surface is closed.
 
     Args:
         vertices: (n, 3), metres.
@@ -57,7 +60,8 @@ def decompose(vertices: Array, faces: NDArray[np.integer], most: int = MOST_PIEC
         most: Never more pieces than this.
 
     Returns:
-        The pieces in an order that depends on the mesh only, each simplified where that moves it by less than 0.5 mm.
+        The pieces in an order that depends on the mesh only, each simplified where that moves it by
+        less than 0.5 mm.
     """
     triangles = _coarser(vertices[faces])
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -78,7 +82,7 @@ def decompose(vertices: Array, faces: NDArray[np.integer], most: int = MOST_PIEC
 
 
 def _cut(piece: _Piece, size: float, voxel: float) -> list[_Piece] | None:
-    """The two halves by the best plane; None when no plane has material on both sides."""
+    """Cut a piece in two by the best plane; None when no plane has material on both sides."""
     points = piece.triangles.reshape(-1, 3)
     best: tuple[float, list[_Piece]] | None = None
     for direction in _DIRECTIONS:
@@ -87,7 +91,8 @@ def _cut(piece: _Piece, size: float, voxel: float) -> list[_Piece] | None:
             halves = _halves(piece, direction, position, size, voxel)
             if halves is None:
                 continue
-            # The first cut of a cup saves nothing, whichever it is: then the more even one is better.
+            # The first cut of a cup saves nothing, whichever it is: then the more even one is
+            # better.
             uneven = abs(halves[0].volume - halves[1].volume)
             score = halves[0].volume + halves[1].volume + 0.03 * uneven
             if best is None or score < best[0] * (1 - 1e-9):
@@ -96,7 +101,9 @@ def _cut(piece: _Piece, size: float, voxel: float) -> list[_Piece] | None:
 
 
 def _positions(along: Array, air: Array, margin: float) -> list[float]:
-    """Where to cut along a direction: evenly, and where the air begins and ends, there at a corner of the surface."""
+    """Return the offsets of cutting planes along a direction: spread evenly, and where the air
+    begins and ends, there at a corner of the surface.
+    """
     low, high = float(along.min()), float(along.max())
     positions = [low + (high - low) * part / _PARTS for part in range(1, _PARTS)]
     if len(air):
@@ -125,7 +132,8 @@ def _halves(
 def _piece(triangles: Array, planes: Array, solid: Array, air: Array, voxel: float) -> _Piece:
     points = triangles.reshape(-1, 3)
     if len(points) > 200:
-        # Hulls are only compared here: the extreme points in many directions are enough, and ten times faster.
+        # Hulls are only compared here: the extreme points in many directions are enough, and ten
+        # times faster.
         points = points[np.unique(np.argmax(points @ _EVEN.T, axis=0))]
     try:
         volume = float(ConvexHull(thickened(points)).volume)
@@ -135,9 +143,11 @@ def _piece(triangles: Array, planes: Array, solid: Array, air: Array, voxel: flo
 
 
 def _grid(triangles: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Points of a regular grid inside the solid, and those outside of it but inside the hull. Shapes (n, 3).
+    """Sample a regular grid: the points inside the solid, and those outside of it but inside the
+    hull. Shapes (n, 3).
 
-    A column of points along z is inside where the surface above it has been crossed downwards once more than upwards.
+    A column of points along z is inside where the surface above it has been crossed downwards once
+    more than upwards.
     """
     step = (high - low) / _GRID
     x, y, z = (low[axis] + step[axis] * (np.arange(_GRID) + 0.5) for axis in range(3))
@@ -165,7 +175,9 @@ def _grid(triangles: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _within(equations: Array, points: Array) -> NDArray[np.bool_]:
-    """Which points lie inside all half-spaces, a block of them at a time to bound the memory."""
+    """Check which points lie inside all half-spaces, a block of them at a time to bound the
+    memory.
+    """
     inside = np.ones(len(points), dtype=bool)
     for start in range(0, len(equations), 64):
         block = equations[start : start + 64]
@@ -175,7 +187,9 @@ def _within(equations: Array, points: Array) -> NDArray[np.bool_]:
 
 
 def _clip(triangles: Array, normal: Array, offset: float) -> Array:
-    """The parts of triangles with normal @ x <= offset, as triangles again (Sutherland and Hodgman)."""
+    """Clip triangles to the half-space normal @ x <= offset, into triangles again (Sutherland and
+    Hodgman).
+    """
     heights = triangles @ normal - offset
     below = heights <= 0
     count = below.sum(axis=1)
@@ -200,7 +214,7 @@ def _clip(triangles: Array, normal: Array, offset: float) -> Array:
 
 
 def _closed(piece: _Piece, triangles: Array) -> Array:
-    """The piece's points, and those corners of its cell that lie inside the solid.
+    """Return the piece's points, and those corners of its cell that lie inside the solid.
 
     Where cuts meet inside the solid the cell has a corner that no point of the surface spans.
     """
@@ -219,7 +233,9 @@ def _closed(piece: _Piece, triangles: Array) -> Array:
 
 
 def _coarser(triangles: Array) -> Array:
-    """At most some thousand triangles: corners are moved onto an ever coarser grid, and what vanishes is dropped."""
+    """Simplify to at most some thousand triangles: corners are moved onto an ever coarser grid, and
+    what vanishes is dropped.
+    """
     cells = 256
     low, size = triangles.min(axis=(0, 1)), float(np.ptp(triangles, axis=(0, 1)).max())
     while len(triangles) > _MOST_TRIANGLES:
@@ -239,7 +255,9 @@ def _coarser(triangles: Array) -> Array:
 
 
 def _grown(cells: list[Array], vertices: Array) -> list[Array]:
-    """The points of the pieces, and to the nearest of them each corner of the mesh that lies outside of all."""
+    """Return the points of the pieces, and to the nearest of them add each corner of the mesh that
+    lies outside of all.
+    """
     distances = np.empty((len(cells), len(vertices)))
     for row, points in zip(distances, cells, strict=True):
         row[:] = -np.inf
@@ -256,7 +274,9 @@ def _grown(cells: list[Array], vertices: Array) -> list[Array]:
 
 
 def _winding(point: Array, triangles: Array) -> float:
-    """How often the surface winds around a point: 1 inside, 0 outside, between them near a hole (Jacobson 2013)."""
+    """Compute the winding number of the surface around a point: 1 inside, 0 outside, between them
+    near a hole (Jacobson 2013).
+    """
     a, b, c = (triangles - point).transpose(1, 0, 2)
     la, lb, lc = (np.linalg.norm(edge, axis=1) for edge in (a, b, c))
     top = np.einsum("ij,ij->i", a, np.cross(b, c))

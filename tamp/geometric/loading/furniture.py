@@ -1,7 +1,7 @@
 """Parametric furniture, built of boxes, with the surfaces and cavities that follow from it.
 
-The frame is on the floor under the centre: x along the width of the front, y the depth, the front faces -y, z up.
-Sizes are outer sizes [width, depth, height] in metres.
+The frame is on the floor under the centre: x along the width of the front, y the depth, the front
+faces -y, z up. Sizes are outer sizes [width, depth, height] in metres.
 """
 
 from __future__ import annotations
@@ -123,13 +123,17 @@ FURNITURE: Mapping[str, Kind] = {
     "cupboard": Kind(_cupboard, ("compartments", "thickness", "back", "plinth")),
     "open_box": Kind(_open_box, ("thickness",)),
 }
-"""Builders by name. Each raises ValueError, with a sentence for the user, when the boards leave no room."""
+"""Builders by name. Each raises ValueError, with a sentence for the user, when the boards leave no
+room.
+"""
 
 
 def _carcass(
     size: Size, options: Options, back: bool
 ) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
-    """Sides, boards and dividers, and the compartments (floor's centre, inner size): bottom up, then left to right."""
+    """Build sides, boards and dividers, and the compartments (floor's centre, inner size): bottom
+    up, then left to right.
+    """
     width, depth, height = size
     board, foot, rows, columns = (
         options.thickness or 0.02,
@@ -170,7 +174,7 @@ def _carcass(
 
 
 def _board(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Part:
-    """A box between limits."""
+    """Return a box between limits."""
     size = (x[1] - x[0], y[1] - y[0], z[1] - z[0])
     return Part(Box(size), _at(math.fsum(x) / 2, math.fsum(y) / 2, math.fsum(z) / 2))
 

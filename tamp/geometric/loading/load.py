@@ -34,7 +34,8 @@ class LoadedProblem:
         drawn: The mesh files that are only drawn, which no plan depends on.
         warnings: What was repaired or looks odd, one sentence each.
         lines: 1-based line of each body and of `robot`, for later errors about them.
-        entry_lines: The same of all entries of the file and of each of the `samplers`, by the keys that lead there.
+        entry_lines: The same of all entries of the file and of each of the `samplers`, by the keys
+            that lead there.
     """
 
     path: Path
@@ -51,7 +52,9 @@ class LoadedProblem:
     entry_lines: Mapping[tuple[str, ...], int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
-        """An error about this problem, or about one of its bodies or its `robot`, with file and line."""
+        """Return an error about this problem, or about one of its bodies or its `robot`, with file
+        and line.
+        """
         return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
 
     def line_of(self, *keys: str) -> int | None:
@@ -156,7 +159,9 @@ def _arm(node: Node, model: str) -> tuple[float, ...]:
 
 
 def _check_names(drafts: Mapping[str, Draft]) -> None:
-    """All share one space of names, in which case does not count (PDDL's rule); one place may be named as its body."""
+    """Check that all names are unique: they share one space, in which case does not count (PDDL's
+    rule); one place may be named as its body.
+    """
     owners = {"robot": "the robot", FLOOR: "the floor"}
     for name, draft in drafts.items():
         if name.lower() in owners:

@@ -1,4 +1,6 @@
-"""The triangles in a mesh file, whatever is wrong with it: read with limits, and by rules that name what they miss."""
+"""The triangles in a mesh file, whatever is wrong with it: read with limits, and by rules that name
+what they miss.
+"""
 
 from __future__ import annotations
 
@@ -45,10 +47,12 @@ _PLY_SIZES = {
 
 
 def read_triangles(path: Path) -> Triangles:
-    """Vertices (n, 3) as the file has them and faces (m, 3); COLLADA's units and nodes are applied, no axis is turned.
+    """Read vertices (n, 3) as the file has them and faces (m, 3); COLLADA's units and nodes are
+    applied, no axis is turned.
 
     Raises:
-        InputError: Not a mesh of its format, cut off, too large, empty, a corner that does not exist.
+        InputError: Not a mesh of its format, cut off, too large, empty, a corner that does not
+            exist.
     """
     name = path.name
     reader = _READERS.get(path.suffix.lower())
@@ -123,7 +127,9 @@ def _ply(content: bytes, path: Path) -> Triangles:
 
 
 def _ply_row(header: bytes, element: bytes) -> int:
-    """The fewest bytes that a row of an element takes: in text a digit and a blank for each number."""
+    """Compute the fewest bytes that a row of an element takes: in text a digit and a blank for each
+    number.
+    """
     rows = header.decode("latin-1").split("element")
     own = next((row for row in rows if row.split()[:1] == [element.decode("latin-1")]), "")
     properties = [line.split() for line in own.splitlines() if line.strip().startswith("property")]
@@ -216,7 +222,8 @@ def check_gltf(content: bytes, name: str) -> None:
 
 
 class Beside:
-    """What trimesh asks for the files that a mesh names: only regular ones of a modest size, in the mesh's folder.
+    """What trimesh asks for the files that a mesh names: only regular ones of a modest size, in the
+    mesh's folder.
 
     Args:
         folder: The mesh's folder.
@@ -226,7 +233,8 @@ class Beside:
         self._folder = folder.resolve()
 
     def get(self, name: str) -> bytes:
-        """The content of a file beside the mesh, or below; text is made ASCII where its suffix says that it is text.
+        """Return the content of a file beside the mesh, or below; text is made ASCII where its
+        suffix says that it is text.
 
         Raises:
             InputError: It is elsewhere, no regular file, or too large.
@@ -241,12 +249,14 @@ class Beside:
         return self.get(name)
 
     def namespaced(self, namespace: str) -> Beside:
-        """The same for a folder below."""
+        """Return the same for a folder below."""
         return Beside(self._folder / namespace)
 
 
 def ascii_text(content: bytes) -> bytes:
-    """Text with only ASCII in it: names and comments in any encoding lose their other letters, numbers nothing."""
+    """Return the text with only ASCII in it: names and comments in any encoding lose their other
+    letters, numbers nothing.
+    """
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         content = content.decode("utf-16", errors="replace").encode("utf-8")
     content = content.removeprefix(b"\xef\xbb\xbf")

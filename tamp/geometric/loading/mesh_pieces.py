@@ -28,15 +28,18 @@ _ONE_HULL = 1.15
 def mesh_pieces(
     path: Path, scale: Scale, turned: Quaternion | None = None
 ) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
-    """Convex pieces that contain the mesh, in metres in the file's frame, and what had to be repaired.
+    """Return the convex pieces that contain the mesh, in metres in the file's frame, and what had
+    to be repaired.
 
     Args:
         path: The mesh file.
         scale: Factors that make it metres.
-        turned: The orientation (xyzw) of the file's frame in the one in which the pieces are wanted; None for the same.
+        turned: The orientation (xyzw) of the file's frame in the one in which the pieces are
+            wanted; None for the same.
 
-    One hull when it is at most 15 % larger than the mesh. The first call takes a second or two; its result is kept in
-    the cache folder under the file's hash, and a later call takes a millisecond. Shipped meshes come with their pieces.
+    One hull when it is at most 15 % larger than the mesh. The first call takes a second or two; its
+    result is kept in the cache folder under the file's hash, and a later call takes a millisecond.
+    Shipped meshes come with their pieces.
 
     Raises:
         InputError: The file is missing or no usable mesh.
@@ -54,7 +57,7 @@ def mesh_pieces(
 
 
 def pieces_name(path: Path, scale: Scale, turned: Quaternion | None = None) -> str:
-    """The name of the file that keeps the pieces of a mesh at a scale.
+    """Return the name of the file that keeps the pieces of a mesh at a scale.
 
     Raises:
         InputError: The mesh cannot be read.
@@ -68,7 +71,7 @@ def pieces_name(path: Path, scale: Scale, turned: Quaternion | None = None) -> s
 def compute_pieces(
     path: Path, scale: Scale, turned: Quaternion | None = None
 ) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
-    """The same, computed anew."""
+    """Compute the same pieces anew."""
     from scipy.spatial import ConvexHull, QhullError
 
     from tamp.geometric.loading.decomposition import decompose
@@ -97,14 +100,16 @@ def compute_pieces(
 
 
 def _within(points: Array, low: Array, high: Array) -> Array:
-    """A flat piece was made 1 mm thick: it is moved so that it does not stand out of the mesh's box."""
+    """Move a flat piece, which was made 1 mm thick, so that it does not stand out of the mesh's
+    bounding box.
+    """
     size = np.ptp(points, axis=0)
     move = np.maximum(low - points.min(axis=0), 0.0) - np.maximum(points.max(axis=0) - high, 0.0)
     return points + np.where(size <= high - low, move, 0.0)
 
 
 def packed(hulls: tuple[Hull, ...], warnings: tuple[str, ...]) -> bytes:
-    """The content of a file of pieces: plain arrays, no pickles."""
+    """Return the content of a file of pieces: plain arrays, no pickles."""
     stream = io.BytesIO()
     np.savez(
         stream,

@@ -42,7 +42,8 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
         scale: Factors that make it metres; negative ones mirror it.
 
     Raises:
-        InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of units.
+        InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of
+            units.
     """
     import trimesh
 
@@ -59,7 +60,9 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
 
 
 def _closed(name: str, mesh: Any) -> MeshSurface:
-    """Merge equal corners; where the surface is open then, repair it as far as that goes, and say so."""
+    """Merge equal corners; where the surface is open then, repair it as far as that goes, and say
+    so.
+    """
     mesh = _merged(mesh, None)
     if not len(mesh.faces):
         raise InputError(f"the mesh '{name}' is degenerate: all its triangles have no area")
@@ -95,7 +98,9 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
 
 
 def _merged(mesh: Any, digits: int | None) -> Any:
-    """One corner where several are equal (to so many digits), without the triangles that this makes empty."""
+    """Merge equal corners into one (to so many digits), without the triangles that this makes
+    empty.
+    """
     mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=digits)
     a, b, c = mesh.faces.T
     mesh.update_faces((a != b) & (b != c) & (c != a))
@@ -104,7 +109,8 @@ def _merged(mesh: Any, digits: int | None) -> Any:
 
 
 def open_edges(faces: NDArray[np.integer]) -> int:
-    """Edges that are not run through as often forwards as backwards; 0 for a closed, consistently turned surface.
+    """Count the boundary edges, not run through as often forwards as backwards; 0 for a closed
+    (watertight), consistently turned surface.
 
     An edge at which two closed bodies touch belongs to four triangles and is not open.
     """

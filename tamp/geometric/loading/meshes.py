@@ -35,8 +35,10 @@ class Mesh:
         warnings: What had to be repaired or guessed.
         visuals: What to draw in place of the parts.
         colour: The URDF's colour, when it gives one.
-        sources: The mesh files among several parts: file, factors that make it metres, its pose in the body.
-        mass, center_of_mass, friction: The URDF's, when it gives them: kilograms, metres in the file's frame.
+        sources: The mesh files among several parts: file, factors that make it metres, its pose in
+            the body.
+        mass, center_of_mass, friction: The URDF's, when it gives them: kilograms, metres in the
+            file's frame.
     """
 
     parts: tuple[Part, ...]
@@ -51,7 +53,8 @@ class Mesh:
 
 
 def find_mesh(name: str, folder: Path) -> Path:
-    """The file that `mesh:` means: relative to the problem's folder or its `assets/`, shipped, or in `pybullet_data/`.
+    """Find the file that `mesh:` means: relative to the problem's folder or its `assets/`, shipped,
+    or in `pybullet_data/`.
 
     Raises:
         InputError: There is no such file.
@@ -83,7 +86,9 @@ def find_mesh(name: str, folder: Path) -> Path:
 
 
 def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
-    """Names of mesh files in the folders in which the named one would be, as they would be named."""
+    """List the mesh files in the folders in which the named one would be, as they would be
+    named.
+    """
     found: set[str] = set()
     for folder in (root / path.parent for root in roots):
         if not folder.is_dir():
@@ -96,14 +101,15 @@ def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
 
 
 def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
-    """A mesh file as convex parts in the file's frame.
+    """Load a mesh file as convex parts in the file's frame.
 
     Args:
         path: An OBJ, STL, PLY, COLLADA, glTF or URDF file.
         scale: Factors for the file's x, y, z that make it metres; a negative one mirrors it.
 
     Raises:
-        InputError: The file is no usable mesh; without the line of the problem file, which the caller knows.
+        InputError: The file is no usable mesh; without the line of the problem file, which the
+            caller knows.
     """
     if path.suffix.lower() == ".urdf":
         return _load_urdf(path, scale)
@@ -119,7 +125,9 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
 
 
 def mesh_triangles(mesh: Mesh) -> Array | None:
-    """The triangles (n, 3, 3) of the mesh files among several parts, in the body's frame, metres; None without any."""
+    """Return the triangles (n, 3, 3) of the mesh files among several parts, in the body's frame,
+    metres; None without any.
+    """
     if not mesh.sources:
         return None
     from tamp.geometric.loading.mesh_file import read_triangles
@@ -133,7 +141,9 @@ def mesh_triangles(mesh: Mesh) -> Array | None:
 
 
 def _load_urdf(path: Path, scale: Scale) -> Mesh:
-    """Every collision element is a part or several; its visual elements are drawn."""
+    """Load a URDF file: every collision element is a part or several; its visual elements are
+    drawn.
+    """
     factor = scale[0]
     if scale != (factor, factor, factor) or factor < 0:
         raise InputError(
@@ -170,7 +180,9 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
 
 
 def _parts(element: Element, factor: float) -> tuple[list[Part], tuple[str, ...]]:
-    """The convex parts of an element in a body that is scaled by a factor, and what had to be repaired."""
+    """Return the convex parts of an element in a body that is scaled by a factor, and what had to
+    be repaired.
+    """
     if element.shape is not None:
         return [scale_part(part, factor) for part in primitive_parts(element)], ()
     if element.mesh is None:
@@ -185,7 +197,7 @@ def _parts(element: Element, factor: float) -> tuple[list[Part], tuple[str, ...]
 
 
 def primitive_parts(element: Element) -> list[Part]:
-    """The parts of an element that is no mesh: several for a capsule."""
+    """Return the parts of an element that is no mesh: several for a capsule."""
     shape, pose = element.shape, element.pose
     if not isinstance(shape, Capsule):
         return [] if shape is None else [Part(shape, pose)]
@@ -193,7 +205,9 @@ def primitive_parts(element: Element) -> list[Part]:
 
 
 def capsule_parts(radius: float, length: float, pose: Pose = Pose()) -> list[Part]:
-    """A cylinder of that length along z, and a ball at each of its ends. Metres."""
+    """Return the parts of a capsule: a cylinder of that length along z, and a ball at each of its
+    ends. Metres.
+    """
     ends = (Pose((0.0, 0.0, side * length / 2)) for side in (-1, 1))
     return [
         Part(Cylinder(radius, length), pose),
@@ -216,7 +230,9 @@ def _visual(element: Element, factor: float) -> Visual:
 def _centre(
     path: Path, described: UrdfObject, parts: tuple[Part, ...], factor: float
 ) -> tuple[tuple[float, float, float] | None, tuple[str, ...]]:
-    """The centre of mass of the scaled body, unless it lies out of the body's box, where none can be."""
+    """Return the centre of mass of the scaled body, unless it lies out of the body's box, where
+    none can be.
+    """
     if described.center_of_mass is None:
         return None, ()
     x, y, z = (factor * value for value in described.center_of_mass)
@@ -230,7 +246,7 @@ def _centre(
 
 
 def _along_axes(rotation: Array) -> bool:
-    """Whether a rotation (3, 3) maps axes onto axes."""
+    """Check whether a rotation (3, 3) maps axes onto axes."""
     return bool(np.all(np.minimum(np.abs(rotation), np.abs(np.abs(rotation) - 1)) < 1e-6))
 
 

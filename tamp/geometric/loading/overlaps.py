@@ -31,7 +31,8 @@ def check_overlaps(problem: LoadedProblem) -> None:
     """Refuse a problem in which bodies overlap by more than 1 mm at the start.
 
     Raises:
-        InputError: Two bodies overlap; the deepest of the first pairs is named, at the line of the later one.
+        InputError: Two bodies overlap; the deepest of the first pairs is named, at the line of the
+            later one.
     """
     found = islice(find_overlaps(problem.scene), _ENOUGH)
     deepest = max(found, key=lambda overlap: overlap.depth, default=None)
@@ -46,9 +47,11 @@ def check_overlaps(problem: LoadedProblem) -> None:
 
 
 def find_overlaps(scene: Scene) -> Iterator[Overlap]:
-    """Pairs of bodies that lie more than 1 mm in each other at the start, in the scene's order.
+    """List the pairs of bodies that lie more than 1 mm in each other at the start, in the scene's
+    order.
 
-    The depth is the least distance by which a convex part must move to leave another (FCL on the exact shapes).
+    The depth is the least distance by which a convex part must move to leave another (FCL on the
+    exact shapes).
     """
     bodies = list(scene.bodies.values())
     limits = [bounds(body.parts, body.pose) for body in bodies]
@@ -66,7 +69,9 @@ def find_overlaps(scene: Scene) -> Iterator[Overlap]:
 
 
 def _depth(first: Body, second: Body) -> float:
-    """The deepest penetration of any part of one body by any part of the other; 0 when they are apart."""
+    """Compute the deepest penetration of any part of one body by any part of the other; 0 when they
+    are apart.
+    """
     depth = 0.0
     for part in first.parts:
         low, high = bounds((part,), first.pose)

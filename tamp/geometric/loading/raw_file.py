@@ -8,14 +8,15 @@ from tamp.errors import InputError
 
 
 def read_raw(path: Path, most: int) -> bytes:
-    """All bytes of a regular file.
+    """Read all bytes of a regular file.
 
     Args:
         path: The file.
         most: Bytes beyond which it is refused, unread.
 
     Raises:
-        InputError: It is missing, no regular file (a device or a pipe would never end), unreadable or too large.
+        InputError: It is missing, no regular file (a device or a pipe would never end), unreadable
+            or too large.
     """
     name = path.name if len(path.name) <= 80 else f"{path.name[:77]}..."
     try:

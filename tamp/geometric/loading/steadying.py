@@ -1,4 +1,6 @@
-"""Whether the bodies of a problem stand still at the start: they are settled, or refused with the reason."""
+"""Static stability at the start: the bodies of a problem are settled, or refused with the
+reason.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
 
 TIP = math.radians(20.0)
-"""A body that does not stand as it was given is tipped at most this far onto the face beside, radians."""
+"""A body that does not stand as it was given is tipped at most this far onto the face beside,
+radians.
+"""
 
 TOUCHING = 0.0005
 """Metres: points no higher than this above the lowest are down."""
@@ -36,8 +40,8 @@ def steady(
 ) -> tuple[dict[str, Body], tuple[str, ...]]:
     """Compare how movable bodies stand with what the problem says, by the judge's rule.
 
-    A body given by `on:` that would tip over a little is laid onto the face beside; one given by its pose gets the
-    bodies that carry it, and a warning when nothing does.
+    A body given by `on:` that would tip over a little is laid onto the face beside; one given by
+    its pose gets the bodies that carry it, and a warning when nothing does.
 
     Returns:
         The bodies in their order, and warnings.
@@ -70,7 +74,7 @@ def steady(
 
 
 def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | None:
-    """Why a body does not stand where the problem says; None when it does."""
+    """Explain why a body does not stand where the problem says; None when it does."""
     place = _place(body.support, bodies)
     if place is None:  # the floor, or a movable body
         return footing.why
@@ -98,7 +102,9 @@ def _place(support: str | None, bodies: Mapping[str, Body]) -> Surface | Cavity 
 def _tipped(
     body: Body, footing: Footing, ground: Ground, warnings: list[str]
 ) -> tuple[Body, Footing]:
-    """The body on the face that it tips onto, when that is near and carries it; itself otherwise."""
+    """Return the body on the face that it tips onto, when that is near and carries it; itself
+    otherwise.
+    """
     turn = tip(body)
     if turn is None:
         return body, footing
@@ -120,7 +126,9 @@ def _tipped(
 
 
 def tip(body: Body) -> Array | None:
-    """The rotation (3, 3), in the world, by which a body on a plane rolls until it lies still; None beyond TIP."""
+    """Compute the rotation (3, 3), in the world, by which a body on a plane rolls until it lies
+    still; None beyond TIP.
+    """
     points = body.pose.rotation @ body_points(body).T
     centre = body.pose.rotation @ center_of_mass(body)
     turn = np.eye(3)
@@ -148,7 +156,9 @@ def tip(body: Body) -> Array | None:
 
 
 def _edge(centre: Array, feet: Array) -> tuple[Array, Array]:
-    """The point (2,) of the feet about which the body tips, and the axis (2,): along the line that separates most."""
+    """Find the point (2,) of the feet about which the body tips, and the axis (2,): along the line
+    that separates most.
+    """
     angles = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
     directions = np.stack([np.cos(angles), np.sin(angles)])
     beyond = centre @ directions - (feet @ directions).max(axis=0)
@@ -157,7 +167,7 @@ def _edge(centre: Array, feet: Array) -> tuple[Array, Array]:
 
 
 def _about(axis: Array, angle: float) -> Array:
-    """The rotation (3, 3) by an angle about a horizontal unit vector (2,)."""
+    """Return the rotation (3, 3) by an angle about a horizontal unit vector (2,)."""
     x, y = axis
     K = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K

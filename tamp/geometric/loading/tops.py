@@ -1,4 +1,6 @@
-"""The highest level face of a body, on which others may stand: over all its parts, at their poses."""
+"""The highest level face of a body, on which others may stand: over all its parts, at their
+poses.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,9 @@ _GRID = 24
 
 @dataclass(frozen=True)
 class _Face:
-    """A level face of a part, z up: a convex polygon (n, 2) seen from above at a height, its sides turned by `yaw`."""
+    """A level face of a part, z up: a convex polygon (n, 2) seen from above at a height, its sides
+    turned by `yaw`.
+    """
 
     corners: Array
     height: float
@@ -44,7 +48,9 @@ class _Face:
 
 @dataclass(frozen=True)
 class _Rectangle:
-    """A level rectangle: middle, sides along x and y of a frame turned by `yaw`, height. Metres, radians."""
+    """A level rectangle: middle, sides along x and y of a frame turned by `yaw`, height. Metres,
+    radians.
+    """
 
     x: float
     y: float
@@ -56,17 +62,17 @@ class _Rectangle:
 def top_of(
     name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None
 ) -> Surface | None:
-    """The highest level rectangle on which another body may stand, as the surface `name`.
+    """Find the highest level rectangle on which another body may stand, as the surface `name`.
 
-    Faces at one height count together, what stands on them is left out, and a face that is at least 5 cm wide is
-    preferred to narrower ones above it (a chair's seat to the edge of its back).
+    Faces at one height count together, what stands on them is left out, and a face that is at least
+    5 cm wide is preferred to narrower ones above it (a chair's seat to the edge of its back).
 
     Args:
         name: Of the body and the surface.
         parts: In the body's frame.
         stance: How the body is turned when it stands; a turn about the vertical does not matter.
-        triangles: (n, 3, 3) in the body's frame, of the meshes among the parts. Several hulls may span air, as over a
-            cup: their faces count only where triangles lie in them.
+        triangles: (n, 3, 3) in the body's frame, of the meshes among the parts. Several hulls may
+            span air, as over a cup: their faces count only where triangles lie in them.
 
     Returns:
         The surface in the body's frame, its z up in that stance; None when no face is level.
@@ -113,7 +119,7 @@ def _highest(
 
 
 def _clearance(place: _Rectangle, boxes: list[tuple[Array, Array]]) -> float:
-    """The free height above a rectangle, metres; infinite under the sky."""
+    """Compute the free height above a rectangle, metres; infinite under the sky."""
     cos, sin = math.cos(place.yaw), math.sin(place.yaw)
     into = np.array([[cos, sin], [-sin, cos]])
     free = math.inf
@@ -179,7 +185,7 @@ def _hull_face(shape: Hull, rotation: Array, position: Array) -> Iterator[_Face]
 
 
 def _solid(face: _Face, triangles: Array | None) -> bool:
-    """Whether most of a hull's face is the surface of the mesh and not a lid over air."""
+    """Check whether most of a hull's face is the surface of the mesh and not a lid over air."""
     if triangles is None:
         return False
     near = triangles[np.all(np.abs(triangles[:, :, 2] - face.height) < _LID, axis=1)][:, :, :2]
@@ -202,7 +208,9 @@ def _solid(face: _Face, triangles: Array | None) -> bool:
 def _largest(
     level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
 ) -> _Rectangle | None:
-    """The largest free rectangle in the union of level faces, its sides along one of theirs."""
+    """Find the largest free rectangle in the union of level faces, its sides along one of
+    theirs.
+    """
     standing = [
         (low, high) for low, high in boxes if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM
     ]  # fmt: skip
@@ -244,7 +252,8 @@ def _flat_box(low: Array, high: Array, into: Array) -> Array:
 
 
 def _inscribed(polygon: Array) -> Array:
-    """The largest rectangle along the axes in a convex polygon (n, 2), counter-clockwise or not: x0, x1, y0, y1.
+    """Find the largest inscribed rectangle along the axes in a convex polygon (n, 2),
+    counter-clockwise or not: x0, x1, y0, y1.
 
     Both bounds of y are taken at the sides of the rectangle, where a convex polygon is narrowest.
     """
@@ -259,7 +268,7 @@ def _inscribed(polygon: Array) -> Array:
 
 
 def _sides(polygon: Array, xs: Array) -> tuple[Array, Array]:
-    """Lowest and highest y of a convex polygon at each x."""
+    """Compute lowest and highest y of a convex polygon at each x."""
     floor, ceiling = np.full(len(xs), np.inf), np.full(len(xs), -np.inf)
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         within = (xs >= min(ax, bx) - 1e-12) & (xs <= max(ax, bx) + 1e-12)
@@ -271,7 +280,9 @@ def _sides(polygon: Array, xs: Array) -> tuple[Array, Array]:
 
 
 def _union(rectangles: Array, blocked: Array) -> tuple[float, float, float, float]:
-    """The largest rectangle in a union of rectangles (n, 4: x0, x1, y0, y1) and out of others (m, 4)."""
+    """Find the largest rectangle in a union of rectangles (n, 4: x0, x1, y0, y1) and out of others
+    (m, 4).
+    """
     xs = _lines(np.concatenate([rectangles[:, :2].ravel(), blocked[:, :2].ravel()]))
     ys = _lines(np.concatenate([rectangles[:, 2:].ravel(), blocked[:, 2:].ravel()]))
     free = np.zeros((len(xs) - 1, len(ys) - 1), dtype=bool)
@@ -304,6 +315,6 @@ def _union(rectangles: Array, blocked: Array) -> tuple[float, float, float, floa
 
 
 def _lines(values: Array) -> Array:
-    """Sorted values, those that are nearer than a hundredth of a millimetre counted once."""
+    """Sort values, those that are nearer than a hundredth of a millimetre counted once."""
     ordered = np.unique(values)
     return ordered[np.concatenate([[True], np.diff(ordered) > 1e-5])]

@@ -31,7 +31,9 @@ class UnknownGeometry(InputError):
 
 @dataclass(frozen=True)
 class Capsule:
-    """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the cylinder alone."""
+    """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the
+    cylinder alone.
+    """
 
     radius: float
     length: float
@@ -57,7 +59,7 @@ class Element:
 
 
 def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
-    """The visual elements of all links of a URDF file, by the links' names.
+    """Read the visual elements of all links of a URDF file, by the links' names.
 
     Raises:
         InputError: Not XML, or a geometry that is unknown, not finite or not positive.
@@ -73,10 +75,12 @@ def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
 def elements(
     path: Path, link: ElementTree.Element, kind: str, colours: Mapping[str, Colour] | None = None
 ) -> tuple[Element, ...]:
-    """The `collision` or `visual` elements of a link that have a geometry; `colours`: of the materials by name.
+    """Read the `collision` or `visual` elements of a link that have a geometry; `colours`: of the
+    materials by name.
 
     Raises:
-        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist; too many.
+        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist; too
+            many.
     """
     found: list[Element] = []
     for element in link.findall(kind)[: MOST_ELEMENTS + 1]:
@@ -94,7 +98,7 @@ def elements(
 
 
 def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
-    """The pose in an element's <origin xyz rpy>, the identity where there is none.
+    """Read the pose in an element's <origin xyz rpy>, the identity where there is none.
 
     Raises:
         InputError: Not three finite numbers.
@@ -105,7 +109,9 @@ def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
 
 
 def named_colours(root: ElementTree.Element) -> dict[str, Colour]:
-    """The colours of a file's materials by name: the file's own first, then those of its links' visual elements."""
+    """Return the colours of a file's materials by name: the file's own first, then those of its
+    links' visual elements.
+    """
     found: dict[str, Colour] = {}
     for material in (*root.findall("material"), *root.findall("link/visual/material")):
         colour = _rgba(material)
@@ -156,7 +162,9 @@ def _element(
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
-    """Three factors, or one for all directions, which URDF does not provide for but files have."""
+    """Read three factors, or one for all directions, which URDF does not provide for but files
+    have.
+    """
     words = _numbers(path, mesh, "scale", None) if "scale" in mesh.attrib else (1.0,)
     if len(words) not in (1, 3) or 0.0 in words:
         text = mesh.get("scale", "")
@@ -168,7 +176,7 @@ def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
 
 
 def _mesh_file(path: Path, name: str) -> Path:
-    """A mesh beside the URDF, or `package://` somewhere above it."""
+    """Find a mesh beside the URDF, or `package://` somewhere above it."""
     if not name.strip():
         raise InputError(f"'{path.name}' has a mesh without a file name")
     name = name.strip().replace("\\", "/")  # as written on Windows

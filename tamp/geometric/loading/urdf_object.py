@@ -26,7 +26,8 @@ LARGEST_MASS = 1e6
 
 @dataclass(frozen=True)
 class UrdfObject:
-    """A body as a URDF file tells it, everything in the frame of its root link, metres and kilograms.
+    """A body as a URDF file tells it, everything in the frame of its root link, metres and
+    kilograms.
 
     Attributes:
         collisions: Its visual elements when the file gives no others.
@@ -51,8 +52,8 @@ def read_object(path: Path) -> UrdfObject:
     """Read a URDF file whose links form one tree.
 
     Raises:
-        InputError: Not XML, no link, links in several trees or in a circle, no geometry, a collision geometry that is
-            unknown, not finite, not positive or missing.
+        InputError: Not XML, no link, links in several trees or in a circle, no geometry, a
+            collision geometry that is unknown, not finite, not positive or missing.
     """
     root = read_xml(path)
     links: dict[str, ElementTree.Element] = {}
@@ -101,7 +102,9 @@ def read_object(path: Path) -> UrdfObject:
 def _link_poses(
     path: Path, root: ElementTree.Element, links: dict[str, ElementTree.Element]
 ) -> tuple[dict[str, Pose], list[str]]:
-    """T_root_link of every link, parents first, with all joints at 0, and what there is to say about the joints."""
+    """Compute T_root_link of every link, parents first, with all joints at 0 (forward kinematics),
+    and what there is to say about the joints.
+    """
     children: dict[str, list[tuple[str, Pose]]] = {name: [] for name in links}
     parents: dict[str, str] = {}
     held: list[str] = []
@@ -150,7 +153,7 @@ def _link_poses(
 def _collisions(
     path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
 ) -> list[Element]:
-    """The collision elements of all links in the root's frame."""
+    """List the collision elements of all links in the root's frame."""
     found: list[Element] = []
     for name, pose in poses.items():
         found += [_moved(pose, element) for element in elements(path, links[name], "collision")]
@@ -165,7 +168,7 @@ def _visuals(
     links: dict[str, ElementTree.Element],
     poses: dict[str, Pose],
 ) -> tuple[tuple[Element, ...], str]:
-    """The visual elements of all links, or none and the reason why they cannot be drawn."""
+    """List the visual elements of all links, or none and the reason why they cannot be drawn."""
     colours = named_colours(root)
     try:
         found = [
@@ -190,7 +193,7 @@ def _moved(pose: Pose, element: Element) -> Element:
 def _inertia(
     path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
 ) -> tuple[float | None, tuple[float, float, float] | None]:
-    """Mass and centre of mass of all links together; links without a mass weigh nothing."""
+    """Compute mass and centre of mass of all links together; links without a mass weigh nothing."""
     total, moment = 0.0, [0.0, 0.0, 0.0]
     for name, pose in poses.items():
         inertial = links[name].find("inertial")
@@ -213,7 +216,9 @@ def _inertia(
 def _friction(
     path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
 ) -> float | None:
-    """The first link's <lateral_friction> (or <friction>) in <contact>."""
+    """Read the friction coefficient: the first link's <lateral_friction> (or <friction>) in
+    <contact>.
+    """
     for name in poses:
         for tag in ("lateral_friction", "friction"):
             value = _value(path, links[name].find(f"contact/{tag}"))
@@ -227,7 +232,9 @@ def _friction(
 
 
 def _value(path: Path, element: ElementTree.Element | None) -> float | None:
-    """The finite number in an element's attribute `value`, or in its text; None without an element."""
+    """Read the finite number in an element's attribute `value`, or in its text; None without an
+    element.
+    """
     if element is None:
         return None
     text = (element.get("value") or element.text or "").strip()

@@ -1,4 +1,6 @@
-"""XML files as people have them: blank lines before the declaration, other encodings, something after the end."""
+"""XML files as people have them: blank lines before the declaration, other encodings, something
+after the end.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +24,10 @@ _BOMS = ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "
 
 
 def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
-    """The root element of an XML file.
+    """Read the root element of an XML file.
 
-    Text that is not of the encoding that it declares (UTF-8 when it declares none) is read as Latin-1: names of parts
-    and materials are all that can suffer.
+    Text that is not of the encoding that it declares (UTF-8 when it declares none) is read as
+    Latin-1: names of parts and materials are all that can suffer.
 
     Args:
         path: The file.
@@ -44,7 +46,9 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
 
 
 def _text(content: bytes) -> str:
-    """The text of the file without byte order mark, declaration, and blanks or zero bytes at its ends."""
+    """Return the text of the file without byte order mark, declaration, and blanks or zero bytes at
+    its ends.
+    """
     encoding = "utf-8"
     for mark, name in _BOMS:
         if content.startswith(mark):

@@ -34,7 +34,8 @@ _SHOWN = 60
 class Node:
     """A value of a YAML file: its place, its name, and readers that say what is wrong with it.
 
-    Words are taken as they are written, never as YAML 1.1 reads them: `on:` is a key, not the boolean true.
+    Words are taken as they are written, never as YAML 1.1 reads them: `on:` is a key, not the
+    boolean true.
 
     Args:
         node: PyYAML's node.
@@ -61,7 +62,7 @@ class Node:
         choices: Iterable[str] = (),
         remedy: str = "",
     ) -> InputError:
-        """An error about this value, to be raised by the caller."""
+        """Return an error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
         message = " ".join(
             message[:_LONGEST].split()
@@ -74,7 +75,7 @@ class Node:
     def mapping(
         self, allowed: Collection[str] | None = None, required: Collection[str] = ()
     ) -> dict[str, Node]:
-        """The entries of a mapping in the file's order.
+        """Return the entries of a mapping in the file's order.
 
         Args:
             allowed: The keys it may have; None when the keys are names chosen by the user.
@@ -100,7 +101,9 @@ class Node:
     def _entries(
         self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int
     ) -> dict[str, Node]:
-        """The entries of a mapping, with those that it merges; `known`: of the mappings merged before, by identity."""
+        """Return the entries of a mapping with those it merges; `known`: merged before, by
+        identity.
+        """
         if id(node) in known:
             found = known[id(node)]
             if found is None:
@@ -137,7 +140,7 @@ class Node:
         return entries
 
     def items(self, count: int | None = None) -> list[Node]:
-        """The entries of a list.
+        """Return the entries of a list.
 
         Raises:
             InputError: Not a list, or not of `count` entries.
@@ -153,7 +156,7 @@ class Node:
         ]
 
     def text(self, choices: Collection[str] | None = None, kind: str = "value") -> str:
-        """A word or a sentence.
+        """Read a word or a sentence.
 
         Raises:
             InputError: Not text, empty, or not among the choices.
@@ -170,7 +173,7 @@ class Node:
     def number(
         self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf
     ) -> float:
-        """A finite number.
+        """Read a finite number.
 
         Raises:
             InputError: Not a number, not finite, not positive, or outside of [low, high].
@@ -178,7 +181,7 @@ class Node:
         return self._checked(self.text(), positive, low, high)
 
     def integer(self, *, low: int, high: float = math.inf) -> int:
-        """A whole number in [low, high]."""
+        """Read a whole number in [low, high]."""
         value = self.number(low=low, high=high)
         if value != int(value):
             raise self.error(f"{value:g} is not a whole number")
@@ -187,14 +190,15 @@ class Node:
     def numbers(
         self, count: int, *, positive: bool = False, low: float = -math.inf
     ) -> tuple[float, ...]:
-        """A list of `count` finite numbers."""
+        """Read a list of `count` finite numbers."""
         return tuple(item.number(positive=positive, low=low) for item in self.items(count))
 
     def angle(self) -> float:
-        """An angle in radians, written `90 deg`, `1.57 rad` or as a plain number of radians.
+        """Read an angle in radians, written `90 deg`, `1.57 rad` or as a plain number of radians.
 
         Raises:
-            InputError: Not an angle, or a plain number beyond a full turn, which was surely meant in degrees.
+            InputError: Not an angle, or a plain number beyond a full turn, which was surely meant
+                in degrees.
         """
         text = self.text()
         unit = next((unit for unit in _UNITS if text.endswith(unit)), None)
@@ -210,23 +214,26 @@ class Node:
         return value
 
     def flag(self) -> bool:
-        """True or false."""
+        """Read a boolean: true or false."""
         value = self.text().lower()
         if value not in ("true", "yes", "false", "no"):
             raise self.error(f"'{_short(value)}' is neither true nor false")
         return value in ("true", "yes")
 
     def is_list(self) -> bool:
-        """Whether it is a list."""
+        """Check whether it is a list."""
         return isinstance(self._node, yaml.SequenceNode)
 
     def passage(self) -> Passage:
-        """Text exactly as it stands in the file, so that a parser can say line and column."""
+        """Return the text exactly as it stands in the file, so that a parser can say line and
+        column.
+        """
         text = self.text()
         start, end = self._node.start_mark, self._node.end_mark
         style = self._node.style if isinstance(self._node, yaml.ScalarNode) else None
         if style in ("|", ">"):
-            # The block's indicator stands on the line before its text, and what follows it is less indented.
+            # The block's indicator stands on the line before its text, and what follows it is less
+            # indented.
             below = self._source[start.line + 1 :]
             indent = next(_indent(line) for line in below if line.strip())
             block = list(
@@ -276,7 +283,7 @@ class Node:
 
 
 def read_yaml(file: Path) -> Node:
-    """The root of a YAML file with one document.
+    """Read the root of a YAML file with one document.
 
     Raises:
         InputError: It cannot be read, is not YAML, is empty, or holds a tag that is not plain data.
@@ -307,7 +314,7 @@ def read_yaml(file: Path) -> Node:
 
 
 def _check_depth(text: str, file: Path) -> None:
-    """Refuse what libyaml, which recurses over it, could not compose without overflowing the stack."""
+    """Refuse what libyaml could not compose without overflowing the stack, as it recurses."""
     depth = 0
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.CollectionStartEvent):
@@ -322,7 +329,7 @@ def _check_depth(text: str, file: Path) -> None:
 
 
 def _short(word: str) -> str:
-    """A word as it is told: not the megabyte that it may be."""
+    """Shorten a word to what is told of it: not the megabyte that it may be."""
     return word if len(word) <= _SHOWN else f"{word[:_SHOWN]}..."
 
 
@@ -331,7 +338,7 @@ def _indent(line: str) -> int:
 
 
 def _at(node: Node, error: InputError) -> InputError:
-    """The error moved to the line of a child."""
+    """Return the error moved to the line of a child."""
     error.line = node.line
     error.args = (error.at(None).args[0],)
     return error

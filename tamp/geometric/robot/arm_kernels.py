@@ -1,7 +1,9 @@
-"""Compiled kinematics of an arm of seven revolute joints about z: FK, the check of IK solutions, path following.
+"""Compiled kinematics of an arm of seven revolute joints about z: FK, the check of IK solutions,
+path following.
 
-The arm is given as `origins` (7, 4, 4), each joint's frame at 0 in the one before (the first in the base), and
-`T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when it is imported first.
+The arm is given as `origins` (7, 4, 4), each joint's frame at 0 in the one before (the first in the
+base), and `T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when
+it is imported first.
 """
 
 from __future__ import annotations
@@ -32,7 +34,9 @@ def _product(A, B, C):
 
 @njit(**INNER)
 def frames(origins, T_flange_tool, q, joints, tool):
-    """Write the joints' frames (7, 3, 4) and the tool's (3, 4) at angles q (7,) into the last two arguments."""
+    """Write the joints' frames (7, 3, 4) and the tool's (3, 4) at angles q (7,) into the last two
+    arguments.
+    """
     for row in range(3):
         for column in range(4):
             joints[0, row, column] = origins[0, row, column]
@@ -49,10 +53,11 @@ def frames(origins, T_flange_tool, q, joints, tool):
 
 @njit(**INNER)
 def _error(tool, target, error):
-    """Write the twist from tool to target into error (6,), position above rotation, and return its largest entry.
+    """Write the twist from tool to target into error (6,), position above rotation, and return its
+    largest entry.
 
-    The rotation's part is half the sum of the axes' cross products: right to first order, and for less than a half turn
-    zero only at the target.
+    The rotation's part is half the sum of the axes' cross products: right to first order, and for
+    less than a half turn zero only at the target.
     """
     for r in range(3):
         error[r] = target[r, 3] - tool[r, 3]
@@ -72,7 +77,8 @@ def _error(tool, target, error):
 
 @njit(**INNER)
 def _solve(A, b):
-    """Overwrite b (6,) by the x of A x = b for a symmetric positive definite A (6, 6), overwritten as well.
+    """Overwrite b (6,) by the x of A x = b for a symmetric positive definite A (6, 6), overwritten
+    as well.
 
     Written out because numba's linalg would import scipy.
     """
@@ -94,7 +100,9 @@ def _solve(A, b):
 
 @njit(**INNER)
 def _step(J, error, q, lower, upper, drift, step):
-    """Write into step (7,) a damped least-squares step; joints that it would push out of their limits are frozen."""
+    """Write into step (7,) a damped least-squares step; joints that it would push out of their
+    limits are frozen.
+    """
     active, wish = np.empty(7), np.empty(7)
     for i in range(7):
         active[i] = 1.0
@@ -137,9 +145,11 @@ def _step(J, error, q, lower, upper, drift, step):
     no_cfunc_wrapper=True,
 )
 def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, tolerance):
-    """The candidates (n, 7), turned by full turns into the limits, whose FK meets the target (4, 4). Shape (m, 7).
+    """Return the candidates (n, 7), turned by full turns into the limits, whose FK meets the target
+    (4, 4). Shape (m, 7).
 
-    The tolerance holds for the position's distance in metres and for the largest difference of a rotation's entries.
+    The tolerance holds for the position's distance in metres and for the largest difference of a
+    rotation's entries.
     """
     kept = np.empty((len(candidates), 7))
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
@@ -171,11 +181,13 @@ def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, toleran
     no_cfunc_wrapper=True,
 )
 def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
-    """Joint angles (k, 7) along the targets (k, 4, 4), each from the one before by damped Newton steps.
+    """Follow the targets (k, 4, 4) by joint angles (k, 7), each from the one before by damped
+    Newton steps.
 
-    Returns the path and the number of targets reached: k, or less where a target could not be met within the limits
-    or without a joint moving more than `jump` from one to the next.
-    The spare freedom drifts towards the middle of the joints' ranges (Liegeois 1977); a joint at its limit is frozen.
+    Returns the path and the number of targets reached: k, or less where a target could not be met
+    within the limits or without a joint moving more than `jump` from one to the next. The spare
+    freedom drifts towards the middle of the joints' ranges (Liegeois 1977); a joint at its limit is
+    frozen.
     """
     path = np.empty((len(targets), 7))
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))

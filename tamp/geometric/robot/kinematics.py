@@ -12,7 +12,8 @@ from tamp.geometric.scene.pose import Array, Pose
 
 
 class Kinematics:
-    """FK and Jacobians by pinocchio, on a model composed of the base's x, y, yaw and the arm's joints.
+    """FK and Jacobians by pinocchio, on a model composed of the base's x, y, yaw and the arm's
+    joints.
 
     One object per robot: it owns pinocchio's buffers, so it must not be shared between threads.
     Configurations are [base x, base y, base yaw, q1..q7], metres and radians.
@@ -54,7 +55,7 @@ class Kinematics:
         )
 
     def link_poses(self, conf: Array, opening: float) -> dict[str, Array]:
-        """T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
+        """Compute T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
         data, links = self._data, self.robot.links
         pinocchio.forwardKinematics(self._model, data, conf)
         T_world_base = data.oMi[3].homogeneous
@@ -71,22 +72,24 @@ class Kinematics:
         return poses
 
     def tool(self, conf: Array) -> Array:
-        """T_world_tool, shape (4, 4)."""
+        """Compute T_world_tool, shape (4, 4)."""
         pinocchio.forwardKinematics(self._model, self._data, conf)
         return pinocchio.updateFramePlacement(self._model, self._data, self._tool).homogeneous
 
     def arm_tool(self, arm: Array) -> Array:
-        """T_base_tool, shape (4, 4), at joint angles (7,)."""
+        """Compute T_base_tool, shape (4, 4), at joint angles (7,)."""
         return self.tool(np.concatenate([(0.0, 0.0, 0.0), arm]))
 
     def jacobian(self, conf: Array) -> Array:
-        """Of the tool by conf, shape (6, 10), in the world's axes: the tool origin's velocity above the angular one."""
+        """Compute the Jacobian of the tool by conf, shape (6, 10), in the world's axes: the tool
+        origin's velocity above the angular one.
+        """
         frame = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
         return pinocchio.computeFrameJacobian(self._model, self._data, conf, self._tool, frame)
 
 
 def base_matrix(base: Array) -> Array:
-    """T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
+    """Return T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
     cos, sin = math.cos(base[2]), math.sin(base[2])
     return np.array([[cos, -sin, 0, base[0]], [sin, cos, 0, base[1]], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 

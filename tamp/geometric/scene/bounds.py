@@ -11,7 +11,8 @@ from tamp.geometric.scene.scene import Box, Cylinder, Part, Sphere
 
 
 def bounds(parts: Iterable[Part], pose: Pose) -> tuple[Array, Array]:
-    """The lowest and the highest corner of the parts of a body at `pose`.
+    """Compute the axis-aligned bounding box of the parts of a body at `pose`: its lowest and its
+    highest corner.
 
     Returns:
         Two corners, each (3,), metres, in the frame that `pose` is in.
