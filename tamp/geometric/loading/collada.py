@@ -122,19 +122,24 @@ class _Document:
         vertex = next((one for one in inputs if one.get("semantic") == "VERTEX"), None)
         if vertex is None or stride > 64:
             raise self.error("triangles without corners")
+
         offset = self.whole(vertex.get("offset", "0"))
         positions = self.positions(vertex.get("source", "")[1:])
+
         lists = [self.indices(one.text)[offset::stride] for one in group.findall("p")]
         lists += [self.indices(one.text)[offset::stride] for one in group.findall("ph/p")]
         counts = self.indices(group.findtext("vcount"))
         faces = [_faces(group.tag, corners, counts) for corners in lists]
+
         joined = np.concatenate(faces) if faces else np.zeros((0, 3), dtype=np.int64)
         if not len(joined):
             return
         if joined.min() < 0 or joined.max() >= len(positions):
             raise self.error("a face names a missing corner")
+
         if np.linalg.det(matrix[:3, :3]) < 0:  # mirrored: what was outside must stay outside
             joined = joined[:, ::-1]
+
         self.vertices.append(positions @ matrix[:3, :3].T + matrix[:3, 3])
         self.faces.append(joined + self.count)
         self.count += len(positions)

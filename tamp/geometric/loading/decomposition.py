@@ -25,8 +25,9 @@ _PARTS = 6
 _EXACT = 1e-6
 _MOST_TRIANGLES = 6000
 _DIRECTIONS = np.array(
-    [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5**0.5, 0.5**0.5, 0], [0.5**0.5, -(0.5**0.5), 0]], dtype=float
-)  # fmt: skip
+    [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5**0.5, 0.5**0.5, 0], [0.5**0.5, -(0.5**0.5), 0]],
+    dtype=float,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,22 +153,27 @@ def _grid(triangles: Array, low: Array, high: Array) -> tuple[Array, Array]:
     step = (high - low) / _GRID
     x, y, z = (low[axis] + step[axis] * (np.arange(_GRID) + 0.5) for axis in range(3))
     turns = np.zeros((_GRID, _GRID, _GRID), dtype=np.int32)
+
     for triangle in triangles:
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = triangle
         area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
         if abs(area) < 1e-15:
             continue
+
         columns = np.flatnonzero((x >= min(ax, bx, cx)) & (x < max(ax, bx, cx)))
         rows = np.flatnonzero((y >= min(ay, by, cy)) & (y < max(ay, by, cy)))
         if not len(columns) or not len(rows):
             continue
+
         px, py = x[columns][:, None], y[rows][None, :]
         v = ((px - ax) * (cy - ay) - (cx - ax) * (py - ay)) / area
         w = ((bx - ax) * (py - ay) - (px - ax) * (by - ay)) / area
+
         hit = (v >= 0) & (w >= 0) & (v + w < 1)
         height = az + v * (bz - az) + w * (cz - az)
         below = hit[:, :, None] & (z < height[:, :, None])
         turns[np.ix_(columns, rows)] += np.where(area > 0, 1, -1) * below
+
     points = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1)
     hull = ConvexHull(thickened(triangles.reshape(-1, 3))).equations
     inside, outside = points[turns > 0], points[turns <= 0]
@@ -194,22 +200,27 @@ def _clip(triangles: Array, normal: Array, offset: float) -> Array:
     below = heights <= 0
     count = below.sum(axis=1)
     kept = [triangles[count == 3]]
+
     for wanted in (1, 2):
         chosen = count == wanted
         corners, height, inside = triangles[chosen], heights[chosen], below[chosen]
         if not len(corners):
             continue
         # Turn each so that the odd one of the three corners comes first.
+
         odd = np.argmax(inside if wanted == 1 else ~inside, axis=1)
         turn = (odd[:, None] + np.arange(3)) % 3
         a, b, c = np.take_along_axis(corners, turn[:, :, None], axis=1).transpose(1, 0, 2)
         ha, hb, hc = np.take_along_axis(height, turn, axis=1).T
+
         ab = a + (b - a) * (ha / (ha - hb))[:, None]
         ac = a + (c - a) * (ha / (ha - hc))[:, None]
+
         if wanted == 1:
             kept.append(np.stack([a, ab, ac], axis=1))
         else:
             kept += [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
+
     return np.concatenate(kept)
 
 

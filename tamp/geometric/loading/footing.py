@@ -98,28 +98,34 @@ class Ground:
             axis=1
         )
         around &= (self._high[:, 2] > low[2] - GAP - EVEN) & (self._low[:, 2] < high[2])
+
         near = [i for i in np.flatnonzero(around) if self._parts[i][0] != body.name]
         others = [self._parts[i] for i in near]
         self._pairs += len(others)
         if len(others) > CROWD or self._pairs > PAIRS:
             fixed = frozenset(name for name, _, _ in others if name in self._fixed)
             return Footing(fixed or frozenset({others[0][0] if others else FLOOR}), 0.0)
+
         few = near[:EDGED]
         xy, under = _underside(
             body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE])
         )
+
         tops = np.zeros((len(xy), len(others) + 1))  # the floor's first
         for column, (_, part, T_world_part) in enumerate(others, start=1):
             _, tops[:, column] = vertical(part, T_world_part, xy)
         # What is met higher up is beside the body and not below it.
         tops[tops > under[:, None] + SINK + EVEN] = -np.inf
+
         gaps = under[:, None] - tops
         least = float(gaps.min(initial=np.inf))
         if least > GAP:
             return Footing(frozenset(), math.inf)
+
         carrying = gaps <= least + EVEN
         names = [FLOOR, *(name for name, _, _ in others)]
         on = frozenset(names[column] for column in np.flatnonzero(carrying.any(axis=0)))
+
         T, centre = body.pose.matrix, center_of_mass(body)
         point = (T[:3, :3] @ centre + T[:3, 3])[:2]
         return Footing(on, outside(point, xy[carrying.any(axis=1)]))
@@ -205,7 +211,7 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
 
 
 def _round(origins: Array, along: Array, radius: float) -> tuple[Array, Array]:
-    """Intersect lines with the ball of a radius about the origin: where they enter and leave it."""
+    """Intersect lines with the points nearer to the origin than a radius: entry and exit."""
     a, b, c = along @ along, origins @ along, np.einsum("ij,ij->i", origins, origins) - radius**2
     if a < 1e-12:
         inside = c < 0

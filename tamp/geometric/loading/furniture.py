@@ -59,10 +59,12 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
     width, depth, height = size
     thickness = options.thickness or 0.04
     top = Surface(name, name, _at(0, 0, height), (width, depth))
+
     if not options.legs:
         return Furniture(
             (_board((-width / 2, width / 2), (-depth / 2, depth / 2), (0, height)),), (top,)
         )
+
     _need(
         height > thickness,
         f"a table {height:g} m high has no room under a top {thickness:g} m thick",
@@ -71,12 +73,14 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
         min(width, depth) > 2 * _LEG,
         f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false",
     )
+
     across, along = (width - _LEG) / 2, (depth - _LEG) / 2
     legs = [
         Part(Box((_LEG, _LEG, height - thickness)), _at(x, y, (height - thickness) / 2))
         for x in (-across, across)
         for y in (-along, along)
     ]
+
     plate = _board((-width / 2, width / 2), (-depth / 2, depth / 2), (height - thickness, height))
     return Furniture((plate, *legs), (top,))
 
@@ -141,32 +145,41 @@ def _carcass(
         options.rows,
         options.columns,
     )
+
     behind = board if back else 0.0
     inner = (
         (width - (columns + 1) * board) / columns,
         depth - behind,
         (height - foot - (rows + 1) * board) / rows,
     )
+
     _need(
         min(inner) > 0,
         f"{rows} x {columns} compartments with boards {board:g} m thick leave no room inside",
     )
+
     half, front, rear = width / 2, -depth / 2, depth / 2 - behind
-    parts = [_board((side - board / 2, side + board / 2), (front, rear), (foot, height)) for side in (
-        board / 2 - half, half - board / 2)]  # fmt: skip
+    parts = [
+        _board((side - board / 2, side + board / 2), (front, rear), (foot, height))
+        for side in (board / 2 - half, half - board / 2)
+    ]
+
     inside = (board - half, half - board)
     floors = [foot + board + row * (inner[2] + board) for row in range(rows + 1)]
     parts += [_board(inside, (front, rear), (floor - board, floor)) for floor in floors]
+
     lefts = [board - half + column * (inner[0] + board) for column in range(columns)]
     for left in lefts[1:]:
         parts += [
             _board((left - board, left), (front, rear), (floor, floor + inner[2]))
             for floor in floors[:-1]
         ]
+
     if back:
         parts.append(_board((-half, half), (rear, depth / 2), (foot, height)))
     if foot > 0:
         parts.append(_board((-half, half), (front, depth / 2), (0, foot)))
+
     centre = (front + rear) / 2
     return tuple(parts), [
         (_at(left + inner[0] / 2, centre, floor), inner) for floor in floors[:-1] for left in lefts

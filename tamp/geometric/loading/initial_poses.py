@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tamp.geometric.loading.bodies import Draft, read_orientation, read_pose
+from tamp.geometric.loading.bodies import Draft
+from tamp.geometric.loading.orientation import read_orientation, read_pose
 from tamp.geometric.loading.tops import top_of
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.bounds import bounds
@@ -148,14 +149,17 @@ class _Placing:
         name = node.text()
         if name == FLOOR and name not in self.owners and name not in self.drafts:
             return _Place(None, Pose(), (math.inf, math.inf))
+
         if name in self.owners:
             self.place(self.owners[name], above)
             return _places(self.placed[self.owners[name]])[name]
+
         if name in self.drafts:
             body = self.drafts[name].body
             if body.surfaces or body.cavities:
                 parts = [place.name for place in (*body.surfaces, *body.cavities)]
                 raise node.error(f"'{name}' has several places to stand", choices=parts)
+
             self.place(name, above)
             top = _top(self.placed[name])
             if top is None:
@@ -163,6 +167,7 @@ class _Placing:
                     f"'{name}' has no flat top to stand on", remedy="Declare one with 'surfaces:'"
                 )
             return top
+
         known = sorted({*self.owners, *self.drafts, FLOOR} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=known)
 

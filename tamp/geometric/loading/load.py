@@ -11,7 +11,8 @@ from tamp.errors import InputError
 from tamp.geometric.loading.bodies import Draft, read_body
 from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
 from tamp.geometric.loading.steadying import steady
-from tamp.geometric.loading.yaml_nodes import Node, Passage, read_yaml
+from tamp.geometric.loading.yaml_file import read_yaml
+from tamp.geometric.loading.yaml_nodes import Node, Passage
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.system.files import find_problem
 
@@ -77,14 +78,18 @@ def load_scene(problem: str | Path) -> LoadedProblem:
     name = entries["name"].text() if "name" in entries else path.stem
     room = _room(entries["room"])
     robot = _robot(entries["robot"], room)
+
     drafts = {
-        body: read_body(body, node, path.parent) for body, node in entries["bodies"].mapping().items()
-    }  # fmt: skip
+        body: read_body(body, node, path.parent)
+        for body, node in entries["bodies"].mapping().items()
+    }
     _check_names(drafts)
+
     placed, warnings = place_bodies(drafts)
     bodies, unsteady = steady(placed, drafts)
     meshes = [(body, draft.mesh) for body, draft in drafts.items() if draft.mesh]
     samplers = entries["samplers"].mapping() if "samplers" in entries else {}
+
     return LoadedProblem(
         path=path,
         scene=Scene(name, MappingProxyType(bodies), robot, room),
@@ -140,7 +145,8 @@ def _robot(node: Node, room: Room) -> RobotStart:
     for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
         if not low <= value <= high:
             raise entries["base"].error(
-                f"the robot starts out of the room: {axis} = {value:g} is not within [{low:g}, {high:g}]"
+                f"the robot starts out of the room: {axis} = {value:g} is not within "
+                f"[{low:g}, {high:g}]"
             )
     return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
 

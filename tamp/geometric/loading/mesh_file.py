@@ -58,11 +58,12 @@ def read_triangles(path: Path) -> Triangles:
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"'{name}' is neither {_KNOWN}")
+
     content = read_raw(path, MOST_BYTES)
-    if (
-        reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES
-    ):  # before minutes go into reading them
+    # Before minutes go into reading them.
+    if reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES:
         raise InputError(f"the mesh '{name}' has more than {MOST_TRIANGLES:,} faces: simplify it")
+
     try:
         vertices, faces = reader(content, path)
     except InputError:
@@ -77,6 +78,7 @@ def read_triangles(path: Path) -> Triangles:
         raise InputError(
             f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY"
         ) from None
+
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise InputError(f"cannot read the mesh '{name}': its corners have no three coordinates")
     if not len(vertices) or not len(faces):
@@ -87,6 +89,7 @@ def read_triangles(path: Path) -> Triangles:
         )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError(f"the mesh '{name}' names a corner that it does not hold")
+
     return vertices, faces
 
 
@@ -108,8 +111,10 @@ def _ply(content: bytes, path: Path) -> Triangles:
     end = content.find(b"end_header", 0, 100_000)
     if not content.startswith(b"ply") or end < 0:
         raise InputError(f"cannot read the mesh '{path.name}': it has no header of a PLY file")
+
     header, body = content[:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n"), content[end:]
     header = _PLY_REMARK.sub(b"", header)
+
     claimed, rows = 0, 0
     for element, count in _PLY_COUNT.findall(header):
         if not count.isdigit() or len(count) > 12:
@@ -118,10 +123,12 @@ def _ply(content: bytes, path: Path) -> Triangles:
             )
         claimed += int(count) * _ply_row(header, element)
         rows += int(count)
+
     text = b"format ascii" in header
     if claimed > len(body) or (text and rows > len(body.splitlines()) - 1):
         raise InputError(
-            f"cannot read the mesh '{path.name}': it is cut off, its header tells of more than it holds"
+            f"cannot read the mesh '{path.name}': it is cut off, its header tells of more "
+            "than it holds"
         )
     return _by_trimesh(header + (ascii_text(body) if text else body), "ply")
 
@@ -147,6 +154,7 @@ def _stl(content: bytes, path: Path) -> Triangles:
     count = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
     if len(content) >= 84 and len(content) == 84 + 50 * count:
         return _soup(_stl_records(content, count))
+
     if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:100_000].lower():
         corners = _FACET.findall(content)
         if len(corners) % 3 or content.count(b"endfacet") not in (0, len(corners) // 3):
@@ -154,16 +162,19 @@ def _stl(content: bytes, path: Path) -> Triangles:
                 f"cannot read the mesh '{path.name}': it is cut off in the middle of a triangle"
             )
         return _soup(np.array(corners, dtype="S32").astype(np.float64).reshape(-1, 3))
+
     if len(content) < 84:
         raise InputError(
             f"cannot read the mesh '{path.name}': it is no STL file, neither in text nor in binary"
         )
+
     held = (len(content) - 84) // 50
     if held >= count:  # something follows the triangles, which readers skip
         return _soup(_stl_records(content, count))
+
     raise InputError(
-        f"cannot read the mesh '{path.name}': it is cut off (its header tells of {count:,} triangles, "
-        f"it holds {held:,}), or no STL file"
+        f"cannot read the mesh '{path.name}': it is cut off (its header tells of {count:,} "
+        f"triangles, it holds {held:,}), or no STL file"
     )
 
 

@@ -66,6 +66,7 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
     mesh = _merged(mesh, None)
     if not len(mesh.faces):
         raise InputError(f"the mesh '{name}' is degenerate: all its triangles have no area")
+
     warnings: tuple[str, ...] = ()
     gaps = open_edges(mesh.faces)
     if gaps:
@@ -80,6 +81,7 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
             mesh.fill_holes()
             if mesh.is_watertight:
                 mesh.fix_normals(multibody=True)
+
         left = open_edges(mesh.faces)
         what = (
             f"{left} stay open, it was taken as a surface with holes"
@@ -87,6 +89,7 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
             else "they were closed"
         )
         warnings = (f"the mesh '{name}' is not watertight ({gaps} open edges): {what}",)
+
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces)
     volume = None
     if not open_edges(faces):

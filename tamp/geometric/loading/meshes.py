@@ -61,6 +61,7 @@ def find_mesh(name: str, folder: Path) -> Path:
     """
     path = Path(os.path.expanduser(name))
     shown = name if len(name) <= 80 else f"{name[:77]}..."
+
     if path.parts[:1] == (_PYBULLET,):
         spec = importlib.util.find_spec(_PYBULLET)
         roots = (
@@ -72,6 +73,7 @@ def find_mesh(name: str, folder: Path) -> Path:
             raise InputError(f"no mesh file '{shown}'", remedy="pybullet is not installed")
     else:
         roots = [folder, folder / "assets", shipped("problems") / "assets"]
+
     try:
         for root in roots:
             if (root / path).is_file():
@@ -79,6 +81,7 @@ def find_mesh(name: str, folder: Path) -> Path:
         beside = sorted(_meshes_beside(path, roots))
     except OSError as error:  # a name too long to be one, a folder that may not be read
         raise InputError(f"no mesh file '{shown}': {error.strerror}") from None
+
     nearest = closest(name, beside) if len(name) < 1000 else None
     raise InputError(
         f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else ""
@@ -150,10 +153,12 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
             f"'{path.name}' can only be scaled alike in all directions",
             remedy="scale: one number > 0",
         )
+
     described = read_object(path)
     parts: list[Part] = []
     sources: list[tuple[Path, Scale, Pose]] = []
     warnings = list(described.warnings)
+
     for element in described.collisions:
         made, repaired = _parts(element, factor)
         parts += made
@@ -162,10 +167,12 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
                 (element.mesh, _times(element.scale, factor), scale_pose(element.pose, factor))
             )
         warnings += repaired
+
     files = dict.fromkeys(
         [path, *(element.mesh for element in described.collisions if element.mesh)]
     )
     centre, doubt = _centre(path, described, tuple(parts), factor)
+
     return Mesh(
         tuple(parts),
         tuple(files),
@@ -240,7 +247,8 @@ def _centre(
     if np.any(np.array((x, y, z)) < low - 1e-3) or np.any(np.array((x, y, z)) > high + 1e-3):
         where = f"[{x:.3g}, {y:.3g}, {z:.3g}]"
         return None, (
-            f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is taken",
+            f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is "
+            "taken",
         )
     return (x, y, z), ()
 

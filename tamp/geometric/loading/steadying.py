@@ -53,8 +53,10 @@ def steady(
     for name, body in bodies.items():
         if not body.movable:
             continue
+
         footing = ground.footing(body)
         entries = drafts[name].entries
+
         if "on" in entries:
             if footing.on and footing.why:
                 body, footing = _tipped(body, footing, ground, warnings)
@@ -68,8 +70,10 @@ def steady(
             say = "hangs in the air" if not footing.on else "does not stand still"
             warnings.append(f"{name} {say}: {footing.why} (say 'on:', or 'fixed: true')")
             body = replace(body, support=None)
+
         carriers = tuple(other for other in bodies if other in footing.on and bodies[other].movable)
         steadied[name] = replace(body, carriers=() if footing.why else carriers)
+
     return steadied, tuple(warnings)
 
 
@@ -120,7 +124,8 @@ def _tipped(
     if found.why:
         return body, footing
     warnings.append(
-        f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: {footing.why}"
+        f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: "
+        f"{footing.why}"
     )
     return tipped, found
 
@@ -131,6 +136,7 @@ def tip(body: Body) -> Array | None:
     """
     points = body.pose.rotation @ body_points(body).T
     centre = body.pose.rotation @ center_of_mass(body)
+
     turn = np.eye(3)
     for _ in range(ROLLS):
         P, c = turn @ points, turn @ centre
@@ -139,6 +145,7 @@ def tip(body: Body) -> Array | None:
         feet = P[:2, down].T
         if outside(c[:2], feet) <= 0.0:
             break
+
         pivot, axis = _edge(c[:2], feet)
         # Turning about the axis through the pivot moves the centre of mass outward and down.
         above = P[:, ~down] - np.array([[pivot[0]], [pivot[1]], [low]])
@@ -147,11 +154,13 @@ def tip(body: Body) -> Array | None:
         angle = float(angles.min(initial=np.inf))
         if not angle < TIP:
             return None
+
         turn = _about(axis, max(angle, 1e-6)) @ turn
         if math.acos(min(1.0, (float(np.trace(turn)) - 1) / 2)) > TIP:
             return None
     else:
         return None
+
     return turn
 
 

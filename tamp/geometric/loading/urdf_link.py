@@ -138,6 +138,7 @@ def _element(
     pose = origin_pose(path, element)
     if not len(geometry):
         raise InputError(f"'{path.name}' has an empty <geometry>")
+
     shape = geometry[0]
     if shape.tag == "box":
         return Element(pose, Box(_vector(path, shape, "size", None, positive=True)), colour=colour)
@@ -152,10 +153,12 @@ def _element(
     if shape.tag == "mesh":
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
+
     if shape.tag == "plane":
         raise InputError(
             f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0"
         )
+
     raise UnknownGeometry(
         f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}"
     )
@@ -169,7 +172,8 @@ def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
     if len(words) not in (1, 3) or 0.0 in words:
         text = mesh.get("scale", "")
         raise InputError(
-            f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, found '{text[:60]}'"
+            f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, "
+            f"found '{text[:60]}'"
         )
     x, y, z = words if len(words) == 3 else words * 3
     return (x, y, z)
@@ -180,15 +184,18 @@ def _mesh_file(path: Path, name: str) -> Path:
     if not name.strip():
         raise InputError(f"'{path.name}' has a mesh without a file name")
     name = name.strip().replace("\\", "/")  # as written on Windows
+
     below = name
     for start in ("package://", "model://", "file://"):
         below = below.removeprefix(start)
+
     tails, folders = [Path(below)], [path.parent]
     if not name.startswith("file://") and below != name:
         tails, folders = (
             [Path(below), Path(*Path(below).parts[1:])],
             [path.parent, *path.absolute().parents],
         )
+
     for folder in folders:
         for tail in tails:
             try:
@@ -196,6 +203,7 @@ def _mesh_file(path: Path, name: str) -> Path:
                     return folder / tail
             except OSError:  # a name too long to be one
                 continue
+
     short = name if len(name) <= 80 else f"{name[:77]}..."
     raise InputError(f"'{path.name}' names the mesh '{short}', which does not exist")
 

@@ -56,17 +56,21 @@ def read_object(path: Path) -> UrdfObject:
             collision geometry that is unknown, not finite, not positive or missing.
     """
     root = read_xml(path)
+
     links: dict[str, ElementTree.Element] = {}
     for link in root.findall("link"):
         name = link.get("name", "")
         if name in links:
             raise InputError(f"'{path.name}' has two links of the name '{name}'")
         links[name] = link
+
     if not links:
         what = "a soft body (<deformable>)" if root.find("deformable") is not None else "no link"
         raise InputError(
-            f"'{path.name}' has {what}: an object has one link, or several that joints hold together"
+            f"'{path.name}' has {what}: an object has one link, or several that joints hold "
+            "together"
         )
+
     poses, warnings = _link_poses(path, root, links)
     visuals, reason = _visuals(path, root, links, poses)
     try:
@@ -76,6 +80,7 @@ def read_object(path: Path) -> UrdfObject:
             raise
         collisions = []
         warnings.append(error.message)
+
     if not collisions:
         if not visuals:
             said = f": {reason}" if reason else ""
@@ -84,6 +89,7 @@ def read_object(path: Path) -> UrdfObject:
         warnings.append(f"'{path.name}' has no collision geometry: what it shows is taken for it")
     elif reason:
         warnings.append(f"{reason}: the collision shape is drawn")
+
     mass, centre = _inertia(path, links, poses)
     return UrdfObject(
         tuple(collisions),
@@ -108,6 +114,7 @@ def _link_poses(
     children: dict[str, list[tuple[str, Pose]]] = {name: [] for name in links}
     parents: dict[str, str] = {}
     held: list[str] = []
+
     for joint in root.findall("joint"):
         ends = [joint.find(end) for end in ("parent", "child")]
         parent, child = ("" if end is None else end.get("link", "") for end in ends)
@@ -115,14 +122,17 @@ def _link_poses(
         for link in (parent, child):
             if link not in links:
                 raise InputError(
-                    f"'{path.name}': joint '{name}' names the link '{link}', which the file does not have"
+                    f"'{path.name}': joint '{name}' names the link '{link}', which the file does "
+                    "not have"
                 )
+
         if child in parents:
             raise InputError(f"'{path.name}': the link '{child}' hangs on two joints")
         parents[child] = parent
         children[parent].append((child, origin_pose(path, joint)))
         if joint.get("type", "fixed") != "fixed":
             held.append(name)
+
     roots = [name for name in links if name not in parents]
     if len(roots) != 1:
         shown = ", ".join(roots[:8])
@@ -132,6 +142,7 @@ def _link_poses(
             else "joints in a circle"
         )
         raise InputError(f"'{path.name}' has {found}: an object is one piece")
+
     poses = {roots[0]: Pose()}
     waiting = list(poses)
     while waiting:
@@ -139,14 +150,17 @@ def _link_poses(
         for child, pose in children[link]:
             poses[child] = poses[link] @ pose
             waiting.append(child)
+
     if len(poses) < len(links):
         raise InputError(f"'{path.name}' has joints in a circle: an object is one piece")
+
     warnings: list[str] = []
     if held:
         shown = ", ".join(held[:4]) + (", ..." if len(held) > 4 else "")
         several = len(held) > 1
         joints = f"joints {shown} are" if several else f"joint {shown} is"
         warnings.append(f"'{path.name}': its {joints} held at 0, for an object is one rigid body")
+
     return {name: poses[name] for name in links}, warnings
 
 

@@ -12,13 +12,8 @@ import yaml
 from tamp.errors import InputError
 from tamp.geometric.loading.passage import Passage
 
-# libyaml's parser is ten times faster; it is missing only where PyYAML was built without it.
-_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TAG = "tag:yaml.org,2002:"
 _UNITS = ("deg", "rad", "°")
-
-MAX_BYTES = 1_000_000
-"""Larger files are refused: they are something else, and would take long to say so."""
 
 MAX_DEPTH = 100
 """Deeper nesting is refused."""
@@ -64,13 +59,17 @@ class Node:
     ) -> InputError:
         """Return an error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
-        message = " ".join(
-            message[:_LONGEST].split()
-        )  # a word of the file may hold line breaks, or a megabyte
+        # A word of the file may hold line breaks, or a megabyte.
+        message = " ".join(message[:_LONGEST].split())
         found = None if found is None else found[:_LONGEST]
         return InputError(
-            where + message, file=self._file, line=self.line, found=found, choices=choices, remedy=remedy
-        )  # fmt: skip
+            where + message,
+            file=self._file,
+            line=self.line,
+            found=found,
+            choices=choices,
+            remedy=remedy,
+        )
 
     def mapping(
         self, allowed: Collection[str] | None = None, required: Collection[str] = ()
@@ -101,18 +100,18 @@ class Node:
     def _entries(
         self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int
     ) -> dict[str, Node]:
-        """Return the entries of a mapping with those it merges; `known`: merged before, by
-        identity.
-        """
+        """Return a mapping's entries, those merged too; `known`: merged before, by identity."""
         if id(node) in known:
             found = known[id(node)]
             if found is None:
                 raise self.error("'<<' merges a mapping into itself")
             return found
+
         if depth > MAX_DEPTH or len(known) > MAX_MERGES:
             raise self.error(
                 f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep"
             )
+
         known[id(node)] = None
         entries: dict[str, Node] = {}
         merged: list[yaml.Node] = []
@@ -129,6 +128,7 @@ class Node:
                     child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}")
                 )
             entries[key.value] = child
+
         if len(merged) > MAX_MERGES:
             raise self.error(f"'<<' merges more than {MAX_MERGES} mappings")
         for base in merged:
@@ -136,6 +136,7 @@ class Node:
                 raise self.error("'<<' merges mappings only")
             for key, child in self._entries(base, known, depth + 1).items():
                 entries.setdefault(key, child)
+
         known[id(node)] = entries
         return entries
 
@@ -225,15 +226,12 @@ class Node:
         return isinstance(self._node, yaml.SequenceNode)
 
     def passage(self) -> Passage:
-        """Return the text exactly as it stands in the file, so that a parser can say line and
-        column.
-        """
+        """Return the text as it stands in the file, so that a parser can say line and column."""
         text = self.text()
         start, end = self._node.start_mark, self._node.end_mark
         style = self._node.style if isinstance(self._node, yaml.ScalarNode) else None
         if style in ("|", ">"):
-            # The block's indicator stands on the line before its text, and what follows it is less
-            # indented.
+            # The indicator stands on the line before the text; what follows is less indented.
             below = self._source[start.line + 1 :]
             indent = next(_indent(line) for line in below if line.strip())
             block = list(
@@ -280,52 +278,6 @@ class Node:
             return "a mapping"
         word = str(self._node.value)
         return f"'{_short(word)}'" if word else "nothing"
-
-
-def read_yaml(file: Path) -> Node:
-    """Read the root of a YAML file with one document.
-
-    Raises:
-        InputError: It cannot be read, is not YAML, is empty, or holds a tag that is not plain data.
-    """
-    try:
-        size = file.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"no problem file is {size / 1e6:.1f} MB large", file=file)
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise InputError(f"cannot read the file: {reason}", file=file) from None
-    try:
-        _check_depth(text, file)
-        root = yaml.compose(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        what = error.problem or error.context or "not YAML"
-        line, column = (None, None) if mark is None else (mark.line + 1, mark.column + 1)
-        raise InputError(f"not valid YAML: {what}", file=file, line=line, column=column) from None
-    except yaml.YAMLError as error:
-        raise InputError(f"not valid YAML: {' '.join(str(error).split())}", file=file) from None
-    except RecursionError:
-        raise InputError("not valid YAML: nested too deeply", file=file) from None
-    if root is None:
-        raise InputError("the file is empty", file=file)
-    return Node(root, file, text.splitlines() or [""], "", 1)
-
-
-def _check_depth(text: str, file: Path) -> None:
-    """Refuse what libyaml could not compose without overflowing the stack, as it recurses."""
-    depth = 0
-    for event in yaml.parse(text, Loader=_Loader):
-        if isinstance(event, yaml.CollectionStartEvent):
-            depth += 1
-            if depth > MAX_DEPTH:
-                line, column = event.start_mark.line + 1, event.start_mark.column + 1
-                raise InputError(
-                    f"nested more than {MAX_DEPTH} deep", file=file, line=line, column=column
-                )
-        elif isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
 
 
 def _short(word: str) -> str:

@@ -107,10 +107,12 @@ def _step(J, error, q, lower, upper, drift, step):
     for i in range(7):
         active[i] = 1.0
     A, b = np.empty((6, 6)), np.empty(6)
+
     for _ in range(7):
         for i in range(7):
             middle, half = (upper[i] + lower[i]) / 2, (upper[i] - lower[i]) / 2
             wish[i] = drift * active[i] * (middle - q[i]) / half
+
         for r in range(6):
             b[r] = error[r]
             for i in range(7):
@@ -119,6 +121,7 @@ def _step(J, error, q, lower, upper, drift, step):
                 A[r, c] = 1e-8 if r == c else 0.0
                 for i in range(7):
                     A[r, c] += active[i] * J[r, i] * J[c, i]
+
         _solve(A, b)
         frozen = False
         for i in range(7):
@@ -131,6 +134,7 @@ def _step(J, error, q, lower, upper, drift, step):
                 frozen = True
         if not frozen:
             break
+
     largest = 0.5
     for i in range(7):
         largest = max(largest, abs(step[i]))
@@ -193,6 +197,7 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
     J, error = np.empty((6, 7)), np.empty(6)
     q, step = start.copy(), np.empty(7)
+
     for k in range(len(targets)):
         miss = np.inf
         for iteration in range(25):
@@ -200,6 +205,7 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
             miss = _error(tool, targets[k], error)
             if miss < 1e-9:
                 break
+
             for i in range(7):
                 ax, ay, az = joints[i, 0, 2], joints[i, 1, 2], joints[i, 2, 2]
                 rx, ry, rz = (
@@ -209,9 +215,11 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
                 )
                 J[0, i], J[1, i], J[2, i] = ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx
                 J[3, i], J[4, i], J[5, i] = ax, ay, az
+
             _step(J, error, q, lower, upper, 0.02 if iteration == 0 else 0.0, step)
             for i in range(7):
                 q[i] = min(max(q[i] + step[i], lower[i]), upper[i])
+
         if miss > 1e-6:
             return path, k
         for i in range(7):
@@ -219,4 +227,5 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
             if abs(q[i] - previous) > jump:
                 return path, k
             path[k, i] = q[i]
+
     return path, len(targets)

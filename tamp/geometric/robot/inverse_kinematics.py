@@ -62,10 +62,12 @@ class ArmIK:
         if rng is not None:
             low, high = self.lower[6], self.upper[6]
             sevenths = low + (sevenths - low + rng.uniform(0.0, high - low)) % (high - low)
+
         T = T_base_tool.copy()
         T[:3, :3] = T[:3, :3] @ self._unturn
         found: list[Array] = []
         count = 0
+
         for stage in self._stages:
             batch: list[Array] = []
             for index in self._within_reach(T_base_tool, sevenths, stage):
@@ -89,6 +91,7 @@ class ArmIK:
                 count += len(found[-1])
             if count > 0:
                 break
+
         return np.concatenate(found) if found else np.empty((0, 7))
 
     def follow(

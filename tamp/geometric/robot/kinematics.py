@@ -28,6 +28,7 @@ class Kinematics:
         parent = 0
         for kind in (pinocchio.JointModelPX, pinocchio.JointModelPY, pinocchio.JointModelRZ):
             parent = model.addJoint(parent, kind(), pinocchio.SE3.Identity(), f"base{parent}")
+
         origin = robot.T_base_arm
         for joint in robot.joints:
             if joint.kind != "revolute" or joint.axis != (0.0, 0.0, 1.0):
@@ -36,6 +37,7 @@ class Kinematics:
                 parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name
             )
             origin = Pose()
+
         self._tool = model.addFrame(
             pinocchio.Frame(
                 "tool",
@@ -44,6 +46,7 @@ class Kinematics:
                 pinocchio.FrameType.OP_FRAME,
             )
         )
+
         self._model, self._data, self._flange = model, model.createData(), parent
         self._joint_of_link = tuple(
             (link.name, 4 + index) for index, link in enumerate(robot.links[2:-3])

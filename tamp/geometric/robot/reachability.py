@@ -72,6 +72,7 @@ class Reachability:
         step = self._heights[1] - self._heights[0]
         level = round((T_world_tool[2, 3] - self._heights[0]) / step)
         direction = int(np.argmax(self._directions @ T_world_tool[2, :3]))
+
         distance, heading, bearing = self._broad(rng, count)
         if 0 <= level < len(self._heights) and self._cumulative[level, direction, -1] > 0:
             follow = rng.random(count) >= BROAD
@@ -82,12 +83,12 @@ class Reachability:
                 np.where(follow, drawn[1], heading),
             )
             bearing = np.where(follow, bounded, bearing)
+
         turn = T_world_tool[:3, :3] @ self._rotations[direction].T
         yaw_of_tool = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-        towards = (
-            yaw_of_tool - heading
-        )  # world direction of the line from the arm's foot to the tool
+        towards = yaw_of_tool - heading  # world direction from the arm's foot to the tool
         yaw = towards - bearing
+
         cos, sin = np.cos(yaw), np.sin(yaw)
         foot_x, foot_y = self._foot
         x = T_world_tool[0, 3] - distance * np.cos(towards) - (cos * foot_x - sin * foot_y)

@@ -102,6 +102,7 @@ def panda_mobile() -> Robot:
     urdf = panda_urdf()
     named = read_joints(urdf)
     joints = tuple(named[f"panda_joint{i}"] for i in range(1, 8))
+
     base = Box((0.8, 0.7, 0.33))
     hulls = np.load(Path(__file__).parent / "assets" / "panda_mobile.npz")
     names = [f"panda_link{i}" for i in range(8)] + [
@@ -109,6 +110,7 @@ def panda_mobile() -> Robot:
         "panda_leftfinger",
         "panda_rightfinger",
     ]
+
     return Robot(
         name="panda_mobile",
         links=(
@@ -144,7 +146,8 @@ base            panda_link0 panda_link1 panda_link2 panda_link3
 panda_link0     panda_link1 panda_link2 panda_link3 panda_link4
 panda_link1     panda_link2 panda_link3 panda_link4
 panda_link2     panda_link3 panda_link4
-panda_link3     panda_link4 panda_link5 panda_link6 panda_link7 panda_hand panda_leftfinger panda_rightfinger
+panda_link3     panda_link4 panda_link5 panda_link6 panda_link7 panda_hand
+panda_link3     panda_leftfinger panda_rightfinger
 panda_link4     panda_link5 panda_link6 panda_link7 panda_hand panda_leftfinger panda_rightfinger
 panda_link5     panda_link6
 panda_link6     panda_link7 panda_hand panda_leftfinger panda_rightfinger

@@ -51,6 +51,7 @@ class Pose:
                 [0.0, 0.0, 0.0, 1.0],
             ]
         )
+
         matrix.flags.writeable = False
         return matrix
 
