@@ -1,6 +1,4 @@
-"""Read what the problem file says about one body into parts, surfaces and properties; placing it
-comes later.
-"""
+"""One body of a problem file, read into parts, surfaces and properties; placing it comes later."""
 
 from __future__ import annotations
 
@@ -217,9 +215,7 @@ def _stance(entries: Mapping[str, Node]) -> Pose:
 
 
 def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
-    """Return the visuals of a mesh; the colour that the problem gives counts more than the file's
-    own.
-    """
+    """Return the visuals of a mesh; the problem's colour counts more than the file's own."""
     visuals = mesh.visuals if mesh else ()
     return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
 

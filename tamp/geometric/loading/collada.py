@@ -1,5 +1,4 @@
-"""The triangles in a COLLADA file: its nodes' transforms and its unit applied, its axes as they
-are.
+"""The triangles in a COLLADA file: transforms and unit applied, axes as they are.
 
 pybullet and most of robotics do not turn a file whose `<up_axis>` is Y; many writers say Y_UP
 whatever they write.

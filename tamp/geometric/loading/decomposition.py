@@ -92,8 +92,7 @@ def _cut(piece: _Piece, size: float, voxel: float) -> list[_Piece] | None:
             halves = _halves(piece, direction, position, size, voxel)
             if halves is None:
                 continue
-            # The first cut of a cup saves nothing, whichever it is: then the more even one is
-            # better.
+            # The first cut of a cup saves nothing, whichever it is: the more even one is better.
             uneven = abs(halves[0].volume - halves[1].volume)
             score = halves[0].volume + halves[1].volume + 0.03 * uneven
             if best is None or score < best[0] * (1 - 1e-9):
@@ -181,9 +180,7 @@ def _grid(triangles: Array, low: Array, high: Array) -> tuple[Array, Array]:
 
 
 def _within(equations: Array, points: Array) -> NDArray[np.bool_]:
-    """Check which points lie inside all half-spaces, a block of them at a time to bound the
-    memory.
-    """
+    """Check which points lie inside all half-spaces, in blocks to bound the memory."""
     inside = np.ones(len(points), dtype=bool)
     for start in range(0, len(equations), 64):
         block = equations[start : start + 64]
@@ -193,9 +190,7 @@ def _within(equations: Array, points: Array) -> NDArray[np.bool_]:
 
 
 def _clip(triangles: Array, normal: Array, offset: float) -> Array:
-    """Clip triangles to the half-space normal @ x <= offset, into triangles again (Sutherland and
-    Hodgman).
-    """
+    """Clip triangles to the half-space normal @ x <= offset (Sutherland and Hodgman)."""
     heights = triangles @ normal - offset
     below = heights <= 0
     count = below.sum(axis=1)
@@ -206,8 +201,8 @@ def _clip(triangles: Array, normal: Array, offset: float) -> Array:
         corners, height, inside = triangles[chosen], heights[chosen], below[chosen]
         if not len(corners):
             continue
-        # Turn each so that the odd one of the three corners comes first.
 
+        # Turn each so that the odd one of the three corners comes first.
         odd = np.argmax(inside if wanted == 1 else ~inside, axis=1)
         turn = (odd[:, None] + np.arange(3)) % 3
         a, b, c = np.take_along_axis(corners, turn[:, :, None], axis=1).transpose(1, 0, 2)

@@ -1,5 +1,6 @@
-"""Find what carries a body where it is (its support), felt along vertical lines. The judge asks the
-same by rays of its physics engine.
+"""Supports: what carries a body where it is, felt along vertical lines.
+
+The judge asks the same by rays of its physics engine.
 """
 
 from __future__ import annotations
@@ -15,9 +16,7 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Sphere
 
 GAP = 0.0095
-"""Metres of air below a body that still count as resting: half a millimetre less than the judge
-allows.
-"""
+"""Metres of air below a body that still count as resting: 0.5 mm less than the judge allows."""
 
 SINK = 0.001
 """Metres by which a body may stand in what carries it."""
@@ -43,9 +42,7 @@ CROWD = 400
 """Parts around a body; where there are more, they lie in each other, which is refused elsewhere."""
 
 PAIRS = 8_000
-"""Parts looked at for all bodies of a scene together: only in a crowd that lies in itself are there
-more.
-"""
+"""Parts looked at for all bodies together: only in a crowd that lies in itself are there more."""
 
 FLOOR = "floor"
 """What the floor is called among bodies."""
@@ -186,8 +183,7 @@ def vertical(part: Part, T_world_part: Array, xy: Array) -> tuple[Array, Array]:
 
 
 def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array, Array]:
-    """Return points (n, 2) of the plane under a body, and the heights (n,) of its surface above
-    them.
+    """Return points (n, 2) of the plane under a body, and the heights (n,) of its surface there.
 
     Lines pass the edges (k, 3) of what is around, too.
     """
@@ -199,9 +195,8 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
     points = body.pose.apply(body_points(body))
     lowest = points[points[:, 2] < low[2] + 2 * EVEN][:, :2]
     middle = (low + high)[:2] / 2
-    xy = np.concatenate(
-        [grid, middle + (lowest - middle) * 0.998]
-    )  # a line along an edge may miss it
+    # A line along an edge may miss it.
+    xy = np.concatenate([grid, middle + (lowest - middle) * 0.998])
     under = np.full(len(xy), np.inf)
     for part in body.parts:
         enter, _ = vertical(part, body.pose.matrix @ part.pose.matrix, xy)

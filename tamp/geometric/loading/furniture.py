@@ -127,9 +127,7 @@ FURNITURE: Mapping[str, Kind] = {
     "cupboard": Kind(_cupboard, ("compartments", "thickness", "back", "plinth")),
     "open_box": Kind(_open_box, ("thickness",)),
 }
-"""Builders by name. Each raises ValueError, with a sentence for the user, when the boards leave no
-room.
-"""
+"""Builders by name; each raises ValueError, with a sentence, when the boards leave no room."""
 
 
 def _carcass(

@@ -177,9 +177,7 @@ class _Placing:
                 raise node.error(f"'{place.name}' is not horizontal, nothing can stand on it")
 
     def settled(self, body: Body, node: Node) -> Body:
-        """Settle a movable body given by its pose: snap it to what is within 2 mm under its lowest
-        point.
-        """
+        """Settle a movable body given by its pose: snap it to what is within 2 mm below it."""
         low, high = bounds(body.parts, body.pose)
         if low[2] < -_SNAP:
             raise node.error(
@@ -202,9 +200,7 @@ class _Placing:
 
 
 def _on(body: Body, pose: Pose, height: float) -> Pose:
-    """Return the pose lifted or lowered so that the body's lowest point is CONTACT_GAP above
-    `height`.
-    """
+    """Return the pose with the body's lowest point lifted to CONTACT_GAP above `height`."""
     low, _ = bounds(body.parts, pose)
     x, y, z = pose.position
     return Pose((x, y, z + height + CONTACT_GAP - float(low[2])), pose.quaternion)
@@ -221,8 +217,6 @@ def _places(body: Body) -> dict[str, _Place]:
 
 
 def _top(body: Body) -> _Place | None:
-    """Return the highest level face of a body without places of its own, which may carry another
-    body.
-    """
+    """Return the highest level face, on which others may stand, of a body without own places."""
     top = None if body.surfaces or body.cavities else top_of(body.name, body.parts, body.pose)
     return None if top is None else _Place(body.name, body.pose @ top.pose, top.size)

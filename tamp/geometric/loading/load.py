@@ -53,9 +53,7 @@ class LoadedProblem:
     entry_lines: Mapping[tuple[str, ...], int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
-        """Return an error about this problem, or about one of its bodies or its `robot`, with file
-        and line.
-        """
+        """Return an error about this problem, one of its bodies or its `robot`, with the line."""
         return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
 
     def line_of(self, *keys: str) -> int | None:

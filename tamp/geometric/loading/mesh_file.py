@@ -134,9 +134,7 @@ def _ply(content: bytes, path: Path) -> Triangles:
 
 
 def _ply_row(header: bytes, element: bytes) -> int:
-    """Compute the fewest bytes that a row of an element takes: in text a digit and a blank for each
-    number.
-    """
+    """Compute the fewest bytes of an element's row: in text a digit and a blank for each number."""
     rows = header.decode("latin-1").split("element")
     own = next((row for row in rows if row.split()[:1] == [element.decode("latin-1")]), "")
     properties = [line.split() for line in own.splitlines() if line.strip().startswith("property")]

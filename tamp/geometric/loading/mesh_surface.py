@@ -60,9 +60,7 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
 
 
 def _closed(name: str, mesh: Any) -> MeshSurface:
-    """Merge equal corners; where the surface is open then, repair it as far as that goes, and say
-    so.
-    """
+    """Merge equal corners; where the surface is open then, repair what can be, and say so."""
     mesh = _merged(mesh, None)
     if not len(mesh.faces):
         raise InputError(f"the mesh '{name}' is degenerate: all its triangles have no area")
@@ -101,9 +99,7 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
 
 
 def _merged(mesh: Any, digits: int | None) -> Any:
-    """Merge equal corners into one (to so many digits), without the triangles that this makes
-    empty.
-    """
+    """Merge corners equal to so many digits, without the triangles that this makes empty."""
     mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=digits)
     a, b, c = mesh.faces.T
     mesh.update_faces((a != b) & (b != c) & (c != a))

@@ -89,9 +89,7 @@ def find_mesh(name: str, folder: Path) -> Path:
 
 
 def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
-    """List the mesh files in the folders in which the named one would be, as they would be
-    named.
-    """
+    """List the mesh files where the named one would be, as they would be named."""
     found: set[str] = set()
     for folder in (root / path.parent for root in roots):
         if not folder.is_dir():
@@ -144,9 +142,7 @@ def mesh_triangles(mesh: Mesh) -> Array | None:
 
 
 def _load_urdf(path: Path, scale: Scale) -> Mesh:
-    """Load a URDF file: every collision element is a part or several; its visual elements are
-    drawn.
-    """
+    """Load a URDF file: each collision element is a part or several; the visual ones are drawn."""
     factor = scale[0]
     if scale != (factor, factor, factor) or factor < 0:
         raise InputError(
@@ -212,9 +208,7 @@ def primitive_parts(element: Element) -> list[Part]:
 
 
 def capsule_parts(radius: float, length: float, pose: Pose = Pose()) -> list[Part]:
-    """Return the parts of a capsule: a cylinder of that length along z, and a ball at each of its
-    ends. Metres.
-    """
+    """Return a capsule's parts: a cylinder of that length along z, a ball at each end. Metres."""
     ends = (Pose((0.0, 0.0, side * length / 2)) for side in (-1, 1))
     return [
         Part(Cylinder(radius, length), pose),

@@ -20,8 +20,7 @@ def read_pose(node: Node) -> Pose:
 
 
 def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, float]:
-    """Read the unit quaternion from `quaternion:`, `rpy:` or `yaw:` among the entries; upright when
-    there is none.
+    """Read the unit quaternion from `quaternion:`, `rpy:` or `yaw:`; upright when there is none.
 
     Raises:
         InputError: More than one of them, or a quaternion that is far from unit norm.

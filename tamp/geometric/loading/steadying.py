@@ -1,6 +1,4 @@
-"""Static stability at the start: the bodies of a problem are settled, or refused with the
-reason.
-"""
+"""Static stability at the start: bodies are settled, or refused with the reason."""
 
 from __future__ import annotations
 
@@ -106,9 +104,7 @@ def _place(support: str | None, bodies: Mapping[str, Body]) -> Surface | Cavity 
 def _tipped(
     body: Body, footing: Footing, ground: Ground, warnings: list[str]
 ) -> tuple[Body, Footing]:
-    """Return the body on the face that it tips onto, when that is near and carries it; itself
-    otherwise.
-    """
+    """Return the body on the face that it tips onto if that is near and carries it, else itself."""
     turn = tip(body)
     if turn is None:
         return body, footing

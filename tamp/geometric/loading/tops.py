@@ -208,9 +208,7 @@ def _solid(face: _Face, triangles: Array | None) -> bool:
 def _largest(
     level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
 ) -> _Rectangle | None:
-    """Find the largest free rectangle in the union of level faces, its sides along one of
-    theirs.
-    """
+    """Find the largest free rectangle in the union of level faces, along one face's sides."""
     standing = [
         (low, high)
         for low, high in boxes

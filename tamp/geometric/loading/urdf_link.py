@@ -165,9 +165,7 @@ def _element(
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
-    """Read three factors, or one for all directions, which URDF does not provide for but files
-    have.
-    """
+    """Read three factors, or one for all directions, which files have though URDF does not."""
     words = _numbers(path, mesh, "scale", None) if "scale" in mesh.attrib else (1.0,)
     if len(words) not in (1, 3) or 0.0 in words:
         text = mesh.get("scale", "")

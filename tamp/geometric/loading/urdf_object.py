@@ -26,8 +26,7 @@ LARGEST_MASS = 1e6
 
 @dataclass(frozen=True)
 class UrdfObject:
-    """A body as a URDF file tells it, everything in the frame of its root link, metres and
-    kilograms.
+    """A body as a URDF file tells it, in the frame of its root link, metres and kilograms.
 
     Attributes:
         collisions: Its visual elements when the file gives no others.
@@ -230,9 +229,7 @@ def _inertia(
 def _friction(
     path: Path, links: dict[str, ElementTree.Element], poses: dict[str, Pose]
 ) -> float | None:
-    """Read the friction coefficient: the first link's <lateral_friction> (or <friction>) in
-    <contact>.
-    """
+    """Read the first link's friction: <lateral_friction> (or <friction>) in <contact>."""
     for name in poses:
         for tag in ("lateral_friction", "friction"):
             value = _value(path, links[name].find(f"contact/{tag}"))
@@ -246,9 +243,7 @@ def _friction(
 
 
 def _value(path: Path, element: ElementTree.Element | None) -> float | None:
-    """Read the finite number in an element's attribute `value`, or in its text; None without an
-    element.
-    """
+    """Read the finite number in an element's `value` or in its text; None without an element."""
     if element is None:
         return None
     text = (element.get("value") or element.text or "").strip()

@@ -34,9 +34,7 @@ def _product(A, B, C):
 
 @njit(**INNER)
 def frames(origins, T_flange_tool, q, joints, tool):
-    """Write the joints' frames (7, 3, 4) and the tool's (3, 4) at angles q (7,) into the last two
-    arguments.
-    """
+    """Write the frames at q (7,): the joints' (7, 3, 4) and the tool's (3, 4), by FK."""
     for row in range(3):
         for column in range(4):
             joints[0, row, column] = origins[0, row, column]
