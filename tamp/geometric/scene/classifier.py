@@ -17,8 +17,8 @@ class Classifier(Protocol):
     """Judges whether a relation holds in a scene."""
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
-        """Return the probability that a relation holds; not a number where the classifier cannot
-        tell.
+        """Return the probability in [0, 1] that the relation holds for these arguments; not a
+        number: it cannot tell.
         """
         ...
 
@@ -37,8 +37,7 @@ class Unanswered(Exception):
 
 
 def probability(classifier: Classifier, scene: Scene, arguments: Sequence[str]) -> float:
-    """Return the probability in [0, 1] that the relation holds for these arguments; not a number:
-    it cannot tell.
+    """Return the probability that a relation holds; not a number where the classifier cannot tell.
 
     Raises:
         Unanswered: The classifier raised, or returned something else.
