@@ -1,33 +1,30 @@
-"""What the problem file says about one body, read into parts, surfaces and properties; placing it comes later."""
+"""One body of a problem file, read into parts, surfaces and properties; placing it comes later."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from tamp.errors import InputError
+from tamp.geometric.loading.declared_places import check_name, read_cavities, read_surfaces
 from tamp.geometric.loading.furniture import FURNITURE, Furniture, Options
 from tamp.geometric.loading.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_triangles
+from tamp.geometric.loading.orientation import read_orientation
 from tamp.geometric.loading.tops import NARROWEST, top_of
 from tamp.geometric.loading.urdf_object import LARGEST_MASS
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Body, Box, Cavity, Cylinder, Part, Sphere, Surface, Visual
+from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Sphere, Visual
 
 COLOURS: Mapping[str, tuple[float, float, float]] = {
-    "black": (0.1, 0.1, 0.1), "blue": (0.15, 0.35, 0.8), "brown": (0.45, 0.3, 0.2), "green": (0.2, 0.6, 0.25),
-    "grey": (0.6, 0.6, 0.6), "orange": (0.95, 0.55, 0.1), "pink": (0.95, 0.6, 0.7), "purple": (0.5, 0.3, 0.65),
-    "red": (0.8, 0.15, 0.15), "turquoise": (0.2, 0.7, 0.7), "white": (0.95, 0.95, 0.95), "wood": (0.72, 0.55, 0.36),
+    "black": (0.1, 0.1, 0.1), "blue": (0.15, 0.35, 0.8), "brown": (0.45, 0.3, 0.2),
+    "green": (0.2, 0.6, 0.25), "grey": (0.6, 0.6, 0.6), "orange": (0.95, 0.55, 0.1),
+    "pink": (0.95, 0.6, 0.7), "purple": (0.5, 0.3, 0.65), "red": (0.8, 0.15, 0.15),
+    "turquoise": (0.2, 0.7, 0.7), "white": (0.95, 0.95, 0.95), "wood": (0.72, 0.55, 0.36),
     "yellow": (0.95, 0.8, 0.2),
 }  # fmt: skip
-
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-"""What PDDL takes for a name."""
 
 PLACEMENT = ("on", "at", "yaw", "rpy", "quaternion", "pose")
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
@@ -68,12 +65,13 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     Raises:
         InputError: Anything wrong with it, with the line.
     """
-    if not NAME.fullmatch(name):
-        raise node.error(f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'")
+    check_name(name, node)
+
     kind = _kind(node)
     entries = node.mapping((*_SHAPES, *_COMMON, *_options(kind, node)))
     mesh: Mesh | None = None
     furniture = Furniture(())
+
     if kind == "furniture":
         furniture = _furniture(name, entries)
         parts = furniture.parts
@@ -82,65 +80,47 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         parts = mesh.parts
     else:
         parts = _primitive(kind, entries[kind])
+
     movable = kind != "furniture"
     if "fixed" in entries:
         movable = not entries["fixed"].flag()
     if kind == "furniture" and movable:
         raise entries["fixed"].error("furniture is always fixed")
     _check_size(parts, entries[kind], movable)
+
     derived = furniture.surfaces
     if kind != "furniture" and not movable:
-        triangles = mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
+        triangles = (
+            mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
+        )
         top = top_of(name, parts, _stance(entries), triangles)
         derived = (top,) if top and min(top.size) >= NARROWEST - 1e-9 else ()
+
     body = Body(
         name,
         parts,
         Pose(),
         movable,
-        mass=_number(entries.get("mass"), mesh and mesh.mass, Body.mass, positive=True, high=LARGEST_MASS),
-        friction=_number(entries.get("friction"), mesh and mesh.friction, Body.friction, low=0.0, high=_MOST_FRICTION),
+        mass=_number(
+            entries.get("mass"), mesh and mesh.mass, Body.mass, positive=True, high=LARGEST_MASS
+        ),
+        friction=_number(
+            entries.get("friction"),
+            mesh and mesh.friction,
+            Body.friction,
+            low=0.0,
+            high=_MOST_FRICTION,
+        ),
         colour=_colour(entries.get("colour"), kind, mesh),
-        surfaces=_surfaces(name, entries["surfaces"]) if "surfaces" in entries else derived,
-        cavities=_cavities(name, entries["cavities"]) if "cavities" in entries else furniture.cavities,
+        surfaces=read_surfaces(name, entries["surfaces"]) if "surfaces" in entries else derived,
+        cavities=read_cavities(name, entries["cavities"])
+        if "cavities" in entries
+        else furniture.cavities,
         visuals=_visuals(mesh, "colour" in entries),
         center_of_mass=mesh.center_of_mass if mesh else None,
     )
+
     return Draft(body, {key: entries[key] for key in PLACEMENT if key in entries}, node, mesh)
-
-
-def read_pose(node: Node) -> Pose:
-    """`{position: [x, y, z]}` with `quaternion: [x, y, z, w]`, `rpy: [r, p, y]` or `yaw:`; none of them is upright."""
-    entries = node.mapping(("position", "quaternion", "rpy", "yaw"), required=("position",))
-    x, y, z = entries["position"].numbers(3)
-    return Pose((x, y, z), read_orientation(entries))
-
-
-def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, float]:
-    """The unit quaternion that `quaternion:`, `rpy:` or `yaw:` among the entries means; upright when there is none.
-
-    Raises:
-        InputError: More than one of them, or a quaternion that is far from unit norm.
-    """
-    given = [key for key in ("quaternion", "rpy", "yaw") if key in entries]
-    if len(given) > 1:
-        raise entries[given[1]].error(f"'{given[0]}' and '{given[1]}' both say how it is turned: keep one")
-    if not given:
-        return Pose().quaternion
-    node = entries[given[0]]
-    if given[0] == "yaw":
-        return Pose.from_xyz_yaw(0, 0, 0, node.angle()).quaternion
-    if given[0] == "rpy":
-        roll, pitch, yaw = (item.angle() for item in node.items(3))
-        return Pose.from_xyz_rpy((0, 0, 0), (roll, pitch, yaw)).quaternion
-    values = np.array(node.numbers(4))
-    norm = float(np.linalg.norm(values))
-    if norm < 1e-9:
-        raise node.error("a quaternion of norm 0 is no rotation", remedy="No rotation is [0, 0, 0, 1] (x, y, z, w)")
-    if abs(norm - 1) > 0.01:
-        raise node.error(f"the quaternion's norm is {norm:.3g}, not 1", remedy="Is its order x, y, z, w?")
-    x, y, z, w = (float(value) for value in values / norm)
-    return (x, y, z, w)
 
 
 def _kind(node: Node) -> str:
@@ -149,7 +129,9 @@ def _kind(node: Node) -> str:
         keys = [key for key in node.mapping() if key not in _COMMON]
         raise node.error("it has no shape", found=keys[0] if keys else None, choices=_SHAPES)
     if len(found) > 1:
-        raise node.mapping()[found[1]].error(f"'{found[0]}' and '{found[1]}' both give a shape: keep one")
+        raise node.mapping()[found[1]].error(
+            f"'{found[0]}' and '{found[1]}' both give a shape: keep one"
+        )
     return found[0]
 
 
@@ -165,6 +147,7 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
     if "size" not in entries:
         raise node.error("'size' is missing", remedy="size: [width, depth, height] in metres")
     width, depth, height = entries["size"].numbers(3, positive=True)
+
     rows, columns = 1, 1
     if "compartments" in entries:
         counts = entries["compartments"]
@@ -173,6 +156,7 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
             if counts.is_list()
             else (counts.integer(low=1, high=_MOST_BOARDS), 1)
         )
+
     options = Options(
         rows=rows,
         columns=columns,
@@ -181,6 +165,7 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
         back=entries["back"].flag() if "back" in entries else None,
         plinth=entries["plinth"].number(low=0.0) if "plinth" in entries else 0.0,
     )
+
     try:
         return FURNITURE[node.text()].build(name, (width, depth, height), options)
     except ValueError as error:
@@ -209,31 +194,41 @@ def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
     if kind == "sphere":
         return (Part(Sphere(node.number(positive=True))),)
     entries = node.mapping(("radius", "height"), required=("radius", "height"))
-    radius, height = entries["radius"].number(positive=True), entries["height"].number(positive=True)
+    radius, height = (
+        entries["radius"].number(positive=True),
+        entries["height"].number(positive=True),
+    )
     if kind == "cylinder":
         return (Part(Cylinder(radius, height)),)
     if height <= 2 * radius:
         remedy = "The height of a capsule counts its round ends; at 2 radii it is a sphere"
-        raise entries["height"].error(f"a capsule of radius {radius:g} is higher than {2 * radius:g}", remedy=remedy)
+        raise entries["height"].error(
+            f"a capsule of radius {radius:g} is higher than {2 * radius:g}", remedy=remedy
+        )
     return tuple(capsule_parts(radius, height - 2 * radius))
 
 
 def _stance(entries: Mapping[str, Node]) -> Pose:
-    """How the body will be turned in the world, but for a turn about the vertical."""
+    """Return the orientation of the body in the world, but for a turn about the vertical."""
     given = entries["pose"].mapping() if "pose" in entries else entries
     return Pose((0.0, 0.0, 0.0), read_orientation(given))
 
 
 def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
-    """What is drawn of a mesh; the colour that the problem gives counts more than the file's own."""
+    """Return the visuals of a mesh; the problem's colour counts more than the file's own."""
     visuals = mesh.visuals if mesh else ()
     return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
 
 
 def _number(
-    node: Node | None, read: float | None, default: float, positive: bool = False, low: float = 0.0, high: float = 0.0
+    node: Node | None,
+    read: float | None,
+    default: float,
+    positive: bool = False,
+    low: float = 0.0,
+    high: float = 0.0,
 ) -> float:
-    """What the problem says, else what the mesh's file says, else the default."""
+    """Read what the problem says, else what the mesh's file says, else the default."""
     if node is not None:
         return node.number(positive=positive, low=low, high=high)
     return default if read is None else read
@@ -247,37 +242,9 @@ def _check_size(parts: tuple[Part, ...], node: Node, movable: bool) -> None:
     if smallest < _SMALLEST:
         raise node.error(f"it is {smallest:g} m thin", remedy="Lengths are metres")
     if movable and largest > _LARGEST_MOVABLE:
-        raise node.error(f"it is {largest:g} m large, too large to be moved", remedy="Lengths are metres")
-
-
-def _surfaces(body: str, node: Node) -> tuple[Surface, ...]:
-    surfaces: list[Surface] = []
-    for name, entry in node.mapping().items():
-        entries = entry.mapping(("at", "yaw", "size", "clearance"), required=("at", "size"))
-        width, depth = entries["size"].numbers(2, positive=True)
-        clearance = entries["clearance"].number(positive=True) if "clearance" in entries else float("inf")
-        surfaces.append(Surface(_name(name, entry), body, _frame(entries), (width, depth), clearance))
-    return tuple(surfaces)
-
-
-def _cavities(body: str, node: Node) -> tuple[Cavity, ...]:
-    cavities: list[Cavity] = []
-    for name, entry in node.mapping().items():
-        entries = entry.mapping(("at", "yaw", "size"), required=("at", "size"))
-        width, depth, height = entries["size"].numbers(3, positive=True)
-        cavities.append(Cavity(_name(name, entry), body, _frame(entries), (width, depth, height)))
-    return tuple(cavities)
-
-
-def _name(name: str, node: Node) -> str:
-    if not NAME.fullmatch(name):
-        raise node.error(f"'{name}' is not a name", remedy="A name is a letter, then letters, digits, '_' or '-'")
-    return name
-
-
-def _frame(entries: Mapping[str, Node]) -> Pose:
-    x, y, z = entries["at"].numbers(3)
-    return Pose.from_xyz_yaw(x, y, z, entries["yaw"].angle() if "yaw" in entries else 0.0)
+        raise node.error(
+            f"it is {largest:g} m large, too large to be moved", remedy="Lengths are metres"
+        )
 
 
 def _colour(node: Node | None, kind: str, mesh: Mesh | None) -> tuple[float, float, float, float]:

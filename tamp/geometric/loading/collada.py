@@ -1,6 +1,7 @@
-"""The triangles in a COLLADA file: its nodes' transforms and its unit applied, its axes as they are.
+"""The triangles in a COLLADA file: transforms and unit applied, axes as they are.
 
-pybullet and most of robotics do not turn a file whose `<up_axis>` is Y; many writers say Y_UP whatever they write.
+pybullet and most of robotics do not turn a file whose `<up_axis>` is Y; many writers say Y_UP
+whatever they write.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ _MOST_DEPTH = 100
 
 
 def read_collada(path: Path, most: int) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices (n, 3) in metres and triangles (m, 3) of all that the file's scene shows, or of all its geometries
-    when it has no scene.
+    """Read vertices (n, 3) in metres and triangles (m, 3) of all that the file's scene shows, or of
+    all its geometries when it has no scene.
 
     Args:
         path: The file.
@@ -34,7 +35,9 @@ def read_collada(path: Path, most: int) -> tuple[Array, NDArray[np.int64]]:
     for element in root.iter():  # the namespace has changed with the version, the names have not
         element.tag = str(element.tag).rpartition("}")[2]
     if root.tag != "COLLADA":
-        raise InputError(f"cannot read the mesh '{path.name}': it is no COLLADA file, but <{root.tag[:40]}>")
+        raise InputError(
+            f"cannot read the mesh '{path.name}': it is no COLLADA file, but <{root.tag[:40]}>"
+        )
     return _Document(path, root).triangles()
 
 
@@ -42,7 +45,9 @@ class _Document:
     def __init__(self, path: Path, root: ElementTree.Element) -> None:
         self.path = path
         self.root = root
-        self.named = {element.get("id", ""): element for element in root.iter() if element.get("id")}
+        self.named = {
+            element.get("id", ""): element for element in root.iter() if element.get("id")
+        }
         self.vertices: list[Array] = []
         self.faces: list[NDArray[np.int64]] = []
         self.count = 0
@@ -68,14 +73,18 @@ class _Document:
         return np.concatenate(self.vertices), np.concatenate(self.faces)
 
     def node(self, node: ElementTree.Element, above: Array, depth: int) -> None:
-        """What a node shows, in a frame in which it stands by `above` (4, 4) and its own transforms."""
+        """Return the triangles that a node shows, in a frame in which it stands by `above` (4, 4)
+        and its own transforms.
+        """
         if depth > _MOST_DEPTH:
             raise self.error("its nodes are nested too deeply")
         matrix = above
         for child in node:
             if child.tag in _TRANSFORMS:
                 length, transform = _TRANSFORMS[child.tag]
-                matrix = matrix @ transform(self.numbers(child.text or "", f"<{child.tag}>", length))
+                matrix = matrix @ transform(
+                    self.numbers(child.text or "", f"<{child.tag}>", length)
+                )
         for child in node:
             if child.tag == "node":
                 self.node(child, matrix, depth + 1)
@@ -98,7 +107,7 @@ class _Document:
             self.geometry(target, matrix)
 
     def geometry(self, geometry: ElementTree.Element, matrix: Array) -> None:
-        """The triangles of a geometry; lines and splines are passed over."""
+        """Return the triangles of a geometry; lines and splines are passed over."""
         mesh = geometry.find("mesh")
         if mesh is None:
             return
@@ -112,25 +121,30 @@ class _Document:
         vertex = next((one for one in inputs if one.get("semantic") == "VERTEX"), None)
         if vertex is None or stride > 64:
             raise self.error("triangles without corners")
+
         offset = self.whole(vertex.get("offset", "0"))
         positions = self.positions(vertex.get("source", "")[1:])
+
         lists = [self.indices(one.text)[offset::stride] for one in group.findall("p")]
         lists += [self.indices(one.text)[offset::stride] for one in group.findall("ph/p")]
         counts = self.indices(group.findtext("vcount"))
         faces = [_faces(group.tag, corners, counts) for corners in lists]
+
         joined = np.concatenate(faces) if faces else np.zeros((0, 3), dtype=np.int64)
         if not len(joined):
             return
         if joined.min() < 0 or joined.max() >= len(positions):
             raise self.error("a face names a missing corner")
+
         if np.linalg.det(matrix[:3, :3]) < 0:  # mirrored: what was outside must stay outside
             joined = joined[:, ::-1]
+
         self.vertices.append(positions @ matrix[:3, :3].T + matrix[:3, 3])
         self.faces.append(joined + self.count)
         self.count += len(positions)
 
     def positions(self, source: str) -> Array:
-        """Corners (n, 3) of a <source>, or of the <vertices> that name one."""
+        """Return the corners (n, 3) of a <source>, or of the <vertices> that name one."""
         element = self.named.get(source)
         if element is not None and element.tag == "vertices":
             inputs = [one for one in element.findall("input") if one.get("semantic") == "POSITION"]
@@ -172,7 +186,7 @@ class _Document:
 
 
 def _faces(kind: str, corners: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Triangles (m, 3) of one list of corners."""
+    """Return the triangles (m, 3) of one list of corners."""
     if kind == "triangles":
         return corners[: len(corners) - len(corners) % 3].reshape(-1, 3)
     if kind == "tristrips":
@@ -199,7 +213,7 @@ def _translate(values: list[float]) -> Array:
 
 
 def _rotate(values: list[float]) -> Array:
-    """About an axis by degrees (Rodrigues)."""
+    """Return the rotation about an axis by degrees (Rodrigues)."""
     axis, angle = np.array(values[:3]), np.radians(values[3])
     axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])

@@ -1,4 +1,7 @@
-"""What carries a body where it is, felt along vertical lines. The judge asks the same by rays of its physics engine."""
+"""Supports: what carries a body where it is, felt along vertical lines.
+
+The judge asks the same by rays of its physics engine.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Sphere
 
 GAP = 0.0095
-"""Metres of air below a body that still count as resting: half a millimetre less than the judge allows."""
+"""Metres of air below a body that still count as resting: 0.5 mm less than the judge allows."""
 
 SINK = 0.001
 """Metres by which a body may stand in what carries it."""
@@ -22,7 +25,9 @@ EVEN = 0.0015
 """Metres by which the gaps of points that carry may differ."""
 
 LEAN = 0.001
-"""Metres by which the centre of mass may be out of the points that carry; the judge, who feels a grid, allows twice."""
+"""Metres by which the centre of mass may be out of the points that carry; the judge, who feels a
+grid, allows twice.
+"""
 
 GRID = 30
 """Lines along x and y."""
@@ -37,7 +42,7 @@ CROWD = 400
 """Parts around a body; where there are more, they lie in each other, which is refused elsewhere."""
 
 PAIRS = 8_000
-"""Parts looked at for all bodies of a scene together: only in a crowd that lies in itself are there more."""
+"""Parts looked at for all bodies together: only in a crowd that lies in itself are there more."""
 
 FLOOR = "floor"
 """What the floor is called among bodies."""
@@ -48,7 +53,8 @@ class Footing:
     """How a body stands.
 
     Attributes:
-        on: Names of the bodies that carry it, FLOOR included; empty when nothing is within GAP below it.
+        on: Names of the bodies that carry it, FLOOR included; empty when nothing is within GAP
+            below it.
         lean: Metres by which the centre of mass is out of what carries it; not positive inside.
     """
 
@@ -81,58 +87,81 @@ class Ground:
         self._high = np.array([high for _, high in boxes]).reshape(-1, 3)
 
     def footing(self, body: Body) -> Footing:
-        """How a body stands, among the others as they are; it may be elsewhere than when the ground was made."""
+        """Find what supports a body, among the others as they are; it may be elsewhere than when
+        the ground was made.
+        """
         low, high = bounds(body.parts, body.pose)
-        around = (self._low[:, :2] < high[:2]).all(axis=1) & (self._high[:, :2] > low[:2]).all(axis=1)
+        around = (self._low[:, :2] < high[:2]).all(axis=1) & (self._high[:, :2] > low[:2]).all(
+            axis=1
+        )
         around &= (self._high[:, 2] > low[2] - GAP - EVEN) & (self._low[:, 2] < high[2])
+
         near = [i for i in np.flatnonzero(around) if self._parts[i][0] != body.name]
         others = [self._parts[i] for i in near]
         self._pairs += len(others)
         if len(others) > CROWD or self._pairs > PAIRS:
             fixed = frozenset(name for name, _, _ in others if name in self._fixed)
             return Footing(fixed or frozenset({others[0][0] if others else FLOOR}), 0.0)
+
         few = near[:EDGED]
-        xy, under = _underside(body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE]))
+        xy, under = _underside(
+            body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE])
+        )
+
         tops = np.zeros((len(xy), len(others) + 1))  # the floor's first
         for column, (_, part, T_world_part) in enumerate(others, start=1):
             _, tops[:, column] = vertical(part, T_world_part, xy)
         # What is met higher up is beside the body and not below it.
         tops[tops > under[:, None] + SINK + EVEN] = -np.inf
+
         gaps = under[:, None] - tops
         least = float(gaps.min(initial=np.inf))
         if least > GAP:
             return Footing(frozenset(), math.inf)
+
         carrying = gaps <= least + EVEN
         names = [FLOOR, *(name for name, _, _ in others)]
         on = frozenset(names[column] for column in np.flatnonzero(carrying.any(axis=0)))
+
         T, centre = body.pose.matrix, center_of_mass(body)
         point = (T[:3, :3] @ centre + T[:3, 3])[:2]
         return Footing(on, outside(point, xy[carrying.any(axis=1)]))
 
 
 def center_of_mass(body: Body) -> Array:
-    """In the body's frame, metres, shape (3,): the one that its file gives, or of parts of one density."""
+    """Compute the centre of mass in the body's frame, metres, shape (3,): the one that its file
+    gives, or of parts of one density.
+    """
     if body.center_of_mass is not None:
         return np.array(body.center_of_mass)
     masses = [_mass(part) for part in body.parts]
-    centres = [part.pose.apply(centre[None])[0] for part, (_, centre) in zip(body.parts, masses, strict=True)]
+    centres = [
+        part.pose.apply(centre[None])[0]
+        for part, (_, centre) in zip(body.parts, masses, strict=True)
+    ]
     return np.average(centres, axis=0, weights=[volume for volume, _ in masses])
 
 
 def outside(point: Array, points: Array) -> float:
-    """Metres by which a point (2,) is outside of the convex hull of points (n, 2); not positive inside of it."""
+    """Compute the metres by which a point (2,) is outside of the convex hull of points (n, 2); not
+    positive inside of it.
+    """
     angles = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
     directions = np.stack([np.cos(angles), np.sin(angles)])
     return float((point @ directions - (points @ directions).max(axis=0)).max())
 
 
 def body_points(body: Body) -> Array:
-    """Points on the surfaces of its parts that reach their extents, in its own frame, shape (n, 3), metres."""
+    """Return points on the surfaces of the body's parts that reach their extents, in its own frame,
+    shape (n, 3), metres.
+    """
     return np.concatenate([part.pose.apply(_points(part)) for part in body.parts])
 
 
 def vertical(part: Part, T_world_part: Array, xy: Array) -> tuple[Array, Array]:
-    """Heights (n,) at which vertical lines at xy (n, 2) enter and leave a part; (inf, -inf) where they miss it."""
+    """Intersect a part with vertical lines at xy (n, 2): the heights (n,) at which they enter and
+    leave it; (inf, -inf) where they miss it.
+    """
     R = T_world_part[:3, :3]
     along = R[2]  # the world's z in the part's frame
     origins = (np.column_stack([xy, np.zeros(len(xy))]) - T_world_part[:3, 3]) @ R
@@ -154,7 +183,7 @@ def vertical(part: Part, T_world_part: Array, xy: Array) -> tuple[Array, Array]:
 
 
 def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array, Array]:
-    """Points (n, 2) of the plane under a body, and the heights (n,) of its surface above them.
+    """Return points (n, 2) of the plane under a body, and the heights (n,) of its surface there.
 
     Lines pass the edges (k, 3) of what is around, too.
     """
@@ -166,7 +195,8 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
     points = body.pose.apply(body_points(body))
     lowest = points[points[:, 2] < low[2] + 2 * EVEN][:, :2]
     middle = (low + high)[:2] / 2
-    xy = np.concatenate([grid, middle + (lowest - middle) * 0.998])  # a line along an edge may miss it
+    # A line along an edge may miss it.
+    xy = np.concatenate([grid, middle + (lowest - middle) * 0.998])
     under = np.full(len(xy), np.inf)
     for part in body.parts:
         enter, _ = vertical(part, body.pose.matrix @ part.pose.matrix, xy)
@@ -176,7 +206,7 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
 
 
 def _round(origins: Array, along: Array, radius: float) -> tuple[Array, Array]:
-    """Where lines enter and leave the points nearer to the origin than a radius."""
+    """Intersect lines with the points nearer to the origin than a radius: entry and exit."""
     a, b, c = along @ along, origins @ along, np.einsum("ij,ij->i", origins, origins) - radius**2
     if a < 1e-12:
         inside = c < 0
@@ -188,7 +218,7 @@ def _round(origins: Array, along: Array, radius: float) -> tuple[Array, Array]:
 
 
 def _between(origins: Array, along: Array, normals: Array, offsets: Array) -> tuple[Array, Array]:
-    """Where lines enter and leave an intersection of half-spaces."""
+    """Intersect lines with an intersection of half-spaces: where they enter and leave it."""
     slope, room = normals @ along, offsets - origins @ normals.T
     with np.errstate(divide="ignore", invalid="ignore"):
         t = room / slope
@@ -217,13 +247,18 @@ def _points(part: Part) -> Array:
     turn = np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
     circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(48)])
     if isinstance(shape, Cylinder):
-        return np.concatenate([circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)])
+        return np.concatenate(
+            [circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)]
+        )
     tilts = np.linspace(-np.pi / 2, np.pi / 2, 17)
-    return np.concatenate([circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts]) * shape.radius
+    return (
+        np.concatenate([circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts])
+        * shape.radius
+    )
 
 
 def _mass(part: Part) -> tuple[float, Array]:
-    """Volume and centre of a part in its own frame."""
+    """Compute the volume and the centroid of a part in its own frame."""
     shape = part.shape
     if isinstance(shape, Box):
         return math.prod(shape.size), np.zeros(3)
@@ -233,6 +268,8 @@ def _mass(part: Part) -> tuple[float, Array]:
         return 4 / 3 * math.pi * shape.radius**3, np.zeros(3)
     inside = shape.vertices.mean(axis=0)
     corners = shape.vertices[shape.faces] - inside
-    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    volumes = (
+        np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    )
     volume = max(float(volumes.sum()), 1e-15)
     return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume

@@ -1,7 +1,7 @@
 """Parametric furniture, built of boxes, with the surfaces and cavities that follow from it.
 
-The frame is on the floor under the centre: x along the width of the front, y the depth, the front faces -y, z up.
-Sizes are outer sizes [width, depth, height] in metres.
+The frame is on the floor under the centre: x along the width of the front, y the depth, the front
+faces -y, z up. Sizes are outer sizes [width, depth, height] in metres.
 """
 
 from __future__ import annotations
@@ -59,16 +59,28 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
     width, depth, height = size
     thickness = options.thickness or 0.04
     top = Surface(name, name, _at(0, 0, height), (width, depth))
+
     if not options.legs:
-        return Furniture((_board((-width / 2, width / 2), (-depth / 2, depth / 2), (0, height)),), (top,))
-    _need(height > thickness, f"a table {height:g} m high has no room under a top {thickness:g} m thick")
-    _need(min(width, depth) > 2 * _LEG, f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false")
+        return Furniture(
+            (_board((-width / 2, width / 2), (-depth / 2, depth / 2), (0, height)),), (top,)
+        )
+
+    _need(
+        height > thickness,
+        f"a table {height:g} m high has no room under a top {thickness:g} m thick",
+    )
+    _need(
+        min(width, depth) > 2 * _LEG,
+        f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false",
+    )
+
     across, along = (width - _LEG) / 2, (depth - _LEG) / 2
     legs = [
         Part(Box((_LEG, _LEG, height - thickness)), _at(x, y, (height - thickness) / 2))
         for x in (-across, across)
         for y in (-along, along)
     ]
+
     plate = _board((-width / 2, width / 2), (-depth / 2, depth / 2), (height - thickness, height))
     return Furniture((plate, *legs), (top,))
 
@@ -85,7 +97,10 @@ def _shelf(name: str, size: Size, options: Options) -> Furniture:
 
 def _cupboard(name: str, size: Size, options: Options) -> Furniture:
     parts, compartments = _carcass(size, options, back=options.back is not False)
-    cavities = tuple(Cavity(f"{name}_{i}", name, pose, inner) for i, (pose, inner) in enumerate(compartments, start=1))
+    cavities = tuple(
+        Cavity(f"{name}_{i}", name, pose, inner)
+        for i, (pose, inner) in enumerate(compartments, start=1)
+    )
     return Furniture(parts, (Surface(f"{name}_top", name, _at(0, 0, size[2]), size[:2]),), cavities)
 
 
@@ -112,33 +127,57 @@ FURNITURE: Mapping[str, Kind] = {
     "cupboard": Kind(_cupboard, ("compartments", "thickness", "back", "plinth")),
     "open_box": Kind(_open_box, ("thickness",)),
 }
-"""Builders by name. Each raises ValueError, with a sentence for the user, when the boards leave no room."""
+"""Builders by name; each raises ValueError, with a sentence, when the boards leave no room."""
 
 
-def _carcass(size: Size, options: Options, back: bool) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
-    """Sides, boards and dividers, and the compartments (floor's centre, inner size): bottom up, then left to right."""
+def _carcass(
+    size: Size, options: Options, back: bool
+) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
+    """Build sides, boards and dividers, and the compartments (floor's centre, inner size): bottom
+    up, then left to right.
+    """
     width, depth, height = size
-    board, foot, rows, columns = options.thickness or 0.02, options.plinth, options.rows, options.columns
+    board, foot, rows, columns = (
+        options.thickness or 0.02,
+        options.plinth,
+        options.rows,
+        options.columns,
+    )
+
     behind = board if back else 0.0
     inner = (
         (width - (columns + 1) * board) / columns,
         depth - behind,
         (height - foot - (rows + 1) * board) / rows,
     )
-    _need(min(inner) > 0, f"{rows} x {columns} compartments with boards {board:g} m thick leave no room inside")
+
+    _need(
+        min(inner) > 0,
+        f"{rows} x {columns} compartments with boards {board:g} m thick leave no room inside",
+    )
+
     half, front, rear = width / 2, -depth / 2, depth / 2 - behind
-    parts = [_board((side - board / 2, side + board / 2), (front, rear), (foot, height)) for side in (
-        board / 2 - half, half - board / 2)]  # fmt: skip
+    parts = [
+        _board((side - board / 2, side + board / 2), (front, rear), (foot, height))
+        for side in (board / 2 - half, half - board / 2)
+    ]
+
     inside = (board - half, half - board)
     floors = [foot + board + row * (inner[2] + board) for row in range(rows + 1)]
     parts += [_board(inside, (front, rear), (floor - board, floor)) for floor in floors]
+
     lefts = [board - half + column * (inner[0] + board) for column in range(columns)]
     for left in lefts[1:]:
-        parts += [_board((left - board, left), (front, rear), (floor, floor + inner[2])) for floor in floors[:-1]]
+        parts += [
+            _board((left - board, left), (front, rear), (floor, floor + inner[2]))
+            for floor in floors[:-1]
+        ]
+
     if back:
         parts.append(_board((-half, half), (rear, depth / 2), (foot, height)))
     if foot > 0:
         parts.append(_board((-half, half), (front, depth / 2), (0, foot)))
+
     centre = (front + rear) / 2
     return tuple(parts), [
         (_at(left + inner[0] / 2, centre, floor), inner) for floor in floors[:-1] for left in lefts
@@ -146,7 +185,7 @@ def _carcass(size: Size, options: Options, back: bool) -> tuple[tuple[Part, ...]
 
 
 def _board(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Part:
-    """A box between limits."""
+    """Return a box between limits."""
     size = (x[1] - x[0], y[1] - y[0], z[1] - z[0])
     return Part(Box(size), _at(math.fsum(x) / 2, math.fsum(y) / 2, math.fsum(z) / 2))
 

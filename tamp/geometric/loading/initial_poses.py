@@ -1,4 +1,4 @@
-"""Where the bodies of a problem stand at the start."""
+"""Initial poses: the places of the bodies of a problem at the start."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tamp.geometric.loading.bodies import Draft, read_orientation, read_pose
+from tamp.geometric.loading.bodies import Draft
+from tamp.geometric.loading.orientation import read_orientation, read_pose
 from tamp.geometric.loading.tops import top_of
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.bounds import bounds
@@ -19,7 +20,9 @@ FLOOR = "floor"
 """What `on:` calls the room's floor, at z = 0; it is no surface of the scene."""
 
 FARTHEST = 1e5
-"""Metres from the world's origin: farther out numbers lose the tenths of a millimetre that contacts need."""
+"""Metres from the world's origin: farther out numbers lose the tenths of a millimetre that contacts
+need.
+"""
 
 _HIGHEST_PILE = 200
 _SNAP = 0.002
@@ -35,7 +38,7 @@ class _Place:
     size: tuple[float, float]
 
     def outside(self, point: Array) -> float:
-        """How far a world point lies beyond the rectangle's edges, metres; 0 within it."""
+        """Compute how far a world point lies beyond the rectangle's edges, metres; 0 within it."""
         x, y, _ = self.pose.inverse().apply(point[None])[0]
         return max(0.0, abs(float(x)) - self.size[0] / 2, abs(float(y)) - self.size[1] / 2)
 
@@ -47,7 +50,8 @@ def place_bodies(drafts: Mapping[str, Draft]) -> tuple[dict[str, Body], tuple[st
         The placed bodies in the order of the drafts, and warnings.
 
     Raises:
-        InputError: An unknown support, one outside of its support, bodies that stand on each other in a circle.
+        InputError: An unknown support, one outside of its support, bodies that stand on each other
+            in a circle.
     """
     return _Placing(drafts).run()
 
@@ -100,7 +104,7 @@ class _Placing:
         self.check_level(self.placed[name], draft.node)
 
     def posed(self, draft: Draft) -> Body:
-        """A body given by `pose:`, or by `at: [x, y, z]` and how it is turned."""
+        """Place a body given by `pose:`, or by `at: [x, y, z]` and how it is turned."""
         entries = draft.entries
         if "pose" in entries:
             for key in entries:
@@ -117,7 +121,9 @@ class _Placing:
         return replace(draft.body, pose=Pose((x, y, z), read_orientation(entries)))
 
     def stood(self, draft: Draft, above: tuple[str, ...]) -> Body:
-        """A body given by `on:`: upright as modelled unless turned, its lowest point just above the support."""
+        """Place a body given by `on:`: upright as modelled unless turned, its lowest point just
+        above the support.
+        """
         entries, name = draft.entries, draft.body.name
         if "pose" in entries:
             raise entries["pose"].error("'on' and 'pose' both say where it is: keep one")
@@ -139,23 +145,29 @@ class _Placing:
         return replace(draft.body, pose=pose, support=place.name)
 
     def support(self, node: Node, above: tuple[str, ...]) -> _Place:
-        """The surface, the cavity, the carrying body or the floor that `on:` names."""
+        """Find the surface, the cavity, the carrying body or the floor that `on:` names."""
         name = node.text()
         if name == FLOOR and name not in self.owners and name not in self.drafts:
             return _Place(None, Pose(), (math.inf, math.inf))
+
         if name in self.owners:
             self.place(self.owners[name], above)
             return _places(self.placed[self.owners[name]])[name]
+
         if name in self.drafts:
             body = self.drafts[name].body
             if body.surfaces or body.cavities:
                 parts = [place.name for place in (*body.surfaces, *body.cavities)]
                 raise node.error(f"'{name}' has several places to stand", choices=parts)
+
             self.place(name, above)
             top = _top(self.placed[name])
             if top is None:
-                raise node.error(f"'{name}' has no flat top to stand on", remedy="Declare one with 'surfaces:'")
+                raise node.error(
+                    f"'{name}' has no flat top to stand on", remedy="Declare one with 'surfaces:'"
+                )
             return top
+
         known = sorted({*self.owners, *self.drafts, FLOOR} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=known)
 
@@ -165,10 +177,12 @@ class _Placing:
                 raise node.error(f"'{place.name}' is not horizontal, nothing can stand on it")
 
     def settled(self, body: Body, node: Node) -> Body:
-        """A movable body given by its pose: snapped to what is within 2 mm under its lowest point."""
+        """Settle a movable body given by its pose: snap it to what is within 2 mm below it."""
         low, high = bounds(body.parts, body.pose)
         if low[2] < -_SNAP:
-            raise node.error(f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'")
+            raise node.error(
+                f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'"
+            )
         base = np.array([*(low + high)[:2] / 2, low[2]])
         places = [_Place(None, Pose(), (math.inf, math.inf))]
         for index in np.flatnonzero(np.abs(self.heights - low[2]) <= _SNAP):
@@ -186,14 +200,14 @@ class _Placing:
 
 
 def _on(body: Body, pose: Pose, height: float) -> Pose:
-    """The pose lifted or lowered so that the body's lowest point is CONTACT_GAP above `height`."""
+    """Return the pose with the body's lowest point lifted to CONTACT_GAP above `height`."""
     low, _ = bounds(body.parts, pose)
     x, y, z = pose.position
     return Pose((x, y, z + height + CONTACT_GAP - float(low[2])), pose.quaternion)
 
 
 def _places(body: Body) -> dict[str, _Place]:
-    """The declared or derived places of a placed body that are level."""
+    """List the declared or derived places of a placed body that are level."""
     places: dict[str, _Place] = {}
     for place in (*body.surfaces, *body.cavities):
         pose = body.pose @ place.pose
@@ -203,6 +217,6 @@ def _places(body: Body) -> dict[str, _Place]:
 
 
 def _top(body: Body) -> _Place | None:
-    """The highest level face of a body without places of its own, which may carry another body."""
+    """Return the highest level face, on which others may stand, of a body without own places."""
     top = None if body.surfaces or body.cavities else top_of(body.name, body.parts, body.pose)
     return None if top is None else _Place(body.name, body.pose @ top.pose, top.size)

@@ -11,7 +11,8 @@ from tamp.errors import InputError
 from tamp.geometric.loading.bodies import Draft, read_body
 from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
 from tamp.geometric.loading.steadying import steady
-from tamp.geometric.loading.yaml_nodes import Node, Passage, read_yaml
+from tamp.geometric.loading.yaml_file import read_yaml
+from tamp.geometric.loading.yaml_nodes import Node, Passage
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.system.files import find_problem
 
@@ -34,7 +35,8 @@ class LoadedProblem:
         drawn: The mesh files that are only drawn, which no plan depends on.
         warnings: What was repaired or looks odd, one sentence each.
         lines: 1-based line of each body and of `robot`, for later errors about them.
-        entry_lines: The same of all entries of the file and of each of the `samplers`, by the keys that lead there.
+        entry_lines: The same of all entries of the file and of each of the `samplers`, by the keys
+            that lead there.
     """
 
     path: Path
@@ -51,7 +53,7 @@ class LoadedProblem:
     entry_lines: Mapping[tuple[str, ...], int]
 
     def error(self, message: str, about: str | None = None, remedy: str = "") -> InputError:
-        """An error about this problem, or about one of its bodies or its `robot`, with file and line."""
+        """Return an error about this problem, one of its bodies or its `robot`, with the line."""
         return InputError(message, file=self.path, line=self.lines.get(about or ""), remedy=remedy)
 
     def line_of(self, *keys: str) -> int | None:
@@ -74,14 +76,18 @@ def load_scene(problem: str | Path) -> LoadedProblem:
     name = entries["name"].text() if "name" in entries else path.stem
     room = _room(entries["room"])
     robot = _robot(entries["robot"], room)
+
     drafts = {
-        body: read_body(body, node, path.parent) for body, node in entries["bodies"].mapping().items()
-    }  # fmt: skip
+        body: read_body(body, node, path.parent)
+        for body, node in entries["bodies"].mapping().items()
+    }
     _check_names(drafts)
+
     placed, warnings = place_bodies(drafts)
     bodies, unsteady = steady(placed, drafts)
     meshes = [(body, draft.mesh) for body, draft in drafts.items() if draft.mesh]
     samplers = entries["samplers"].mapping() if "samplers" in entries else {}
+
     return LoadedProblem(
         path=path,
         scene=Scene(name, MappingProxyType(bodies), robot, room),
@@ -91,13 +97,24 @@ def load_scene(problem: str | Path) -> LoadedProblem:
         metric=entries["metric"].passage() if "metric" in entries else None,
         samplers=MappingProxyType({relation: node.text() for relation, node in samplers.items()}),
         meshes=tuple(dict.fromkeys(file for _, mesh in meshes for file in mesh.files)),
-        drawn=tuple(dict.fromkeys(one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None)),
-        warnings=(*(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings), *warnings, *unsteady),
+        drawn=tuple(
+            dict.fromkeys(
+                one.mesh for _, mesh in meshes for one in mesh.visuals if one.mesh is not None
+            )
+        ),
+        warnings=(
+            *(f"{body}: {text}" for body, mesh in meshes for text in mesh.warnings),
+            *warnings,
+            *unsteady,
+        ),
         entry_lines={
             **{(key,): node.line for key, node in entries.items()},
             **{("samplers", relation): node.line for relation, node in samplers.items()},
         },
-        lines={"robot": entries["robot"].line, **{body: draft.node.line for body, draft in drafts.items()}},
+        lines={
+            "robot": entries["robot"].line,
+            **{body: draft.node.line for body, draft in drafts.items()},
+        },
     )
 
 
@@ -109,7 +126,9 @@ def _room(node: Node) -> Room:
         if not low < high:
             raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
         if max(-low, high) > FARTHEST:
-            raise entries[axis].error(f"the room reaches farther than {FARTHEST:g} m from the world's origin")
+            raise entries[axis].error(
+                f"the room reaches farther than {FARTHEST:g} m from the world's origin"
+            )
         limits.append((low, high))
     return Room(*limits)
 
@@ -124,7 +143,8 @@ def _robot(node: Node, room: Room) -> RobotStart:
     for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
         if not low <= value <= high:
             raise entries["base"].error(
-                f"the robot starts out of the room: {axis} = {value:g} is not within [{low:g}, {high:g}]"
+                f"the robot starts out of the room: {axis} = {value:g} is not within "
+                f"[{low:g}, {high:g}]"
             )
     return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
 
@@ -143,7 +163,9 @@ def _arm(node: Node, model: str) -> tuple[float, ...]:
 
 
 def _check_names(drafts: Mapping[str, Draft]) -> None:
-    """All share one space of names, in which case does not count (PDDL's rule); one place may be named as its body."""
+    """Check that all names are unique: they share one space, in which case does not count (PDDL's
+    rule); one place may be named as its body.
+    """
     owners = {"robot": "the robot", FLOOR: "the floor"}
     for name, draft in drafts.items():
         if name.lower() in owners:
@@ -154,6 +176,8 @@ def _check_names(drafts: Mapping[str, Draft]) -> None:
         for place in (*draft.body.surfaces, *draft.body.cavities):
             key = place.name.lower()
             if key in owners and not (own and place.name == name):
-                raise draft.node.error(f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}")
+                raise draft.node.error(
+                    f"the name '{place.name}' of its surface or cavity is taken by {owners[key]}"
+                )
             own = own and place.name != name
             owners[key] = f"a surface or cavity of '{name}'"

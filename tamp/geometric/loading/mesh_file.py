@@ -1,4 +1,6 @@
-"""The triangles in a mesh file, whatever is wrong with it: read with limits, and by rules that name what they miss."""
+"""The triangles in a mesh file, whatever is wrong with it: read with limits, and by rules that name
+what they miss.
+"""
 
 from __future__ import annotations
 
@@ -32,39 +34,62 @@ _FACET = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _CORNER_0 = re.compile(rb"^f[^\n]*\s0[/\s]", re.MULTILINE)
 _PLY_REMARK = re.compile(rb"^(comment|obj_info)[^\n]*\n", re.MULTILINE)
 _PLY_COUNT = re.compile(rb"^element\s+(\S+)\s+(\S+)\s*$", re.MULTILINE)
-_PLY_SIZES = {"char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2}
+_PLY_SIZES = {
+    "char": 1,
+    "uchar": 1,
+    "int8": 1,
+    "uint8": 1,
+    "short": 2,
+    "ushort": 2,
+    "int16": 2,
+    "uint16": 2,
+}
 
 
 def read_triangles(path: Path) -> Triangles:
-    """Vertices (n, 3) as the file has them and faces (m, 3); COLLADA's units and nodes are applied, no axis is turned.
+    """Read vertices (n, 3) as the file has them and faces (m, 3); COLLADA's units and nodes are
+    applied, no axis is turned.
 
     Raises:
-        InputError: Not a mesh of its format, cut off, too large, empty, a corner that does not exist.
+        InputError: Not a mesh of its format, cut off, too large, empty, a corner that does not
+            exist.
     """
     name = path.name
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"'{name}' is neither {_KNOWN}")
+
     content = read_raw(path, MOST_BYTES)
-    if reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES:  # before minutes go into reading them
+    # Before minutes go into reading them.
+    if reader is _obj and content.count(b"\nf ") > MOST_TRIANGLES:
         raise InputError(f"the mesh '{name}' has more than {MOST_TRIANGLES:,} faces: simplify it")
+
     try:
         vertices, faces = reader(content, path)
     except InputError:
         raise
     except Exception as error:  # trimesh raises whatever its readers stumble on
-        known = {ImportError: "it is not text or binary of its format", IndexError: "a face names a missing corner"}
+        known = {
+            ImportError: "it is not text or binary of its format",
+            IndexError: "a face names a missing corner",
+        }
         why = next((words for kind, words in known.items() if isinstance(error, kind)), str(error))
         why = " ".join(why.split())[:200] or type(error).__name__
-        raise InputError(f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY") from None
+        raise InputError(
+            f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY"
+        ) from None
+
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise InputError(f"cannot read the mesh '{name}': its corners have no three coordinates")
     if not len(vertices) or not len(faces):
         raise InputError(f"the mesh '{name}' is empty: it holds no triangles")
     if len(faces) > MOST_TRIANGLES:
-        raise InputError(f"the mesh '{name}' has {len(faces):,} triangles: at most {MOST_TRIANGLES:,} are read")
+        raise InputError(
+            f"the mesh '{name}' has {len(faces):,} triangles: at most {MOST_TRIANGLES:,} are read"
+        )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError(f"the mesh '{name}' names a corner that it does not hold")
+
     return vertices, faces
 
 
@@ -76,7 +101,9 @@ def quiet() -> None:
 def _obj(content: bytes, path: Path) -> Triangles:
     text = ascii_text(content)
     if _CORNER_0.search(text):
-        raise InputError(f"cannot read the mesh '{path.name}': a face names corner 0, but they count from 1")
+        raise InputError(
+            f"cannot read the mesh '{path.name}': a face names corner 0, but they count from 1"
+        )
     return _by_trimesh(text, "obj")
 
 
@@ -84,48 +111,68 @@ def _ply(content: bytes, path: Path) -> Triangles:
     end = content.find(b"end_header", 0, 100_000)
     if not content.startswith(b"ply") or end < 0:
         raise InputError(f"cannot read the mesh '{path.name}': it has no header of a PLY file")
+
     header, body = content[:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n"), content[end:]
     header = _PLY_REMARK.sub(b"", header)
+
     claimed, rows = 0, 0
     for element, count in _PLY_COUNT.findall(header):
         if not count.isdigit() or len(count) > 12:
-            raise InputError(f"cannot read the mesh '{path.name}': {count[:20]!r} is no number of elements")
+            raise InputError(
+                f"cannot read the mesh '{path.name}': {count[:20]!r} is no number of elements"
+            )
         claimed += int(count) * _ply_row(header, element)
         rows += int(count)
+
     text = b"format ascii" in header
     if claimed > len(body) or (text and rows > len(body.splitlines()) - 1):
-        raise InputError(f"cannot read the mesh '{path.name}': it is cut off, its header tells of more than it holds")
+        raise InputError(
+            f"cannot read the mesh '{path.name}': it is cut off, its header tells of more "
+            "than it holds"
+        )
     return _by_trimesh(header + (ascii_text(body) if text else body), "ply")
 
 
 def _ply_row(header: bytes, element: bytes) -> int:
-    """The fewest bytes that a row of an element takes: in text a digit and a blank for each number."""
+    """Compute the fewest bytes of an element's row: in text a digit and a blank for each number."""
     rows = header.decode("latin-1").split("element")
     own = next((row for row in rows if row.split()[:1] == [element.decode("latin-1")]), "")
     properties = [line.split() for line in own.splitlines() if line.strip().startswith("property")]
     if b"format ascii" in header:
         return 2 * len(properties)
     # A list has at least its length.
-    return sum(_PLY_SIZES.get(words[2 if words[1] == "list" else 1], 4) for words in properties if len(words) > 2)
+    return sum(
+        _PLY_SIZES.get(words[2 if words[1] == "list" else 1], 4)
+        for words in properties
+        if len(words) > 2
+    )
 
 
 def _stl(content: bytes, path: Path) -> Triangles:
     count = struct.unpack_from("<I", content, 80)[0] if len(content) >= 84 else -1
     if len(content) >= 84 and len(content) == 84 + 50 * count:
         return _soup(_stl_records(content, count))
+
     if content.lstrip()[:5].lower() == b"solid" and b"facet" in content[:100_000].lower():
         corners = _FACET.findall(content)
         if len(corners) % 3 or content.count(b"endfacet") not in (0, len(corners) // 3):
-            raise InputError(f"cannot read the mesh '{path.name}': it is cut off in the middle of a triangle")
+            raise InputError(
+                f"cannot read the mesh '{path.name}': it is cut off in the middle of a triangle"
+            )
         return _soup(np.array(corners, dtype="S32").astype(np.float64).reshape(-1, 3))
+
     if len(content) < 84:
-        raise InputError(f"cannot read the mesh '{path.name}': it is no STL file, neither in text nor in binary")
+        raise InputError(
+            f"cannot read the mesh '{path.name}': it is no STL file, neither in text nor in binary"
+        )
+
     held = (len(content) - 84) // 50
     if held >= count:  # something follows the triangles, which readers skip
         return _soup(_stl_records(content, count))
+
     raise InputError(
-        f"cannot read the mesh '{path.name}': it is cut off (its header tells of {count:,} triangles, "
-        f"it holds {held:,}), or no STL file"
+        f"cannot read the mesh '{path.name}': it is cut off (its header tells of {count:,} "
+        f"triangles, it holds {held:,}), or no STL file"
     )
 
 
@@ -151,7 +198,11 @@ def _gltf(content: bytes, path: Path) -> Triangles:
     quiet()
     beside: Any = Beside(path.parent)
     loaded: Any = trimesh.load_scene(
-        io.BytesIO(content), file_type=path.suffix.lower()[1:], resolver=beside, process=False, skip_materials=True
+        io.BytesIO(content),
+        file_type=path.suffix.lower()[1:],
+        resolver=beside,
+        process=False,
+        skip_materials=True,
     )
     mesh: Any = loaded.to_mesh()
     return np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
@@ -176,11 +227,14 @@ def check_gltf(content: bytes, name: str) -> None:
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise InputError(f"cannot read the mesh '{name}': it is no glTF file") from None
     if not whole or total > 10 * MOST_TRIANGLES:
-        raise InputError(f"cannot read the mesh '{name}': it claims too many numbers, or less than none")
+        raise InputError(
+            f"cannot read the mesh '{name}': it claims too many numbers, or less than none"
+        )
 
 
 class Beside:
-    """What trimesh asks for the files that a mesh names: only regular ones of a modest size, in the mesh's folder.
+    """What trimesh asks for the files that a mesh names: only regular ones of a modest size, in the
+    mesh's folder.
 
     Args:
         folder: The mesh's folder.
@@ -190,7 +244,8 @@ class Beside:
         self._folder = folder.resolve()
 
     def get(self, name: str) -> bytes:
-        """The content of a file beside the mesh, or below; text is made ASCII where its suffix says that it is text.
+        """Return the content of a file beside the mesh, or below; text is made ASCII where its
+        suffix says that it is text.
 
         Raises:
             InputError: It is elsewhere, no regular file, or too large.
@@ -205,12 +260,14 @@ class Beside:
         return self.get(name)
 
     def namespaced(self, namespace: str) -> Beside:
-        """The same for a folder below."""
+        """Return the same for a folder below."""
         return Beside(self._folder / namespace)
 
 
 def ascii_text(content: bytes) -> bytes:
-    """Text with only ASCII in it: names and comments in any encoding lose their other letters, numbers nothing."""
+    """Return the text with only ASCII in it: names and comments in any encoding lose their other
+    letters, numbers nothing.
+    """
     if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
         content = content.decode("utf-16", errors="replace").encode("utf-8")
     content = content.removeprefix(b"\xef\xbb\xbf")

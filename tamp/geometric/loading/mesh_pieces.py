@@ -25,16 +25,21 @@ _VERSION = 2
 _ONE_HULL = 1.15
 
 
-def mesh_pieces(path: Path, scale: Scale, turned: Quaternion | None = None) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
-    """Convex pieces that contain the mesh, in metres in the file's frame, and what had to be repaired.
+def mesh_pieces(
+    path: Path, scale: Scale, turned: Quaternion | None = None
+) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
+    """Return the convex pieces that contain the mesh, in metres in the file's frame, and what had
+    to be repaired.
 
     Args:
         path: The mesh file.
         scale: Factors that make it metres.
-        turned: The orientation (xyzw) of the file's frame in the one in which the pieces are wanted; None for the same.
+        turned: The orientation (xyzw) of the file's frame in the one in which the pieces are
+            wanted; None for the same.
 
-    One hull when it is at most 15 % larger than the mesh. The first call takes a second or two; its result is kept in
-    the cache folder under the file's hash, and a later call takes a millisecond. Shipped meshes come with their pieces.
+    One hull when it is at most 15 % larger than the mesh. The first call takes a second or two; its
+    result is kept in the cache folder under the file's hash, and a later call takes a millisecond.
+    Shipped meshes come with their pieces.
 
     Raises:
         InputError: The file is missing or no usable mesh.
@@ -52,7 +57,7 @@ def mesh_pieces(path: Path, scale: Scale, turned: Quaternion | None = None) -> t
 
 
 def pieces_name(path: Path, scale: Scale, turned: Quaternion | None = None) -> str:
-    """The name of the file that keeps the pieces of a mesh at a scale.
+    """Return the name of the file that keeps the pieces of a mesh at a scale.
 
     Raises:
         InputError: The mesh cannot be read.
@@ -66,7 +71,7 @@ def pieces_name(path: Path, scale: Scale, turned: Quaternion | None = None) -> s
 def compute_pieces(
     path: Path, scale: Scale, turned: Quaternion | None = None
 ) -> tuple[tuple[Hull, ...], tuple[str, ...]]:
-    """The same, computed anew."""
+    """Compute the same pieces anew."""
     from scipy.spatial import ConvexHull, QhullError
 
     from tamp.geometric.loading.decomposition import decompose
@@ -74,7 +79,11 @@ def compute_pieces(
     from tamp.geometric.scene.convex import hull_of, simplified
 
     surface = read_surface(path, scale)
-    vertices = surface.vertices if turned is None else surface.vertices @ Pose(quaternion=turned).rotation.T
+    vertices = (
+        surface.vertices
+        if turned is None
+        else surface.vertices @ Pose(quaternion=turned).rotation.T
+    )
     try:
         whole = float(ConvexHull(vertices).volume)
         if surface.volume is not None and whole <= _ONE_HULL * surface.volume:
@@ -84,19 +93,23 @@ def compute_pieces(
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         hulls = tuple(_hull(*hull_of(_within(piece, low, high))) for piece in pieces)
     except (QhullError, ValueError):
-        raise InputError(f"the mesh '{path.name}' is degenerate: it is flat, no closed hull can be made") from None
+        raise InputError(
+            f"the mesh '{path.name}' is degenerate: it is flat, no closed hull can be made"
+        ) from None
     return hulls, surface.warnings
 
 
 def _within(points: Array, low: Array, high: Array) -> Array:
-    """A flat piece was made 1 mm thick: it is moved so that it does not stand out of the mesh's box."""
+    """Move a flat piece, which was made 1 mm thick, so that it does not stand out of the mesh's
+    bounding box.
+    """
     size = np.ptp(points, axis=0)
     move = np.maximum(low - points.min(axis=0), 0.0) - np.maximum(points.max(axis=0) - high, 0.0)
     return points + np.where(size <= high - low, move, 0.0)
 
 
 def packed(hulls: tuple[Hull, ...], warnings: tuple[str, ...]) -> bytes:
-    """The content of a file of pieces: plain arrays, no pickles."""
+    """Return the content of a file of pieces: plain arrays, no pickles."""
     stream = io.BytesIO()
     np.savez(
         stream,
@@ -111,10 +124,15 @@ def packed(hulls: tuple[Hull, ...], warnings: tuple[str, ...]) -> bytes:
 def _read(file: Path) -> tuple[tuple[Hull, ...], tuple[str, ...]] | None:
     try:
         with np.load(file, allow_pickle=False) as kept:
-            vertices, faces, counts, warnings = (kept[key] for key in ("vertices", "faces", "counts", "warnings"))
+            vertices, faces, counts, warnings = (
+                kept[key] for key in ("vertices", "faces", "counts", "warnings")
+            )
         first_vertex, first_face = np.cumsum(np.vstack([[0, 0], counts]), axis=0).T
         hulls = tuple(
-            _hull(vertices[first_vertex[i] : first_vertex[i + 1]], faces[first_face[i] : first_face[i + 1]])
+            _hull(
+                vertices[first_vertex[i] : first_vertex[i + 1]],
+                faces[first_face[i] : first_face[i + 1]],
+            )
             for i in range(len(counts))
         )
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):

@@ -42,7 +42,8 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
         scale: Factors that make it metres; negative ones mirror it.
 
     Raises:
-        InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of units.
+        InputError: Not a mesh, empty, not finite, flat, or of a size that can only be a mistake of
+            units.
     """
     import trimesh
 
@@ -59,10 +60,11 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
 
 
 def _closed(name: str, mesh: Any) -> MeshSurface:
-    """Merge equal corners; where the surface is open then, repair it as far as that goes, and say so."""
+    """Merge equal corners; where the surface is open then, repair what can be, and say so."""
     mesh = _merged(mesh, None)
     if not len(mesh.faces):
         raise InputError(f"the mesh '{name}' is degenerate: all its triangles have no area")
+
     warnings: tuple[str, ...] = ()
     gaps = open_edges(mesh.faces)
     if gaps:
@@ -77,9 +79,15 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
             mesh.fill_holes()
             if mesh.is_watertight:
                 mesh.fix_normals(multibody=True)
+
         left = open_edges(mesh.faces)
-        what = f"{left} stay open, it was taken as a surface with holes" if left else "they were closed"
+        what = (
+            f"{left} stay open, it was taken as a surface with holes"
+            if left
+            else "they were closed"
+        )
         warnings = (f"the mesh '{name}' is not watertight ({gaps} open edges): {what}",)
+
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces)
     volume = None
     if not open_edges(faces):
@@ -91,7 +99,7 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
 
 
 def _merged(mesh: Any, digits: int | None) -> Any:
-    """One corner where several are equal (to so many digits), without the triangles that this makes empty."""
+    """Merge corners equal to so many digits, without the triangles that this makes empty."""
     mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=digits)
     a, b, c = mesh.faces.T
     mesh.update_faces((a != b) & (b != c) & (c != a))
@@ -100,7 +108,8 @@ def _merged(mesh: Any, digits: int | None) -> Any:
 
 
 def open_edges(faces: NDArray[np.integer]) -> int:
-    """Edges that are not run through as often forwards as backwards; 0 for a closed, consistently turned surface.
+    """Count the boundary edges, not run through as often forwards as backwards; 0 for a closed
+    (watertight), consistently turned surface.
 
     An edge at which two closed bodies touch belongs to four triangles and is not open.
     """
@@ -115,8 +124,13 @@ def _check_size(name: str, extents: Array) -> None:
     size = " x ".join(f"{side:.4g}" for side in extents)
     if largest > LARGEST:
         factor = 0.001 if largest > 20 else 0.01
-        raise InputError(f"the mesh '{name}' is {size} m large", remedy=f"Lengths are metres: say scale: {factor:g}")
+        raise InputError(
+            f"the mesh '{name}' is {size} m large",
+            remedy=f"Lengths are metres: say scale: {factor:g}",
+        )
     if largest < SMALLEST:
-        raise InputError(f"the mesh '{name}' is {size} m small", remedy="Lengths are metres: say scale: 1000")
+        raise InputError(
+            f"the mesh '{name}' is {size} m small", remedy="Lengths are metres: say scale: 1000"
+        )
     if np.sort(extents)[1] < 1e-6:
         raise InputError(f"the mesh '{name}' is degenerate: its points lie on one line")

@@ -35,8 +35,10 @@ class Mesh:
         warnings: What had to be repaired or guessed.
         visuals: What to draw in place of the parts.
         colour: The URDF's colour, when it gives one.
-        sources: The mesh files among several parts: file, factors that make it metres, its pose in the body.
-        mass, center_of_mass, friction: The URDF's, when it gives them: kilograms, metres in the file's frame.
+        sources: The mesh files among several parts: file, factors that make it metres, its pose in
+            the body.
+        mass, center_of_mass, friction: The URDF's, when it gives them: kilograms, metres in the
+            file's frame.
     """
 
     parts: tuple[Part, ...]
@@ -51,20 +53,27 @@ class Mesh:
 
 
 def find_mesh(name: str, folder: Path) -> Path:
-    """The file that `mesh:` means: relative to the problem's folder or its `assets/`, shipped, or in `pybullet_data/`.
+    """Find the file that `mesh:` means: relative to the problem's folder or its `assets/`, shipped,
+    or in `pybullet_data/`.
 
     Raises:
         InputError: There is no such file.
     """
     path = Path(os.path.expanduser(name))
     shown = name if len(name) <= 80 else f"{name[:77]}..."
+
     if path.parts[:1] == (_PYBULLET,):
         spec = importlib.util.find_spec(_PYBULLET)
-        roots = [Path(place).parent for place in (spec.submodule_search_locations or ())] if spec else []
+        roots = (
+            [Path(place).parent for place in (spec.submodule_search_locations or ())]
+            if spec
+            else []
+        )
         if not roots:
             raise InputError(f"no mesh file '{shown}'", remedy="pybullet is not installed")
     else:
         roots = [folder, folder / "assets", shipped("problems") / "assets"]
+
     try:
         for root in roots:
             if (root / path).is_file():
@@ -72,12 +81,15 @@ def find_mesh(name: str, folder: Path) -> Path:
         beside = sorted(_meshes_beside(path, roots))
     except OSError as error:  # a name too long to be one, a folder that may not be read
         raise InputError(f"no mesh file '{shown}': {error.strerror}") from None
+
     nearest = closest(name, beside) if len(name) < 1000 else None
-    raise InputError(f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else "")
+    raise InputError(
+        f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else ""
+    )
 
 
 def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
-    """Names of mesh files in the folders in which the named one would be, as they would be named."""
+    """List the mesh files where the named one would be, as they would be named."""
     found: set[str] = set()
     for folder in (root / path.parent for root in roots):
         if not folder.is_dir():
@@ -90,24 +102,33 @@ def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
 
 
 def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
-    """A mesh file as convex parts in the file's frame.
+    """Load a mesh file as convex parts in the file's frame.
 
     Args:
         path: An OBJ, STL, PLY, COLLADA, glTF or URDF file.
         scale: Factors for the file's x, y, z that make it metres; a negative one mirrors it.
 
     Raises:
-        InputError: The file is no usable mesh; without the line of the problem file, which the caller knows.
+        InputError: The file is no usable mesh; without the line of the problem file, which the
+            caller knows.
     """
     if path.suffix.lower() == ".urdf":
         return _load_urdf(path, scale)
     hulls, warnings = mesh_pieces(path, scale)
     sources = ((path, scale, Pose()),) if len(hulls) > 1 else ()
-    return Mesh(tuple(Part(hull) for hull in hulls), (path,), warnings, (Visual(path, scale=scale),), sources=sources)
+    return Mesh(
+        tuple(Part(hull) for hull in hulls),
+        (path,),
+        warnings,
+        (Visual(path, scale=scale),),
+        sources=sources,
+    )
 
 
 def mesh_triangles(mesh: Mesh) -> Array | None:
-    """The triangles (n, 3, 3) of the mesh files among several parts, in the body's frame, metres; None without any."""
+    """Return the triangles (n, 3, 3) of the mesh files among several parts, in the body's frame,
+    metres; None without any.
+    """
     if not mesh.sources:
         return None
     from tamp.geometric.loading.mesh_file import read_triangles
@@ -121,22 +142,33 @@ def mesh_triangles(mesh: Mesh) -> Array | None:
 
 
 def _load_urdf(path: Path, scale: Scale) -> Mesh:
-    """Every collision element is a part or several; its visual elements are drawn."""
+    """Load a URDF file: each collision element is a part or several; the visual ones are drawn."""
     factor = scale[0]
     if scale != (factor, factor, factor) or factor < 0:
-        raise InputError(f"'{path.name}' can only be scaled alike in all directions", remedy="scale: one number > 0")
+        raise InputError(
+            f"'{path.name}' can only be scaled alike in all directions",
+            remedy="scale: one number > 0",
+        )
+
     described = read_object(path)
     parts: list[Part] = []
     sources: list[tuple[Path, Scale, Pose]] = []
     warnings = list(described.warnings)
+
     for element in described.collisions:
         made, repaired = _parts(element, factor)
         parts += made
         if element.mesh is not None:
-            sources.append((element.mesh, _times(element.scale, factor), scale_pose(element.pose, factor)))
+            sources.append(
+                (element.mesh, _times(element.scale, factor), scale_pose(element.pose, factor))
+            )
         warnings += repaired
-    files = dict.fromkeys([path, *(element.mesh for element in described.collisions if element.mesh)])
+
+    files = dict.fromkeys(
+        [path, *(element.mesh for element in described.collisions if element.mesh)]
+    )
     centre, doubt = _centre(path, described, tuple(parts), factor)
+
     return Mesh(
         tuple(parts),
         tuple(files),
@@ -151,7 +183,9 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
 
 
 def _parts(element: Element, factor: float) -> tuple[list[Part], tuple[str, ...]]:
-    """The convex parts of an element in a body that is scaled by a factor, and what had to be repaired."""
+    """Return the convex parts of an element in a body that is scaled by a factor, and what had to
+    be repaired.
+    """
     if element.shape is not None:
         return [scale_part(part, factor) for part in primitive_parts(element)], ()
     if element.mesh is None:
@@ -166,7 +200,7 @@ def _parts(element: Element, factor: float) -> tuple[list[Part], tuple[str, ...]
 
 
 def primitive_parts(element: Element) -> list[Part]:
-    """The parts of an element that is no mesh: several for a capsule."""
+    """Return the parts of an element that is no mesh: several for a capsule."""
     shape, pose = element.shape, element.pose
     if not isinstance(shape, Capsule):
         return [] if shape is None else [Part(shape, pose)]
@@ -174,34 +208,47 @@ def primitive_parts(element: Element) -> list[Part]:
 
 
 def capsule_parts(radius: float, length: float, pose: Pose = Pose()) -> list[Part]:
-    """A cylinder of that length along z, and a ball at each of its ends. Metres."""
+    """Return a capsule's parts: a cylinder of that length along z, a ball at each end. Metres."""
     ends = (Pose((0.0, 0.0, side * length / 2)) for side in (-1, 1))
-    return [Part(Cylinder(radius, length), pose), *(Part(Sphere(radius), pose @ end) for end in ends)]
+    return [
+        Part(Cylinder(radius, length), pose),
+        *(Part(Sphere(radius), pose @ end) for end in ends),
+    ]
 
 
 def _visual(element: Element, factor: float) -> Visual:
     pose = scale_pose(element.pose, factor)
     if element.mesh is not None:
-        return Visual(element.mesh, scale=_times(element.scale, factor), pose=pose, colour=element.colour)
-    return Visual(shapes=tuple(scale_part(part, factor) for part in primitive_parts(element)), colour=element.colour)
+        return Visual(
+            element.mesh, scale=_times(element.scale, factor), pose=pose, colour=element.colour
+        )
+    return Visual(
+        shapes=tuple(scale_part(part, factor) for part in primitive_parts(element)),
+        colour=element.colour,
+    )
 
 
 def _centre(
     path: Path, described: UrdfObject, parts: tuple[Part, ...], factor: float
 ) -> tuple[tuple[float, float, float] | None, tuple[str, ...]]:
-    """The centre of mass of the scaled body, unless it lies out of the body's box, where none can be."""
+    """Return the centre of mass of the scaled body, unless it lies out of the body's box, where
+    none can be.
+    """
     if described.center_of_mass is None:
         return None, ()
     x, y, z = (factor * value for value in described.center_of_mass)
     low, high = bounds(parts, Pose())
     if np.any(np.array((x, y, z)) < low - 1e-3) or np.any(np.array((x, y, z)) > high + 1e-3):
         where = f"[{x:.3g}, {y:.3g}, {z:.3g}]"
-        return None, (f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is taken",)
+        return None, (
+            f"'{path.name}' has its centre of mass at {where}, out of its shape: the shape's is "
+            "taken",
+        )
     return (x, y, z), ()
 
 
 def _along_axes(rotation: Array) -> bool:
-    """Whether a rotation (3, 3) maps axes onto axes."""
+    """Check whether a rotation (3, 3) maps axes onto axes."""
     return bool(np.all(np.minimum(np.abs(rotation), np.abs(np.abs(rotation) - 1)) < 1e-6))
 
 

@@ -31,7 +31,8 @@ def check_overlaps(problem: LoadedProblem) -> None:
     """Refuse a problem in which bodies overlap by more than 1 mm at the start.
 
     Raises:
-        InputError: Two bodies overlap; the deepest of the first pairs is named, at the line of the later one.
+        InputError: Two bodies overlap; the deepest of the first pairs is named, at the line of the
+            later one.
     """
     found = islice(find_overlaps(problem.scene), _ENOUGH)
     deepest = max(found, key=lambda overlap: overlap.depth, default=None)
@@ -46,16 +47,21 @@ def check_overlaps(problem: LoadedProblem) -> None:
 
 
 def find_overlaps(scene: Scene) -> Iterator[Overlap]:
-    """Pairs of bodies that lie more than 1 mm in each other at the start, in the scene's order.
+    """List the pairs of bodies that lie more than 1 mm in each other at the start, in the scene's
+    order.
 
-    The depth is the least distance by which a convex part must move to leave another (FCL on the exact shapes).
+    The depth is the least distance by which a convex part must move to leave another (FCL on the
+    exact shapes).
     """
     bodies = list(scene.bodies.values())
     limits = [bounds(body.parts, body.pose) for body in bodies]
     lows, highs = (np.array([corners[end] for corners in limits]).reshape(-1, 3) for end in (0, 1))
     for index, body in enumerate(bodies):
         later = slice(index + 1, None)
-        near = np.all((lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE), axis=1)
+        near = np.all(
+            (lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE),
+            axis=1,
+        )
         for other in np.flatnonzero(near) + index + 1:
             depth = _depth(body, bodies[other])
             if depth > TOLERANCE:
@@ -63,7 +69,9 @@ def find_overlaps(scene: Scene) -> Iterator[Overlap]:
 
 
 def _depth(first: Body, second: Body) -> float:
-    """The deepest penetration of any part of one body by any part of the other; 0 when they are apart."""
+    """Compute the deepest penetration of any part of one body by any part of the other; 0 when they
+    are apart.
+    """
     depth = 0.0
     for part in first.parts:
         low, high = bounds((part,), first.pose)
@@ -80,7 +88,9 @@ def _part_depth(part: Part, body: Body, other: Part, other_body: Body) -> float:
 
     result = fcl.CollisionResult()
     request = fcl.CollisionRequest(num_max_contacts=20, enable_contact=True)
-    fcl.collide(_collision_object(part, body), _collision_object(other, other_body), request, result)
+    fcl.collide(
+        _collision_object(part, body), _collision_object(other, other_body), request, result
+    )
     return max((abs(float(contact.penetration_depth)) for contact in result.contacts), default=0.0)
 
 
@@ -95,7 +105,11 @@ def _collision_object(part: Part, body: Body):
     elif isinstance(shape, Sphere):
         geometry = fcl.Sphere(shape.radius)
     else:
-        polygons = np.hstack([np.full((len(shape.faces), 1), 3), shape.faces]).astype(np.int32).ravel()
+        polygons = (
+            np.hstack([np.full((len(shape.faces), 1), 3), shape.faces]).astype(np.int32).ravel()
+        )
         geometry = fcl.Convex(np.array(shape.vertices), len(shape.faces), polygons)
     pose = body.pose @ part.pose
-    return fcl.CollisionObject(geometry, fcl.Transform(np.array(pose.rotation), np.array(pose.position)))
+    return fcl.CollisionObject(
+        geometry, fcl.Transform(np.array(pose.rotation), np.array(pose.position))
+    )

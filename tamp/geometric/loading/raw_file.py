@@ -8,14 +8,15 @@ from tamp.errors import InputError
 
 
 def read_raw(path: Path, most: int) -> bytes:
-    """All bytes of a regular file.
+    """Read all bytes of a regular file.
 
     Args:
         path: The file.
         most: Bytes beyond which it is refused, unread.
 
     Raises:
-        InputError: It is missing, no regular file (a device or a pipe would never end), unreadable or too large.
+        InputError: It is missing, no regular file (a device or a pipe would never end), unreadable
+            or too large.
     """
     name = path.name if len(path.name) <= 80 else f"{path.name[:77]}..."
     try:
@@ -25,7 +26,11 @@ def read_raw(path: Path, most: int) -> bytes:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
-        why = error.strerror if isinstance(error, OSError) and error.strerror else "it is no name of a file"
+        why = (
+            error.strerror
+            if isinstance(error, OSError) and error.strerror
+            else "it is no name of a file"
+        )
         raise InputError(f"cannot read '{name}': {why}") from None
     if len(content) > most:
         raise InputError(f"cannot read '{name}': it is larger than {most / 1e6:g} MB")

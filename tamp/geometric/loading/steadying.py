@@ -1,4 +1,4 @@
-"""Whether the bodies of a problem stand still at the start: they are settled, or refused with the reason."""
+"""Static stability at the start: bodies are settled, or refused with the reason."""
 
 from __future__ import annotations
 
@@ -9,13 +9,22 @@ from dataclasses import replace
 import numpy as np
 
 from tamp.geometric.loading.bodies import Draft
-from tamp.geometric.loading.footing import SINK, Footing, Ground, body_points, center_of_mass, outside
+from tamp.geometric.loading.footing import (
+    SINK,
+    Footing,
+    Ground,
+    body_points,
+    center_of_mass,
+    outside,
+)
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
 
 TIP = math.radians(20.0)
-"""A body that does not stand as it was given is tipped at most this far onto the face beside, radians."""
+"""A body that does not stand as it was given is tipped at most this far onto the face beside,
+radians.
+"""
 
 TOUCHING = 0.0005
 """Metres: points no higher than this above the lowest are down."""
@@ -24,11 +33,13 @@ ROLLS = 60
 """Edges over which a body is rolled, at most."""
 
 
-def steady(bodies: Mapping[str, Body], drafts: Mapping[str, Draft]) -> tuple[dict[str, Body], tuple[str, ...]]:
+def steady(
+    bodies: Mapping[str, Body], drafts: Mapping[str, Draft]
+) -> tuple[dict[str, Body], tuple[str, ...]]:
     """Compare how movable bodies stand with what the problem says, by the judge's rule.
 
-    A body given by `on:` that would tip over a little is laid onto the face beside; one given by its pose gets the
-    bodies that carry it, and a warning when nothing does.
+    A body given by `on:` that would tip over a little is laid onto the face beside; one given by
+    its pose gets the bodies that carry it, and a warning when nothing does.
 
     Returns:
         The bodies in their order, and warnings.
@@ -40,26 +51,32 @@ def steady(bodies: Mapping[str, Body], drafts: Mapping[str, Draft]) -> tuple[dic
     for name, body in bodies.items():
         if not body.movable:
             continue
+
         footing = ground.footing(body)
         entries = drafts[name].entries
+
         if "on" in entries:
             if footing.on and footing.why:
                 body, footing = _tipped(body, footing, ground, warnings)
             why = _why_not(body, footing, bodies)
             if why:
                 remedy = "Move it ('at:'), turn it ('yaw:', 'rpy:'), or put it onto something else"
-                raise entries["on"].error(f"{name} does not stand on '{entries['on'].text()}': {why}", remedy=remedy)
+                raise entries["on"].error(
+                    f"{name} does not stand on '{entries['on'].text()}': {why}", remedy=remedy
+                )
         elif footing.why:
             say = "hangs in the air" if not footing.on else "does not stand still"
             warnings.append(f"{name} {say}: {footing.why} (say 'on:', or 'fixed: true')")
             body = replace(body, support=None)
+
         carriers = tuple(other for other in bodies if other in footing.on and bodies[other].movable)
         steadied[name] = replace(body, carriers=() if footing.why else carriers)
+
     return steadied, tuple(warnings)
 
 
 def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | None:
-    """Why a body does not stand where the problem says; None when it does."""
+    """Explain why a body does not stand where the problem says; None when it does."""
     place = _place(body.support, bodies)
     if place is None:  # the floor, or a movable body
         return footing.why
@@ -84,8 +101,10 @@ def _place(support: str | None, bodies: Mapping[str, Body]) -> Surface | Cavity 
     return next((place for place in places if place.name == support), None)
 
 
-def _tipped(body: Body, footing: Footing, ground: Ground, warnings: list[str]) -> tuple[Body, Footing]:
-    """The body on the face that it tips onto, when that is near and carries it; itself otherwise."""
+def _tipped(
+    body: Body, footing: Footing, ground: Ground, warnings: list[str]
+) -> tuple[Body, Footing]:
+    """Return the body on the face that it tips onto if that is near and carries it, else itself."""
     turn = tip(body)
     if turn is None:
         return body, footing
@@ -100,14 +119,20 @@ def _tipped(body: Body, footing: Footing, ground: Ground, warnings: list[str]) -
     found = ground.footing(tipped)
     if found.why:
         return body, footing
-    warnings.append(f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: {footing.why}")
+    warnings.append(
+        f"{body.name} is tipped by {math.degrees(angle):.1f} deg onto its nearest face: "
+        f"{footing.why}"
+    )
     return tipped, found
 
 
 def tip(body: Body) -> Array | None:
-    """The rotation (3, 3), in the world, by which a body on a plane rolls until it lies still; None beyond TIP."""
+    """Compute the rotation (3, 3), in the world, by which a body on a plane rolls until it lies
+    still; None beyond TIP.
+    """
     points = body.pose.rotation @ body_points(body).T
     centre = body.pose.rotation @ center_of_mass(body)
+
     turn = np.eye(3)
     for _ in range(ROLLS):
         P, c = turn @ points, turn @ centre
@@ -116,6 +141,7 @@ def tip(body: Body) -> Array | None:
         feet = P[:2, down].T
         if outside(c[:2], feet) <= 0.0:
             break
+
         pivot, axis = _edge(c[:2], feet)
         # Turning about the axis through the pivot moves the centre of mass outward and down.
         above = P[:, ~down] - np.array([[pivot[0]], [pivot[1]], [low]])
@@ -124,16 +150,20 @@ def tip(body: Body) -> Array | None:
         angle = float(angles.min(initial=np.inf))
         if not angle < TIP:
             return None
+
         turn = _about(axis, max(angle, 1e-6)) @ turn
         if math.acos(min(1.0, (float(np.trace(turn)) - 1) / 2)) > TIP:
             return None
     else:
         return None
+
     return turn
 
 
 def _edge(centre: Array, feet: Array) -> tuple[Array, Array]:
-    """The point (2,) of the feet about which the body tips, and the axis (2,): along the line that separates most."""
+    """Find the point (2,) of the feet about which the body tips, and the axis (2,): along the line
+    that separates most.
+    """
     angles = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
     directions = np.stack([np.cos(angles), np.sin(angles)])
     beyond = centre @ directions - (feet @ directions).max(axis=0)
@@ -142,7 +172,7 @@ def _edge(centre: Array, feet: Array) -> tuple[Array, Array]:
 
 
 def _about(axis: Array, angle: float) -> Array:
-    """The rotation (3, 3) by an angle about a horizontal unit vector (2,)."""
+    """Return the rotation (3, 3) by an angle about a horizontal unit vector (2,)."""
     x, y = axis
     K = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K

@@ -1,4 +1,6 @@
-"""The highest level face of a body, on which others may stand: over all its parts, at their poses."""
+"""The highest level face of a body, on which others may stand: over all its parts, at their
+poses.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tamp.geometric.loading.rectangles import inscribed, largest_of_union
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.outline import outline
 from tamp.geometric.scene.pose import Array, Pose
@@ -30,12 +33,13 @@ _LID = 0.003
 
 _MOST_PARTS = 400
 _MOST_FACES = 40
-_GRID = 24
 
 
 @dataclass(frozen=True)
 class _Face:
-    """A level face of a part, z up: a convex polygon (n, 2) seen from above at a height, its sides turned by `yaw`."""
+    """A level face of a part, z up: a convex polygon (n, 2) seen from above at a height, its sides
+    turned by `yaw`.
+    """
 
     corners: Array
     height: float
@@ -44,7 +48,9 @@ class _Face:
 
 @dataclass(frozen=True)
 class _Rectangle:
-    """A level rectangle: middle, sides along x and y of a frame turned by `yaw`, height. Metres, radians."""
+    """A level rectangle: middle, sides along x and y of a frame turned by `yaw`, height. Metres,
+    radians.
+    """
 
     x: float
     y: float
@@ -53,18 +59,20 @@ class _Rectangle:
     yaw: float
 
 
-def top_of(name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None) -> Surface | None:
-    """The highest level rectangle on which another body may stand, as the surface `name`.
+def top_of(
+    name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None
+) -> Surface | None:
+    """Find the highest level rectangle on which another body may stand, as the surface `name`.
 
-    Faces at one height count together, what stands on them is left out, and a face that is at least 5 cm wide is
-    preferred to narrower ones above it (a chair's seat to the edge of its back).
+    Faces at one height count together, what stands on them is left out, and a face that is at least
+    5 cm wide is preferred to narrower ones above it (a chair's seat to the edge of its back).
 
     Args:
         name: Of the body and the surface.
         parts: In the body's frame.
         stance: How the body is turned when it stands; a turn about the vertical does not matter.
-        triangles: (n, 3, 3) in the body's frame, of the meshes among the parts. Several hulls may span air, as over a
-            cup: their faces count only where triangles lie in them.
+        triangles: (n, 3, 3) in the body's frame, of the meshes among the parts. Several hulls may
+            span air, as over a cup: their faces count only where triangles lie in them.
 
     Returns:
         The surface in the body's frame, its z up in that stance; None when no face is level.
@@ -87,7 +95,9 @@ def top_of(name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles:
     return Surface(name, name, frame, best.size, _clearance(best, boxes))
 
 
-def _highest(parts: tuple[Part, ...], boxes: list[tuple[Array, Array]], triangles: Array | None) -> _Rectangle | None:
+def _highest(
+    parts: tuple[Part, ...], boxes: list[tuple[Array, Array]], triangles: Array | None
+) -> _Rectangle | None:
     faces = [
         face
         for part in parts
@@ -109,7 +119,7 @@ def _highest(parts: tuple[Part, ...], boxes: list[tuple[Array, Array]], triangle
 
 
 def _clearance(place: _Rectangle, boxes: list[tuple[Array, Array]]) -> float:
-    """The free height above a rectangle, metres; infinite under the sky."""
+    """Compute the free height above a rectangle, metres; infinite under the sky."""
     cos, sin = math.cos(place.yaw), math.sin(place.yaw)
     into = np.array([[cos, sin], [-sin, cos]])
     free = math.inf
@@ -134,14 +144,25 @@ def _faces(part: Part) -> Iterator[_Face]:
         signs = np.zeros((4, 3))
         signs[:, axis], signs[:, u], signs[:, v] = up, (-1, 1, 1, -1), (-1, -1, 1, 1)
         corners = (signs * half) @ rotation.T + position
-        yield _Face(corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, u], rotation[0, u]))
+        yield _Face(
+            corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, u], rotation[0, u])
+        )
+
     elif isinstance(shape, Cylinder):
         if abs(rotation[2, 2]) < _LEVEL:
             return
-        side = shape.radius / 2**0.5  # half of the square in the circle, its sides along the cylinder's x and y
+        # Half of the square in the circle, its sides along the cylinder's x and y.
+        side = shape.radius / 2**0.5
         square = np.array([[-side, -side, 0], [side, -side, 0], [side, side, 0], [-side, side, 0]])
-        corners = square @ rotation.T + position + rotation[:, 2] * math.copysign(shape.height / 2, rotation[2, 2])
-        yield _Face(corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, 0], rotation[0, 0]))
+        corners = (
+            square @ rotation.T
+            + position
+            + rotation[:, 2] * math.copysign(shape.height / 2, rotation[2, 2])
+        )
+        yield _Face(
+            corners[:, :2], float(corners[:, 2].max()), math.atan2(rotation[1, 0], rotation[0, 0])
+        )
+
     elif isinstance(shape, Hull):
         yield from _hull_face(shape, rotation, position)
 
@@ -165,113 +186,72 @@ def _hull_face(shape: Hull, rotation: Array, position: Array) -> Iterator[_Face]
 
 
 def _solid(face: _Face, triangles: Array | None) -> bool:
-    """Whether most of a hull's face is the surface of the mesh and not a lid over air."""
+    """Check whether most of a hull's face is the surface of the mesh and not a lid over air."""
     if triangles is None:
         return False
     near = triangles[np.all(np.abs(triangles[:, :, 2] - face.height) < _LID, axis=1)][:, :, :2]
     a, b, c = near.transpose(1, 0, 2)
     area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
-    a, b, c, area = (one[area > 1e-12] for one in (a, b, c, area))  # counter-clockwise from above: they face up
-    x0, x1, y0, y1 = _inscribed(face.corners)
+    up = area > 1e-12  # counter-clockwise from above
+    a, b, c, area = a[up], b[up], c[up], area[up]
+    x0, x1, y0, y1 = inscribed(face.corners)
     steps = (np.arange(8) + 0.5) / 8
-    grid = np.stack(np.meshgrid(x0 + (x1 - x0) * steps, y0 + (y1 - y0) * steps), axis=-1).reshape(-1, 1, 2)
+    grid = np.stack(np.meshgrid(x0 + (x1 - x0) * steps, y0 + (y1 - y0) * steps), axis=-1).reshape(
+        -1, 1, 2
+    )
     v = ((grid - a)[..., 0] * (c - a)[:, 1] - (c - a)[:, 0] * (grid - a)[..., 1]) / area
     w = ((b - a)[:, 0] * (grid - a)[..., 1] - (grid - a)[..., 0] * (b - a)[:, 1]) / area
     covered = ((v >= -1e-9) & (w >= -1e-9) & (v + w <= 1 + 1e-9)).any(axis=1)
     return bool(covered.mean() >= 0.9)
 
 
-def _largest(level: list[_Face], height: float, boxes: list[tuple[Array, Array]]) -> _Rectangle | None:
-    """The largest free rectangle in the union of level faces, its sides along one of theirs."""
+def _largest(
+    level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
+) -> _Rectangle | None:
+    """Find the largest free rectangle in the union of level faces, along one face's sides."""
     standing = [
-        (low, high) for low, high in boxes if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM
-    ]  # fmt: skip
+        (low, high)
+        for low, high in boxes
+        if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM
+    ]
+
     yaws: list[float] = []
     for face in level:
         yaw = (face.yaw + math.pi / 4) % (math.pi / 2) - math.pi / 4
         if not any(abs(yaw - other) < _SAME_YAW for other in yaws):
             yaws.append(yaw)
+
     best: _Rectangle | None = None
     for yaw in sorted(yaws, key=abs)[:8]:
         yaw = 0.0 if abs(yaw) < 1e-9 else yaw
         cos, sin = math.cos(yaw), math.sin(yaw)
         into = np.array([[cos, sin], [-sin, cos]])
-        rectangles = np.array([_inscribed(face.corners @ into.T) for face in level])
+
+        rectangles = np.array([inscribed(face.corners @ into.T) for face in level])
         areas = (rectangles[:, 1] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 2])
         rectangles = rectangles[np.argsort(-areas, kind="stable")[:_MOST_FACES]]
         blocked = np.array([_flat_box(low, high, into) for low, high in standing]).reshape(-1, 4)
         (left, _, near, _), (_, right, _, far) = rectangles.min(axis=0), rectangles.max(axis=0)
-        over = (blocked[:, 0] < right) & (blocked[:, 1] > left) & (blocked[:, 2] < far) & (blocked[:, 3] > near)
+
+        over = (
+            (blocked[:, 0] < right)
+            & (blocked[:, 1] > left)
+            & (blocked[:, 2] < far)
+            & (blocked[:, 3] > near)
+        )
         if over.sum() > 2 * _MOST_FACES:
             return None
-        x0, x1, y0, y1 = _union(rectangles, blocked[over])
+
+        x0, x1, y0, y1 = largest_of_union(rectangles, blocked[over])
         width, depth = x1 - x0, y1 - y0
         if best is None or width * depth > best.size[0] * best.size[1] + 1e-12:
             best = _Rectangle((x0 + x1) / 2, (y0 + y1) / 2, (width, depth), height, yaw)
+
     return best if best is not None and min(best.size) > 1e-6 else None
 
 
 def _flat_box(low: Array, high: Array, into: Array) -> Array:
     corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ into.T
-    return np.array([corners[:, 0].min(), corners[:, 0].max(), corners[:, 1].min(), corners[:, 1].max()])
-
-
-def _inscribed(polygon: Array) -> Array:
-    """The largest rectangle along the axes in a convex polygon (n, 2), counter-clockwise or not: x0, x1, y0, y1.
-
-    Both bounds of y are taken at the sides of the rectangle, where a convex polygon is narrowest.
-    """
-    low, high = polygon.min(axis=0), polygon.max(axis=0)
-    xs = np.unique(np.concatenate([polygon[:, 0], np.linspace(low[0], high[0], _GRID)]))
-    floor, ceiling = _sides(polygon, xs)
-    bottom = np.maximum(floor[:, None], floor[None, :])
-    top = np.minimum(ceiling[:, None], ceiling[None, :])
-    areas = np.maximum(xs[None, :] - xs[:, None], 0) * np.maximum(top - bottom, 0)
-    i, j = np.unravel_index(int(np.argmax(areas)), areas.shape)
-    return np.array([xs[i], xs[j], bottom[i, j], top[i, j]])
-
-
-def _sides(polygon: Array, xs: Array) -> tuple[Array, Array]:
-    """Lowest and highest y of a convex polygon at each x."""
-    floor, ceiling = np.full(len(xs), np.inf), np.full(len(xs), -np.inf)
-    for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        within = (xs >= min(ax, bx) - 1e-12) & (xs <= max(ax, bx) + 1e-12)
-        ends = (ay, by) if abs(bx - ax) < 1e-12 else None
-        y = ay + (by - ay) * (xs - ax) / (bx - ax) if ends is None else None
-        floor[within] = np.minimum(floor[within], min(ends) if ends else y[within])  # type: ignore[index,arg-type]
-        ceiling[within] = np.maximum(ceiling[within], max(ends) if ends else y[within])  # type: ignore[index,arg-type]
-    return floor, ceiling
-
-
-def _union(rectangles: Array, blocked: Array) -> tuple[float, float, float, float]:
-    """The largest rectangle in a union of rectangles (n, 4: x0, x1, y0, y1) and out of others (m, 4)."""
-    xs = _lines(np.concatenate([rectangles[:, :2].ravel(), blocked[:, :2].ravel()]))
-    ys = _lines(np.concatenate([rectangles[:, 2:].ravel(), blocked[:, 2:].ravel()]))
-    free = np.zeros((len(xs) - 1, len(ys) - 1), dtype=bool)
-    if not free.size:
-        return 0.0, 0.0, 0.0, 0.0
-    mx, my = (xs[1:] + xs[:-1]) / 2, (ys[1:] + ys[:-1]) / 2
-    for x0, x1, y0, y1 in rectangles:
-        free[np.ix_((mx > x0) & (mx < x1), (my > y0) & (my < y1))] = True
-    for x0, x1, y0, y1 in blocked:
-        free[np.ix_((mx > x0) & (mx < x1), (my > y0) & (my < y1))] = False
-    best, chosen = 0.0, (0.0, 0.0, 0.0, 0.0)
-    for first in range(len(mx)):
-        open_ = np.ones(len(my), dtype=bool)
-        for last in range(first, len(mx)):
-            open_ &= free[last]
-            if not open_.any():
-                break
-            edges = np.flatnonzero(np.diff(np.concatenate([[0], open_.astype(np.int8), [0]])))
-            for start, end in zip(edges[::2], edges[1::2], strict=True):
-                area = (xs[last + 1] - xs[first]) * (ys[end] - ys[start])
-                if area > best + 1e-12:
-                    best = float(area)
-                    chosen = (float(xs[first]), float(xs[last + 1]), float(ys[start]), float(ys[end]))
-    return chosen
-
-
-def _lines(values: Array) -> Array:
-    """Sorted values, those that are nearer than a hundredth of a millimetre counted once."""
-    ordered = np.unique(values)
-    return ordered[np.concatenate([[True], np.diff(ordered) > 1e-5])]
+    return np.array(
+        [corners[:, 0].min(), corners[:, 0].max(), corners[:, 1].min(), corners[:, 1].max()]
+    )

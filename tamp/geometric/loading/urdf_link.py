@@ -31,7 +31,9 @@ class UnknownGeometry(InputError):
 
 @dataclass(frozen=True)
 class Capsule:
-    """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the cylinder alone."""
+    """A cylinder with a ball at each end, as pybullet reads `<capsule>`; `length` is that of the
+    cylinder alone.
+    """
 
     radius: float
     length: float
@@ -57,29 +59,38 @@ class Element:
 
 
 def read_visuals(path: Path) -> dict[str, tuple[Element, ...]]:
-    """The visual elements of all links of a URDF file, by the links' names.
+    """Read the visual elements of all links of a URDF file, by the links' names.
 
     Raises:
         InputError: Not XML, or a geometry that is unknown, not finite or not positive.
     """
     root = read_xml(path)
     colours = named_colours(root)
-    return {link.get("name", ""): elements(path, link, "visual", colours) for link in root.findall("link")}
+    return {
+        link.get("name", ""): elements(path, link, "visual", colours)
+        for link in root.findall("link")
+    }
 
 
 def elements(
     path: Path, link: ElementTree.Element, kind: str, colours: Mapping[str, Colour] | None = None
 ) -> tuple[Element, ...]:
-    """The `collision` or `visual` elements of a link that have a geometry; `colours`: of the materials by name.
+    """Read the `collision` or `visual` elements of a link that have a geometry; `colours`: of the
+    materials by name.
 
     Raises:
-        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist; too many.
+        InputError: One that is unknown, not finite, not positive, or whose mesh does not exist; too
+            many.
     """
     found: list[Element] = []
     for element in link.findall(kind)[: MOST_ELEMENTS + 1]:
         geometry, material = element.find("geometry"), element.find("material")
         if geometry is not None:
-            colour = None if material is None else _rgba(material) or (colours or {}).get(material.get("name", ""))
+            colour = (
+                None
+                if material is None
+                else _rgba(material) or (colours or {}).get(material.get("name", ""))
+            )
             found.append(_element(path, element, geometry, colour))
     if len(found) > MOST_ELEMENTS:
         raise InputError(f"'{path.name}' has more than {MOST_ELEMENTS} {kind} elements")
@@ -87,7 +98,7 @@ def elements(
 
 
 def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
-    """The pose in an element's <origin xyz rpy>, the identity where there is none.
+    """Read the pose in an element's <origin xyz rpy>, the identity where there is none.
 
     Raises:
         InputError: Not three finite numbers.
@@ -98,7 +109,9 @@ def origin_pose(path: Path, element: ElementTree.Element | None) -> Pose:
 
 
 def named_colours(root: ElementTree.Element) -> dict[str, Colour]:
-    """The colours of a file's materials by name: the file's own first, then those of its links' visual elements."""
+    """Return the colours of a file's materials by name: the file's own first, then those of its
+    links' visual elements.
+    """
     found: dict[str, Colour] = {}
     for material in (*root.findall("material"), *root.findall("link/visual/material")):
         colour = _rgba(material)
@@ -119,10 +132,13 @@ def _rgba(material: ElementTree.Element) -> Colour | None:
     return (r, g, b, a)
 
 
-def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None) -> Element:
+def _element(
+    path: Path, element: ElementTree.Element, geometry: ElementTree.Element, colour: Colour | None
+) -> Element:
     pose = origin_pose(path, element)
     if not len(geometry):
         raise InputError(f"'{path.name}' has an empty <geometry>")
+
     shape = geometry[0]
     if shape.tag == "box":
         return Element(pose, Box(_vector(path, shape, "size", None, positive=True)), colour=colour)
@@ -137,32 +153,47 @@ def _element(path: Path, element: ElementTree.Element, geometry: ElementTree.Ele
     if shape.tag == "mesh":
         file = _mesh_file(path, shape.get("filename", ""))
         return Element(pose, mesh=file, scale=_scale(path, shape), colour=colour)
+
     if shape.tag == "plane":
-        raise InputError(f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0")
-    raise UnknownGeometry(f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}")
+        raise InputError(
+            f"'{path.name}' has a <plane>, which has no end: the room has its floor at z = 0"
+        )
+
+    raise UnknownGeometry(
+        f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}"
+    )
 
 
 def _scale(path: Path, mesh: ElementTree.Element) -> Scale:
-    """Three factors, or one for all directions, which URDF does not provide for but files have."""
+    """Read three factors, or one for all directions, which files have though URDF does not."""
     words = _numbers(path, mesh, "scale", None) if "scale" in mesh.attrib else (1.0,)
     if len(words) not in (1, 3) or 0.0 in words:
         text = mesh.get("scale", "")
-        raise InputError(f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, found '{text[:60]}'")
+        raise InputError(
+            f"'{path.name}': scale of <mesh>: expected 3 numbers that are not 0, "
+            f"found '{text[:60]}'"
+        )
     x, y, z = words if len(words) == 3 else words * 3
     return (x, y, z)
 
 
 def _mesh_file(path: Path, name: str) -> Path:
-    """A mesh beside the URDF, or `package://` somewhere above it."""
+    """Find a mesh beside the URDF, or `package://` somewhere above it."""
     if not name.strip():
         raise InputError(f"'{path.name}' has a mesh without a file name")
     name = name.strip().replace("\\", "/")  # as written on Windows
+
     below = name
     for start in ("package://", "model://", "file://"):
         below = below.removeprefix(start)
+
     tails, folders = [Path(below)], [path.parent]
     if not name.startswith("file://") and below != name:
-        tails, folders = [Path(below), Path(*Path(below).parts[1:])], [path.parent, *path.absolute().parents]
+        tails, folders = (
+            [Path(below), Path(*Path(below).parts[1:])],
+            [path.parent, *path.absolute().parents],
+        )
+
     for folder in folders:
         for tail in tails:
             try:
@@ -170,6 +201,7 @@ def _mesh_file(path: Path, name: str) -> Path:
                     return folder / tail
             except OSError:  # a name too long to be one
                 continue
+
     short = name if len(name) <= 80 else f"{name[:77]}..."
     raise InputError(f"'{path.name}' names the mesh '{short}', which does not exist")
 
@@ -194,7 +226,11 @@ def _vector(
 
 
 def _numbers(
-    path: Path, element: ElementTree.Element, attribute: str, count: int | None, positive: bool = False
+    path: Path,
+    element: ElementTree.Element,
+    attribute: str,
+    count: int | None,
+    positive: bool = False,
 ) -> tuple[float, ...]:
     text = element.get(attribute, "")
     shown = text if len(text) <= 60 else f"{text[:57]}..."
@@ -207,7 +243,9 @@ def _numbers(
     if count is not None and len(values) != count:
         raise InputError(f"{where}: expected {count} numbers, found '{shown}'")
     if not all(math.isfinite(value) for value in values) or (positive and min(values) <= 0):
-        raise InputError(f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite")
+        raise InputError(
+            f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite"
+        )
     if max(map(abs, values), default=0.0) > FARTHEST:
         raise InputError(f"{where}: '{shown}' is beyond {FARTHEST:g}")
     return values

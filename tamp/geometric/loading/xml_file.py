@@ -1,4 +1,6 @@
-"""XML files as people have them: blank lines before the declaration, other encodings, something after the end."""
+"""XML files as people have them: blank lines before the declaration, other encodings, something
+after the end.
+"""
 
 from __future__ import annotations
 
@@ -15,16 +17,17 @@ MOST_BYTES = 20_000_000
 _DECLARED = re.compile(rb"""^<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["'][^>]*\?>""")
 # Of the others, some are no text, and some take quadratic time.
 _KNOWN = re.compile(
-    r"(utf|ucs|us-ascii|ascii|iso[-_]?8859|latin|windows-?125|cp\d|gb|big5|shift|sjis|euc|koi8|mac)", re.IGNORECASE
+    r"(utf|ucs|us-ascii|ascii|iso[-_]?8859|latin|windows-?125|cp\d|gb|big5|shift|sjis|euc|koi8|mac)",
+    re.IGNORECASE,
 )
 _BOMS = ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be"))
 
 
 def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
-    """The root element of an XML file.
+    """Read the root element of an XML file.
 
-    Text that is not of the encoding that it declares (UTF-8 when it declares none) is read as Latin-1: names of parts
-    and materials are all that can suffer.
+    Text that is not of the encoding that it declares (UTF-8 when it declares none) is read as
+    Latin-1: names of parts and materials are all that can suffer.
 
     Args:
         path: The file.
@@ -43,7 +46,9 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
 
 
 def _text(content: bytes) -> str:
-    """The text of the file without byte order mark, declaration, and blanks or zero bytes at its ends."""
+    """Return the text of the file without byte order mark, declaration, and blanks or zero bytes at
+    its ends.
+    """
     encoding = "utf-8"
     for mark, name in _BOMS:
         if content.startswith(mark):

@@ -12,13 +12,8 @@ import yaml
 from tamp.errors import InputError
 from tamp.geometric.loading.passage import Passage
 
-# libyaml's parser is ten times faster; it is missing only where PyYAML was built without it.
-_Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TAG = "tag:yaml.org,2002:"
 _UNITS = ("deg", "rad", "°")
-
-MAX_BYTES = 1_000_000
-"""Larger files are refused: they are something else, and would take long to say so."""
 
 MAX_DEPTH = 100
 """Deeper nesting is refused."""
@@ -34,7 +29,8 @@ _SHOWN = 60
 class Node:
     """A value of a YAML file: its place, its name, and readers that say what is wrong with it.
 
-    Words are taken as they are written, never as YAML 1.1 reads them: `on:` is a key, not the boolean true.
+    Words are taken as they are written, never as YAML 1.1 reads them: `on:` is a key, not the
+    boolean true.
 
     Args:
         node: PyYAML's node.
@@ -44,7 +40,9 @@ class Node:
         line: 1-based line; the key's line for a value of a mapping.
     """
 
-    def __init__(self, node: yaml.Node, file: Path, source: list[str], name: str, line: int) -> None:
+    def __init__(
+        self, node: yaml.Node, file: Path, source: list[str], name: str, line: int
+    ) -> None:
         self._node = node
         self._file = file
         self._source = source
@@ -52,18 +50,31 @@ class Node:
         self.line = line
 
     def error(
-        self, message: str, *, found: str | None = None, choices: Iterable[str] = (), remedy: str = ""
+        self,
+        message: str,
+        *,
+        found: str | None = None,
+        choices: Iterable[str] = (),
+        remedy: str = "",
     ) -> InputError:
-        """An error about this value, to be raised by the caller."""
+        """Return an error about this value, to be raised by the caller."""
         where = f"{self.name}: " if self.name else ""
-        message = " ".join(message[:_LONGEST].split())  # a word of the file may hold line breaks, or a megabyte
+        # A word of the file may hold line breaks, or a megabyte.
+        message = " ".join(message[:_LONGEST].split())
         found = None if found is None else found[:_LONGEST]
         return InputError(
-            where + message, file=self._file, line=self.line, found=found, choices=choices, remedy=remedy
-        )  # fmt: skip
+            where + message,
+            file=self._file,
+            line=self.line,
+            found=found,
+            choices=choices,
+            remedy=remedy,
+        )
 
-    def mapping(self, allowed: Collection[str] | None = None, required: Collection[str] = ()) -> dict[str, Node]:
-        """The entries of a mapping in the file's order.
+    def mapping(
+        self, allowed: Collection[str] | None = None, required: Collection[str] = ()
+    ) -> dict[str, Node]:
+        """Return the entries of a mapping in the file's order.
 
         Args:
             allowed: The keys it may have; None when the keys are names chosen by the user.
@@ -78,21 +89,29 @@ class Node:
         entries = self._entries(self._node, {}, 0)
         for key, entry in entries.items():
             if allowed is not None and key not in allowed:
-                raise _at(entry, self.error(f"unknown key '{_short(key)}'", found=key, choices=allowed))
+                raise _at(
+                    entry, self.error(f"unknown key '{_short(key)}'", found=key, choices=allowed)
+                )
         for key in required:
             if key not in entries:
                 raise self.error(f"'{key}' is missing")
         return entries
 
-    def _entries(self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int) -> dict[str, Node]:
-        """The entries of a mapping, with those that it merges; `known`: of the mappings merged before, by identity."""
+    def _entries(
+        self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int
+    ) -> dict[str, Node]:
+        """Return a mapping's entries, those merged too; `known`: merged before, by identity."""
         if id(node) in known:
             found = known[id(node)]
             if found is None:
                 raise self.error("'<<' merges a mapping into itself")
             return found
+
         if depth > MAX_DEPTH or len(known) > MAX_MERGES:
-            raise self.error(f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep")
+            raise self.error(
+                f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep"
+            )
+
         known[id(node)] = None
         entries: dict[str, Node] = {}
         merged: list[yaml.Node] = []
@@ -105,8 +124,11 @@ class Node:
             child = self._child(value, key.value, key.start_mark.line + 1)
             if key.value in entries:
                 first = entries[key.value].line
-                raise _at(child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}"))
+                raise _at(
+                    child, self.error(f"'{_short(key.value)}' stands twice, first in line {first}")
+                )
             entries[key.value] = child
+
         if len(merged) > MAX_MERGES:
             raise self.error(f"'<<' merges more than {MAX_MERGES} mappings")
         for base in merged:
@@ -114,11 +136,12 @@ class Node:
                 raise self.error("'<<' merges mappings only")
             for key, child in self._entries(base, known, depth + 1).items():
                 entries.setdefault(key, child)
+
         known[id(node)] = entries
         return entries
 
     def items(self, count: int | None = None) -> list[Node]:
-        """The entries of a list.
+        """Return the entries of a list.
 
         Raises:
             InputError: Not a list, or not of `count` entries.
@@ -129,11 +152,12 @@ class Node:
         if count is not None and len(self._node.value) != count:
             raise self.error(f"expected {count} numbers, found {len(self._node.value)}")
         return [
-            self._child(item, f"[{index}]", item.start_mark.line + 1) for index, item in enumerate(self._node.value)
+            self._child(item, f"[{index}]", item.start_mark.line + 1)
+            for index, item in enumerate(self._node.value)
         ]
 
     def text(self, choices: Collection[str] | None = None, kind: str = "value") -> str:
-        """A word or a sentence.
+        """Read a word or a sentence.
 
         Raises:
             InputError: Not text, empty, or not among the choices.
@@ -147,8 +171,10 @@ class Node:
             raise self.error(f"unknown {kind} '{_short(value)}'", found=value, choices=choices)
         return value
 
-    def number(self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf) -> float:
-        """A finite number.
+    def number(
+        self, *, positive: bool = False, low: float = -math.inf, high: float = math.inf
+    ) -> float:
+        """Read a finite number.
 
         Raises:
             InputError: Not a number, not finite, not positive, or outside of [low, high].
@@ -156,21 +182,24 @@ class Node:
         return self._checked(self.text(), positive, low, high)
 
     def integer(self, *, low: int, high: float = math.inf) -> int:
-        """A whole number in [low, high]."""
+        """Read a whole number in [low, high]."""
         value = self.number(low=low, high=high)
         if value != int(value):
             raise self.error(f"{value:g} is not a whole number")
         return int(value)
 
-    def numbers(self, count: int, *, positive: bool = False, low: float = -math.inf) -> tuple[float, ...]:
-        """A list of `count` finite numbers."""
+    def numbers(
+        self, count: int, *, positive: bool = False, low: float = -math.inf
+    ) -> tuple[float, ...]:
+        """Read a list of `count` finite numbers."""
         return tuple(item.number(positive=positive, low=low) for item in self.items(count))
 
     def angle(self) -> float:
-        """An angle in radians, written `90 deg`, `1.57 rad` or as a plain number of radians.
+        """Read an angle in radians, written `90 deg`, `1.57 rad` or as a plain number of radians.
 
         Raises:
-            InputError: Not an angle, or a plain number beyond a full turn, which was surely meant in degrees.
+            InputError: Not an angle, or a plain number beyond a full turn, which was surely meant
+                in degrees.
         """
         text = self.text()
         unit = next((unit for unit in _UNITS if text.endswith(unit)), None)
@@ -179,30 +208,35 @@ class Node:
         if unit in ("deg", "°"):
             return math.radians(value)
         if unit is None and abs(value) > 2 * math.pi + 1e-9:
-            raise self.error(f"{value:g} radians are more than a full turn", remedy=f"Write '{value:g} deg' or 'rad'")
+            raise self.error(
+                f"{value:g} radians are more than a full turn",
+                remedy=f"Write '{value:g} deg' or 'rad'",
+            )
         return value
 
     def flag(self) -> bool:
-        """True or false."""
+        """Read a boolean: true or false."""
         value = self.text().lower()
         if value not in ("true", "yes", "false", "no"):
             raise self.error(f"'{_short(value)}' is neither true nor false")
         return value in ("true", "yes")
 
     def is_list(self) -> bool:
-        """Whether it is a list."""
+        """Check whether it is a list."""
         return isinstance(self._node, yaml.SequenceNode)
 
     def passage(self) -> Passage:
-        """Text exactly as it stands in the file, so that a parser can say line and column."""
+        """Return the text as it stands in the file, so that a parser can say line and column."""
         text = self.text()
         start, end = self._node.start_mark, self._node.end_mark
         style = self._node.style if isinstance(self._node, yaml.ScalarNode) else None
         if style in ("|", ">"):
-            # The block's indicator stands on the line before its text, and what follows it is less indented.
+            # The indicator stands on the line before the text; what follows is less indented.
             below = self._source[start.line + 1 :]
             indent = next(_indent(line) for line in below if line.strip())
-            block = list(itertools.takewhile(lambda line: not line.strip() or _indent(line) >= indent, below))
+            block = list(
+                itertools.takewhile(lambda line: not line.strip() or _indent(line) >= indent, below)
+            )
             return Passage("\n".join(block), start.line + 2, 1)
         lines = self._source[start.line : end.line + 1]
         lines[-1] = lines[-1][: end.column]
@@ -228,7 +262,13 @@ class Node:
 
     def _child(self, node: yaml.Node, key: str, line: int) -> Node:
         key = _short(key)
-        name = key if not self.name else f"{self.name}{key}" if key.startswith("[") else f"{self.name}.{key}"
+        name = (
+            key
+            if not self.name
+            else f"{self.name}{key}"
+            if key.startswith("[")
+            else f"{self.name}.{key}"
+        )
         return Node(node, self._file, self._source, name, line)
 
     def _described(self) -> str:
@@ -240,52 +280,8 @@ class Node:
         return f"'{_short(word)}'" if word else "nothing"
 
 
-def read_yaml(file: Path) -> Node:
-    """The root of a YAML file with one document.
-
-    Raises:
-        InputError: It cannot be read, is not YAML, is empty, or holds a tag that is not plain data.
-    """
-    try:
-        size = file.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(f"no problem file is {size / 1e6:.1f} MB large", file=file)
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
-        raise InputError(f"cannot read the file: {reason}", file=file) from None
-    try:
-        _check_depth(text, file)
-        root = yaml.compose(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        what = error.problem or error.context or "not YAML"
-        line, column = (None, None) if mark is None else (mark.line + 1, mark.column + 1)
-        raise InputError(f"not valid YAML: {what}", file=file, line=line, column=column) from None
-    except yaml.YAMLError as error:
-        raise InputError(f"not valid YAML: {' '.join(str(error).split())}", file=file) from None
-    except RecursionError:
-        raise InputError("not valid YAML: nested too deeply", file=file) from None
-    if root is None:
-        raise InputError("the file is empty", file=file)
-    return Node(root, file, text.splitlines() or [""], "", 1)
-
-
-def _check_depth(text: str, file: Path) -> None:
-    """Refuse what libyaml, which recurses over it, could not compose without overflowing the stack."""
-    depth = 0
-    for event in yaml.parse(text, Loader=_Loader):
-        if isinstance(event, yaml.CollectionStartEvent):
-            depth += 1
-            if depth > MAX_DEPTH:
-                line, column = event.start_mark.line + 1, event.start_mark.column + 1
-                raise InputError(f"nested more than {MAX_DEPTH} deep", file=file, line=line, column=column)
-        elif isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
-
-
 def _short(word: str) -> str:
-    """A word as it is told: not the megabyte that it may be."""
+    """Shorten a word to what is told of it: not the megabyte that it may be."""
     return word if len(word) <= _SHOWN else f"{word[:_SHOWN]}..."
 
 
@@ -294,7 +290,7 @@ def _indent(line: str) -> int:
 
 
 def _at(node: Node, error: InputError) -> InputError:
-    """The error moved to the line of a child."""
+    """Return the error moved to the line of a child."""
     error.line = node.line
     error.args = (error.at(None).args[0],)
     return error

@@ -1,7 +1,9 @@
-"""Compiled kinematics of an arm of seven revolute joints about z: FK, the check of IK solutions, path following.
+"""Compiled kinematics of an arm of seven revolute joints about z: FK, the check of IK solutions,
+path following.
 
-The arm is given as `origins` (7, 4, 4), each joint's frame at 0 in the one before (the first in the base), and
-`T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when it is imported first.
+The arm is given as `origins` (7, 4, 4), each joint's frame at 0 in the one before (the first in the
+base), and `T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when
+it is imported first.
 """
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ def _product(A, B, C):
 
 @njit(**INNER)
 def frames(origins, T_flange_tool, q, joints, tool):
-    """Write the joints' frames (7, 3, 4) and the tool's (3, 4) at angles q (7,) into the last two arguments."""
+    """Write the frames at q (7,): the joints' (7, 3, 4) and the tool's (3, 4), by FK."""
     for row in range(3):
         for column in range(4):
             joints[0, row, column] = origins[0, row, column]
@@ -49,10 +51,11 @@ def frames(origins, T_flange_tool, q, joints, tool):
 
 @njit(**INNER)
 def _error(tool, target, error):
-    """Write the twist from tool to target into error (6,), position above rotation, and return its largest entry.
+    """Write the twist from tool to target into error (6,), position above rotation, and return its
+    largest entry.
 
-    The rotation's part is half the sum of the axes' cross products: right to first order, and for less than a half turn
-    zero only at the target.
+    The rotation's part is half the sum of the axes' cross products: right to first order, and for
+    less than a half turn zero only at the target.
     """
     for r in range(3):
         error[r] = target[r, 3] - tool[r, 3]
@@ -72,7 +75,8 @@ def _error(tool, target, error):
 
 @njit(**INNER)
 def _solve(A, b):
-    """Overwrite b (6,) by the x of A x = b for a symmetric positive definite A (6, 6), overwritten as well.
+    """Overwrite b (6,) by the x of A x = b for a symmetric positive definite A (6, 6), overwritten
+    as well.
 
     Written out because numba's linalg would import scipy.
     """
@@ -94,15 +98,19 @@ def _solve(A, b):
 
 @njit(**INNER)
 def _step(J, error, q, lower, upper, drift, step):
-    """Write into step (7,) a damped least-squares step; joints that it would push out of their limits are frozen."""
+    """Write into step (7,) a damped least-squares step; joints that it would push out of their
+    limits are frozen.
+    """
     active, wish = np.empty(7), np.empty(7)
     for i in range(7):
         active[i] = 1.0
     A, b = np.empty((6, 6)), np.empty(6)
+
     for _ in range(7):
         for i in range(7):
             middle, half = (upper[i] + lower[i]) / 2, (upper[i] - lower[i]) / 2
             wish[i] = drift * active[i] * (middle - q[i]) / half
+
         for r in range(6):
             b[r] = error[r]
             for i in range(7):
@@ -111,6 +119,7 @@ def _step(J, error, q, lower, upper, drift, step):
                 A[r, c] = 1e-8 if r == c else 0.0
                 for i in range(7):
                     A[r, c] += active[i] * J[r, i] * J[c, i]
+
         _solve(A, b)
         frozen = False
         for i in range(7):
@@ -123,6 +132,7 @@ def _step(J, error, q, lower, upper, drift, step):
                 frozen = True
         if not frozen:
             break
+
     largest = 0.5
     for i in range(7):
         largest = max(largest, abs(step[i]))
@@ -137,9 +147,11 @@ def _step(J, error, q, lower, upper, drift, step):
     no_cfunc_wrapper=True,
 )
 def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, tolerance):
-    """The candidates (n, 7), turned by full turns into the limits, whose FK meets the target (4, 4). Shape (m, 7).
+    """Return the candidates (n, 7), turned by full turns into the limits, whose FK meets the target
+    (4, 4). Shape (m, 7).
 
-    The tolerance holds for the position's distance in metres and for the largest difference of a rotation's entries.
+    The tolerance holds for the position's distance in metres and for the largest difference of a
+    rotation's entries.
     """
     kept = np.empty((len(candidates), 7))
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
@@ -163,22 +175,27 @@ def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, toleran
 
 
 @njit(
-    types.Tuple((_ROWS, types.int64))(_POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64),
+    types.Tuple((_ROWS, types.int64))(
+        _POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64
+    ),
     cache=True,
     error_model="numpy",
     no_cfunc_wrapper=True,
 )
 def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
-    """Joint angles (k, 7) along the targets (k, 4, 4), each from the one before by damped Newton steps.
+    """Follow the targets (k, 4, 4) by joint angles (k, 7), each from the one before by damped
+    Newton steps.
 
-    Returns the path and the number of targets reached: k, or less where a target could not be met within the limits
-    or without a joint moving more than `jump` from one to the next.
-    The spare freedom drifts towards the middle of the joints' ranges (Liegeois 1977); a joint at its limit is frozen.
+    Returns the path and the number of targets reached: k, or less where a target could not be met
+    within the limits or without a joint moving more than `jump` from one to the next. The spare
+    freedom drifts towards the middle of the joints' ranges (Liegeois 1977); a joint at its limit is
+    frozen.
     """
     path = np.empty((len(targets), 7))
     joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
     J, error = np.empty((6, 7)), np.empty(6)
     q, step = start.copy(), np.empty(7)
+
     for k in range(len(targets)):
         miss = np.inf
         for iteration in range(25):
@@ -186,14 +203,21 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
             miss = _error(tool, targets[k], error)
             if miss < 1e-9:
                 break
+
             for i in range(7):
                 ax, ay, az = joints[i, 0, 2], joints[i, 1, 2], joints[i, 2, 2]
-                rx, ry, rz = (tool[0, 3] - joints[i, 0, 3], tool[1, 3] - joints[i, 1, 3], tool[2, 3] - joints[i, 2, 3])
+                rx, ry, rz = (
+                    tool[0, 3] - joints[i, 0, 3],
+                    tool[1, 3] - joints[i, 1, 3],
+                    tool[2, 3] - joints[i, 2, 3],
+                )
                 J[0, i], J[1, i], J[2, i] = ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx
                 J[3, i], J[4, i], J[5, i] = ax, ay, az
+
             _step(J, error, q, lower, upper, 0.02 if iteration == 0 else 0.0, step)
             for i in range(7):
                 q[i] = min(max(q[i] + step[i], lower[i]), upper[i])
+
         if miss > 1e-6:
             return path, k
         for i in range(7):
@@ -201,4 +225,5 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
             if abs(q[i] - previous) > jump:
                 return path, k
             path[k, i] = q[i]
+
     return path, len(targets)

@@ -19,9 +19,10 @@ TOLERANCE = 1e-6
 class ArmIK:
     """All joint angles that put the tool at a pose.
 
-    With the last joint fixed, EAIK (Ostermeier et al. 2024) solves the other six in closed form, as the shoulder is
-    spherical: 6 us a value. The values of the last joint go from coarse to fine (van der Corput's sequence), so a
-    search may stop early, and one that found nothing goes on with finer values.
+    With the last joint fixed, EAIK (Ostermeier et al. 2024) solves the other six in closed form, as
+    the shoulder is spherical: 6 us a value. The values of the last joint go from coarse to fine
+    (van der Corput's sequence), so a search may stop early, and one that found nothing goes on with
+    finer values.
 
     Args:
         coarse: How many values of the last joint every search goes through.
@@ -38,32 +39,42 @@ class ArmIK:
         self._T_tool_flange = np.linalg.inv(self._T_flange_tool)
         self._axes, self._offsets, self._unturn = _screws(origins, self._T_flange_tool)
         low, high = self.lower[6], self.upper[6]
-        self._sevenths = low + (high - low) * np.array([_van_der_corput(i) for i in range(1, fine + 1)])
+        self._sevenths = low + (high - low) * np.array(
+            [_van_der_corput(i) for i in range(1, fine + 1)]
+        )
         self._solvers: list[HPRobot | None] = [None] * fine
         self._reach = _reach(origins)
 
-    def solve(self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None) -> Array:
-        """Joint angles (n, 7) within the limits that put the tool at T_base_tool (4, 4), in a deterministic order.
+    def solve(
+        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
+    ) -> Array:
+        """Solve inverse kinematics: joint angles (n, 7) within the limits that put the tool at
+        T_base_tool (4, 4), in a deterministic order.
 
         Each solution's FK was checked to 1e-6. No solution gives shape (0, 7).
 
         Args:
             enough: Stop once so many are found.
-            rng: Shift the last joint's values at random, so that another call on the same pose finds others.
+            rng: Shift the last joint's values at random, so that another call on the same pose
+                finds others.
         """
         sevenths = self._sevenths
         if rng is not None:
             low, high = self.lower[6], self.upper[6]
             sevenths = low + (sevenths - low + rng.uniform(0.0, high - low)) % (high - low)
+
         T = T_base_tool.copy()
         T[:3, :3] = T[:3, :3] @ self._unturn
         found: list[Array] = []
         count = 0
+
         for stage in self._stages:
             batch: list[Array] = []
             for index in self._within_reach(T_base_tool, sevenths, stage):
                 if rng is None:
-                    solver = self._solvers[index] = self._solvers[index] or self._solver(sevenths[index])
+                    solver = self._solvers[index] = self._solvers[index] or self._solver(
+                        sevenths[index]
+                    )
                 else:
                     solver = self._solver(sevenths[index])
                 solution = solver.IK(T)
@@ -80,13 +91,17 @@ class ArmIK:
                 count += len(found[-1])
             if count > 0:
                 break
+
         return np.concatenate(found) if found else np.empty((0, 7))
 
-    def follow(self, T_base_tools: Sequence[Array], q_start: Array, jump: float = 0.3) -> Array | None:
-        """Joint angles (k, 7) along tool poses (4, 4) that lie close together, continuing from q_start.
+    def follow(
+        self, T_base_tools: Sequence[Array], q_start: Array, jump: float = 0.3
+    ) -> Array | None:
+        """Return joint angles (k, 7) along tool poses (4, 4) that lie close together, continuing
+        from q_start.
 
-        Each pose is met to 1e-6 within the limits; None when one cannot be, or when a joint would have to move more
-        than `jump` radians from one pose to the next.
+        Each pose is met to 1e-6 within the limits; None when one cannot be, or when a joint would
+        have to move more than `jump` radians from one pose to the next.
         """
         targets = np.ascontiguousarray(T_base_tools, dtype=float).reshape(-1, 4, 4)
         start = np.ascontiguousarray(q_start, dtype=float)
@@ -103,20 +118,30 @@ class ArmIK:
         return HPRobot(self._axes, self._offsets, fixed_axes=[(6, float(seventh))])
 
     def _within_reach(self, T_base_tool: Array, sevenths: Array, stage: range) -> list[int]:
-        """Indices of the values for which the wrist, where axes 5 and 6 meet, is neither too far nor too near."""
+        """Return indices of the values for which the wrist, where axes 5 and 6 meet, is neither too
+        far nor too near.
+        """
         T_base_flange = T_base_tool @ self._T_tool_flange
         q = sevenths[stage.start : stage.stop]
-        # joint 6's frame in the flange's, by inverting joint 7: Rz(-q7) applied to the origin's inverse translation
+        # joint 6's frame in the flange's, by inverting joint 7: Rz(-q7) applied to the origin's
+        # inverse translation
         back = -self._origins[6, :3, :3].T @ self._origins[6, :3, 3]
         x, y = back[0] * np.cos(q) + back[1] * np.sin(q), back[1] * np.cos(q) - back[0] * np.sin(q)
-        wrist = T_base_flange[:3, 3] + np.column_stack([x, y, np.full_like(x, back[2])]) @ T_base_flange[:3, :3].T
+        wrist = (
+            T_base_flange[:3, 3]
+            + np.column_stack([x, y, np.full_like(x, back[2])]) @ T_base_flange[:3, :3].T
+        )
         distance = np.linalg.norm(wrist - self._origins[0, :3, 3], axis=1)
         near, far = self._reach
-        return [stage.start + int(i) for i in np.flatnonzero((distance >= near) & (distance <= far))]
+        return [
+            stage.start + int(i) for i in np.flatnonzero((distance >= near) & (distance <= far))
+        ]
 
 
 def _screws(origins: Array, T_flange_tool: Array) -> tuple[Array, Array, Array]:
-    """The arm at angles 0 as EAIK wants it: axes (7, 3), offsets between them (8, 3), the tool's inverse rotation."""
+    """Return the arm at angles 0 as EAIK wants it: axes (7, 3), offsets between them (8, 3), the
+    tool's inverse rotation.
+    """
     T = np.eye(4)
     axes, points = [], [np.zeros(3)]
     for origin in origins:
@@ -129,7 +154,9 @@ def _screws(origins: Array, T_flange_tool: Array) -> tuple[Array, Array, Array]:
 
 
 def _reach(origins: Array) -> tuple[float, float]:
-    """The least and the largest distance between shoulder (axes 1 to 3) and wrist (axes 5 and 6), metres."""
+    """Return the least and the largest distance between shoulder (axes 1 to 3) and wrist (axes 5
+    and 6), metres.
+    """
     upper = origins[2, :3, 3]
     distances = []
     for angle in np.linspace(-math.pi, math.pi, 721):

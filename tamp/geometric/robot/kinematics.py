@@ -12,7 +12,8 @@ from tamp.geometric.scene.pose import Array, Pose
 
 
 class Kinematics:
-    """FK and Jacobians by pinocchio, on a model composed of the base's x, y, yaw and the arm's joints.
+    """FK and Jacobians by pinocchio, on a model composed of the base's x, y, yaw and the arm's
+    joints.
 
     One object per robot: it owns pinocchio's buffers, so it must not be shared between threads.
     Configurations are [base x, base y, base yaw, q1..q7], metres and radians.
@@ -27,30 +28,46 @@ class Kinematics:
         parent = 0
         for kind in (pinocchio.JointModelPX, pinocchio.JointModelPY, pinocchio.JointModelRZ):
             parent = model.addJoint(parent, kind(), pinocchio.SE3.Identity(), f"base{parent}")
+
         origin = robot.T_base_arm
         for joint in robot.joints:
             if joint.kind != "revolute" or joint.axis != (0.0, 0.0, 1.0):
                 raise ValueError(f"{joint.name}: only revolute joints about z are supported")
-            parent = model.addJoint(parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name)
+            parent = model.addJoint(
+                parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name
+            )
             origin = Pose()
+
         self._tool = model.addFrame(
-            pinocchio.Frame("tool", parent, _se3(robot.T_flange_hand @ robot.T_hand_tool), pinocchio.FrameType.OP_FRAME)
+            pinocchio.Frame(
+                "tool",
+                parent,
+                _se3(robot.T_flange_hand @ robot.T_hand_tool),
+                pinocchio.FrameType.OP_FRAME,
+            )
         )
+
         self._model, self._data, self._flange = model, model.createData(), parent
-        self._joint_of_link = tuple((link.name, 4 + index) for index, link in enumerate(robot.links[2:-3]))
+        self._joint_of_link = tuple(
+            (link.name, 4 + index) for index, link in enumerate(robot.links[2:-3])
+        )
         self._T_base_arm = robot.T_base_arm.matrix
         self._T_flange_hand = robot.T_flange_hand.matrix
-        self._fingers = tuple((f.child, f.origin.matrix, f.origin.rotation @ np.array(f.axis)) for f in robot.fingers)
+        self._fingers = tuple(
+            (f.child, f.origin.matrix, f.origin.rotation @ np.array(f.axis)) for f in robot.fingers
+        )
 
     def link_poses(self, conf: Array, opening: float) -> dict[str, Array]:
-        """T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
+        """Compute T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
         data, links = self._data, self.robot.links
         pinocchio.forwardKinematics(self._model, data, conf)
         T_world_base = data.oMi[3].homogeneous
         poses = {links[0].name: T_world_base, links[1].name: T_world_base @ self._T_base_arm}
         for name, index in self._joint_of_link:
             poses[name] = data.oMi[index].homogeneous
-        T_world_hand = poses[links[-3].name] = data.oMi[self._flange].homogeneous @ self._T_flange_hand
+        T_world_hand = poses[links[-3].name] = (
+            data.oMi[self._flange].homogeneous @ self._T_flange_hand
+        )
         for name, origin, axis in self._fingers:
             T_hand_finger = origin.copy()
             T_hand_finger[:3, 3] += axis * (opening / 2)
@@ -58,22 +75,24 @@ class Kinematics:
         return poses
 
     def tool(self, conf: Array) -> Array:
-        """T_world_tool, shape (4, 4)."""
+        """Compute T_world_tool, shape (4, 4)."""
         pinocchio.forwardKinematics(self._model, self._data, conf)
         return pinocchio.updateFramePlacement(self._model, self._data, self._tool).homogeneous
 
     def arm_tool(self, arm: Array) -> Array:
-        """T_base_tool, shape (4, 4), at joint angles (7,)."""
+        """Compute T_base_tool, shape (4, 4), at joint angles (7,)."""
         return self.tool(np.concatenate([(0.0, 0.0, 0.0), arm]))
 
     def jacobian(self, conf: Array) -> Array:
-        """Of the tool by conf, shape (6, 10), in the world's axes: the tool origin's velocity above the angular one."""
+        """Compute the Jacobian of the tool by conf, shape (6, 10), in the world's axes: the tool
+        origin's velocity above the angular one.
+        """
         frame = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
         return pinocchio.computeFrameJacobian(self._model, self._data, conf, self._tool, frame)
 
 
 def base_matrix(base: Array) -> Array:
-    """T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
+    """Return T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
     cos, sin = math.cos(base[2]), math.sin(base[2])
     return np.array([[cos, -sin, 0, base[0]], [sin, cos, 0, base[1]], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 

@@ -1,4 +1,6 @@
-"""Where to put the base so that the arm reaches a tool pose: a precomputed inverse-reachability table."""
+"""Base placement: where the arm reaches a tool pose from, by a precomputed inverse-reachability
+table.
+"""
 
 from __future__ import annotations
 
@@ -12,25 +14,30 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 
 BROAD = 0.1
-"""The share of samples that do not follow the table, so that every base pose within reach can be drawn."""
+"""The share of samples that do not follow the table, so that every base pose within reach can be
+drawn.
+"""
 
 FRONT = math.radians(25)
-"""Standard deviation of the tool's bearing as seen from the arm's foot: the base mostly faces its work."""
+"""Standard deviation of the tool's bearing as seen from the arm's foot: the base mostly faces its
+work.
+"""
 
 
 def asset(robot_name: str) -> Path:
-    """The robot's table, written by benchmarks/build_reachability.py."""
+    """Return the file of the robot's table, written by benchmarks/build_reachability.py."""
     return Path(__file__).parent / "assets" / f"{robot_name}_reachability.npz"
 
 
 class Reachability:
     """Draws base poses from which the arm likely reaches a tool pose.
 
-    Whether a pose is reachable does not change when robot and tool move together in the plane, nor (but for joint 1's
-    limits) when the base turns under the arm. What remains is the tool's height, the direction of "up" seen from the
-    tool, the distance from the arm's foot to the tool, and the tool's heading relative to the line between them. The
-    table holds, over these five numbers, how many comfortable IK solutions there are. After Vahrenkamp et al., "Robot
-    placement based on reachability inversion" (ICRA 2013).
+    Whether a pose is reachable does not change when robot and tool move together in the plane, nor
+    (but for joint 1's limits) when the base turns under the arm. What remains is the tool's height,
+    the direction of "up" seen from the tool, the distance from the arm's foot to the tool, and the
+    tool's heading relative to the line between them. The table holds, over these five numbers, how
+    many comfortable IK solutions there are. After Vahrenkamp et al., "Robot placement based on
+    reachability inversion" (ICRA 2013).
 
     Raises:
         InputError: The robot has no table yet.
@@ -48,39 +55,52 @@ class Reachability:
             self._distances: Array = table["distances"]
             counts: Array = table["counts"]
         self._headings = counts.shape[-1]
-        # Far placements keep the base clear of the furniture that the object stands on: with the cube of the distance
-        # two to four times as many draws are clear as by the counts alone, and as many have IK.
+        # Far placements keep the base clear of the furniture that the object stands on: with the
+        # cube of the distance two to four times as many draws are clear as by the counts alone, and
+        # as many have IK.
         weights = np.where(counts > 0, counts**0.25, 0.0) * self._distances[:, None] ** 3
         self._cumulative = np.cumsum(weights.reshape(*counts.shape[:2], -1), axis=2)
         self._foot = np.array(robot.T_base_arm.position[:2])
 
     def sample(self, T_world_tool: Array, rng: np.random.Generator, count: int) -> Array:
-        """Base poses x, y, yaw (count, 3) in metres and radians, in random order; collisions are not looked at.
+        """Sample base poses x, y, yaw (count, 3) in metres and radians, in random order; collisions
+        are not looked at.
 
-        Most follow the table, a tenth (all, where the table knows no placement) is spread over everything within reach.
+        Most follow the table, a tenth (all, where the table knows no placement) is spread over
+        everything within reach.
         """
         step = self._heights[1] - self._heights[0]
         level = round((T_world_tool[2, 3] - self._heights[0]) / step)
         direction = int(np.argmax(self._directions @ T_world_tool[2, :3]))
+
         distance, heading, bearing = self._broad(rng, count)
         if 0 <= level < len(self._heights) and self._cumulative[level, direction, -1] > 0:
             follow = rng.random(count) >= BROAD
             drawn = self._from_table(level, direction, rng, count)
             bounded = np.clip(rng.normal(0.0, FRONT, count), -2.5 * FRONT, 2.5 * FRONT)
-            distance, heading = np.where(follow, drawn[0], distance), np.where(follow, drawn[1], heading)
+            distance, heading = (
+                np.where(follow, drawn[0], distance),
+                np.where(follow, drawn[1], heading),
+            )
             bearing = np.where(follow, bounded, bearing)
+
         turn = T_world_tool[:3, :3] @ self._rotations[direction].T
         yaw_of_tool = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-        towards = yaw_of_tool - heading  # world direction of the line from the arm's foot to the tool
+        towards = yaw_of_tool - heading  # world direction from the arm's foot to the tool
         yaw = towards - bearing
+
         cos, sin = np.cos(yaw), np.sin(yaw)
         foot_x, foot_y = self._foot
         x = T_world_tool[0, 3] - distance * np.cos(towards) - (cos * foot_x - sin * foot_y)
         y = T_world_tool[1, 3] - distance * np.sin(towards) - (sin * foot_x + cos * foot_y)
         return np.column_stack([x, y, (yaw + math.pi) % (2 * math.pi) - math.pi])
 
-    def _from_table(self, level: int, direction: int, rng: np.random.Generator, count: int) -> tuple[Array, Array]:
-        """Distances (count,) and headings (count,), uniform within cells that are drawn by their weights."""
+    def _from_table(
+        self, level: int, direction: int, rng: np.random.Generator, count: int
+    ) -> tuple[Array, Array]:
+        """Sample distances (count,) and headings (count,), uniform within cells that are drawn by
+        their weights.
+        """
         cumulative = self._cumulative[level, direction]
         cell = np.searchsorted(cumulative, rng.random(count) * cumulative[-1], side="right")
         row, column = np.divmod(np.minimum(cell, len(cumulative) - 1), self._headings)
@@ -90,7 +110,9 @@ class Reachability:
         return distance, heading
 
     def _broad(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
-        """Distances, headings and bearings (count,), uniform over the disc around the tool and all directions."""
+        """Sample distances, headings and bearings (count,), uniform over the disc around the tool
+        and all directions.
+        """
         farthest = self._distances[-1] * 1.1
         angles = rng.uniform(-math.pi, math.pi, (2, count))
         return farthest * np.sqrt(rng.random(count)), angles[0], angles[1]

@@ -31,14 +31,19 @@ class Robot:
     A configuration is [base x, base y, base yaw, q1..q7] in metres and radians.
 
     Attributes:
-        links: The base first, then the arm's from its foot to the last, the hand, the left and the right finger.
-        T_base_arm: The arm's foot in the base's frame, which is on the floor under the base's centre.
+        links: The base first, then the arm's from its foot to the last, the hand, the left and the
+            right finger.
+        T_base_arm: The arm's foot in the base's frame, which is on the floor under the base's
+            centre.
         joints: The arm's seven joints, from the foot on.
         T_flange_hand: The hand in the last arm link's frame.
-        T_hand_tool: The tool in the hand's frame: between the pads, z along the fingers, y the closing direction.
+        T_hand_tool: The tool in the hand's frame: between the pads, z along the fingers, y the
+            closing direction.
         fingers: The left and the right finger's prismatic joint; at opening w each stands at w / 2.
-        lower, upper: The range of the arm's joints in plans, radians: the maker's, MARGIN less on both sides.
-        velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second (squared).
+        lower, upper: The range of the arm's joints in plans, radians: the maker's, MARGIN less on
+            both sides.
+        velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second
+            (squared).
         home: The arm's compact carrying configuration, in which the base drives.
         opening: The largest opening of the fingers, metres.
         force: With which each finger presses, newtons.
@@ -81,13 +86,15 @@ FINGER_SPEED = 0.05
 
 
 def panda_mobile() -> Robot:
-    """Our box-shaped base with pybullet_data's Franka Panda and its hand, mounted near the base's front edge.
+    """Return our box-shaped base with pybullet_data's Franka Panda and its hand, mounted near the
+    base's front edge.
 
-    There, rather than 5 cm further back, twice as many base poses reach the middle of a table from above.
-    The collision hulls are precomputed by benchmarks/build_robot_hulls.py. Ranges and velocities of the joints are the
-    maker's ("Robot and interface specifications" of the Franka Control Interface), not the URDF's, whose ranges are
-    wider; accelerations are a third of the maker's, so that a held object is not shaken. The maker's limits of the jerk
-    (3,750 to 10,000 rad/s3) are not looked at: accelerations change in steps, which the arm's controller rounds off.
+    There, rather than 5 cm further back, twice as many base poses reach the middle of a table from
+    above. The collision hulls are precomputed by benchmarks/build_robot_hulls.py. Ranges and
+    velocities of the joints are the maker's ("Robot and interface specifications" of the Franka
+    Control Interface), not the URDF's, whose ranges are wider; accelerations are a third of the
+    maker's, so that a held object is not shaken. The maker's limits of the jerk (3,750 to 10,000
+    rad/s3) are not looked at: accelerations change in steps, which the arm's controller rounds off.
 
     Raises:
         InputError: pybullet_data is not installed.
@@ -95,14 +102,23 @@ def panda_mobile() -> Robot:
     urdf = panda_urdf()
     named = read_joints(urdf)
     joints = tuple(named[f"panda_joint{i}"] for i in range(1, 8))
+
     base = Box((0.8, 0.7, 0.33))
     hulls = np.load(Path(__file__).parent / "assets" / "panda_mobile.npz")
-    names = [f"panda_link{i}" for i in range(8)] + ["panda_hand", "panda_leftfinger", "panda_rightfinger"]
+    names = [f"panda_link{i}" for i in range(8)] + [
+        "panda_hand",
+        "panda_leftfinger",
+        "panda_rightfinger",
+    ]
+
     return Robot(
         name="panda_mobile",
         links=(
             Link("base", (Part(base, Pose((0.0, 0.0, 0.02 + base.size[2] / 2))),)),
-            *(Link(name, (Part(_hull(hulls[f"{name}/vertices"], hulls[f"{name}/faces"])),)) for name in names),
+            *(
+                Link(name, (Part(_hull(hulls[f"{name}/vertices"], hulls[f"{name}/faces"])),))
+                for name in names
+            ),
         ),
         T_base_arm=Pose((0.3, 0.0, 0.35)),
         joints=joints,
@@ -130,7 +146,8 @@ base            panda_link0 panda_link1 panda_link2 panda_link3
 panda_link0     panda_link1 panda_link2 panda_link3 panda_link4
 panda_link1     panda_link2 panda_link3 panda_link4
 panda_link2     panda_link3 panda_link4
-panda_link3     panda_link4 panda_link5 panda_link6 panda_link7 panda_hand panda_leftfinger panda_rightfinger
+panda_link3     panda_link4 panda_link5 panda_link6 panda_link7 panda_hand
+panda_link3     panda_leftfinger panda_rightfinger
 panda_link4     panda_link5 panda_link6 panda_link7 panda_hand panda_leftfinger panda_rightfinger
 panda_link5     panda_link6
 panda_link6     panda_link7 panda_hand panda_leftfinger panda_rightfinger
@@ -140,20 +157,27 @@ panda_leftfinger panda_rightfinger
 """
 """Pairs of links that are never checked: the first of a line with each other of it.
 
-Adjacent links and the group of hand and fingers touch by construction. The other pairs cannot meet within the joint
-limits: their least distance, by random search and descent, is 1.0 cm (link0-link4) and 3 cm or more for the rest.
+Adjacent links and the group of hand and fingers touch by construction. The other pairs cannot meet
+within the joint limits: their least distance, by random search and descent, is 1.0 cm (link0-link4)
+and 3 cm or more for the rest.
 
-link5-link7 is checked, although Panda's SRDF disables it: the hulls do overlap in 8 % of random states, so a judge that
-checks all pairs would reject our plans. It costs nothing: all those states have q6 < 0.85, most of them with the
-hand in collision with link5 as well, while a hand that points down or forward has q6 > 1.
+link5-link7 is checked, although Panda's SRDF disables it: the hulls do overlap in 8 % of random
+states, so a judge that checks all pairs would reject our plans. It costs nothing: all those states
+have q6 < 0.85, most of them with the hand in collision with link5 as well, while a hand that points
+down or forward has q6 > 1.
 """
 
 
 def panda_urdf() -> Path:
-    """Where pybullet_data's Panda is. Found without importing pybullet, which prints at import."""
+    """Find pybullet_data's Panda. It is found without importing pybullet, which prints at
+    import.
+    """
     spec = importlib.util.find_spec("pybullet_data")
     if spec is None or spec.origin is None:
-        raise InputError("the robot 'panda_mobile' needs the package pybullet_data", remedy="pip install pybullet")
+        raise InputError(
+            "the robot 'panda_mobile' needs the package pybullet_data",
+            remedy="pip install pybullet",
+        )
     return Path(spec.origin).parent / "franka_panda" / "panda.urdf"
 
 

@@ -11,10 +11,11 @@ from tamp.geometric.scene.pose import Array
 
 
 def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Array, float]]:
-    """The shipped cover of each part by (link, number): centres and radii (k, 4) in the part's frame, and its slack.
+    """Load the shipped cover of each part by (link, number): centres and radii (k, 4) in the part's
+    frame, and its slack.
 
-    Made by benchmarks/build_robot_spheres.py. A robot without a shipped cover has none: the kernels then use the
-    bounding spheres and the exact test alone.
+    Made by benchmarks/build_robot_spheres.py. A robot without a shipped cover has none: the kernels
+    then use the bounding spheres and the exact test alone.
     """
     path = Path(__file__).parent / "assets" / f"{robot.name}_spheres.npz"
     if not path.exists():

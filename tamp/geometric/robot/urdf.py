@@ -16,8 +16,10 @@ class Joint:
     """A joint of a robot.
 
     Attributes:
-        origin: T_parent_joint: the child's frame in the parent link's frame when the joint stands at 0.
-        axis: Unit vector in the joint's frame: rotation about it (radians), or translation along it (metres).
+        origin: T_parent_joint: the child's frame in the parent link's frame when the joint stands
+            at 0.
+        axis: Unit vector in the joint's frame: rotation about it (radians), or translation along it
+            (metres).
         lower, upper: Limits in radians, or metres for a prismatic joint; 0 for a fixed one.
         velocity: Largest speed, radians (metres) per second.
     """
@@ -34,7 +36,7 @@ class Joint:
 
 
 def read_joints(urdf: Path) -> dict[str, Joint]:
-    """All joints of a URDF file by name, in the file's order.
+    """Read all joints of a URDF file by name, in the file's order.
 
     Raises:
         FileNotFoundError, xml.etree.ElementTree.ParseError: The file is missing or not XML.
@@ -60,10 +62,11 @@ def read_joints(urdf: Path) -> dict[str, Joint]:
 
 
 def read_collision_vertices(urdf: Path) -> dict[str, Array]:
-    """All vertices (n, 3) of each link's collision mesh (OBJ) in the link's frame, metres.
+    """Read all vertices (n, 3) of each link's collision mesh (OBJ) in the link's frame, metres.
 
     Raises:
-        FileNotFoundError, xml.etree.ElementTree.ParseError: A file is missing, or the URDF is not XML.
+        FileNotFoundError, xml.etree.ElementTree.ParseError: A file is missing, or the URDF is not
+            XML.
     """
     vertices = {}
     for link in ElementTree.parse(urdf).getroot().iter("link"):
@@ -78,7 +81,7 @@ def read_collision_vertices(urdf: Path) -> dict[str, Array]:
 
 
 def _read_origin(element: ElementTree.Element) -> Pose:
-    """The pose in an element's <origin xyz rpy>, the identity where there is none."""
+    """Read the pose in an element's <origin xyz rpy>, the identity where there is none."""
     origin = element.find("origin")
     zero = (0.0, 0.0, 0.0)
     return Pose.from_xyz_rpy(_vector(origin, "xyz", zero), _vector(origin, "rpy", zero))

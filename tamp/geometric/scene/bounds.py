@@ -11,13 +11,16 @@ from tamp.geometric.scene.scene import Box, Cylinder, Part, Sphere
 
 
 def bounds(parts: Iterable[Part], pose: Pose) -> tuple[Array, Array]:
-    """The lowest and the highest corner of the parts of a body at `pose`.
+    """Compute the axis-aligned bounding box of the parts of a body at `pose`: its lowest and its
+    highest corner.
 
     Returns:
         Two corners, each (3,), metres, in the frame that `pose` is in.
     """
     corners = [_part_bounds(part, pose.matrix @ part.pose.matrix) for part in parts]
-    return np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
+    return np.min([low for low, _ in corners], axis=0), np.max(
+        [high for _, high in corners], axis=0
+    )
 
 
 def _part_bounds(part: Part, matrix: Array) -> tuple[Array, Array]:
@@ -27,7 +30,9 @@ def _part_bounds(part: Part, matrix: Array) -> tuple[Array, Array]:
     elif isinstance(shape, Cylinder):
         # A disc with normal n reaches r * sqrt(1 - n_i^2) along axis i.
         axis = rotation[:, 2]
-        half = np.abs(axis) * shape.height / 2 + shape.radius * np.sqrt(np.maximum(0.0, 1 - axis**2))
+        half = np.abs(axis) * shape.height / 2 + shape.radius * np.sqrt(
+            np.maximum(0.0, 1 - axis**2)
+        )
     elif isinstance(shape, Sphere):
         half = np.full(3, shape.radius)
     else:

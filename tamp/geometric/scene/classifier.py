@@ -1,4 +1,4 @@
-"""Classifiers: what answers whether a relation holds in a scene, and a guarded call of one."""
+"""Classifiers, which answer whether a relation holds in a scene, and a guarded call of one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ class Classifier(Protocol):
     """Judges whether a relation holds in a scene."""
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
-        """The probability in [0, 1] that the relation holds for these arguments; not a number: it cannot tell."""
+        """Return the probability in [0, 1] that the relation holds for these arguments; not a
+        number: it cannot tell.
+        """
         ...
 
 
@@ -29,11 +31,13 @@ class Undecided(Protocol):
 
 
 class Unanswered(Exception):
-    """A classifier raised, or what it returned is no probability; the message says what, with "it" for its name."""
+    """A classifier raised, or what it returned is no probability; the message says what, with "it"
+    for its name.
+    """
 
 
 def probability(classifier: Classifier, scene: Scene, arguments: Sequence[str]) -> float:
-    """The probability that a relation holds; not a number where the classifier cannot tell.
+    """Return the probability that a relation holds; not a number where the classifier cannot tell.
 
     Raises:
         Unanswered: The classifier raised, or returned something else.

@@ -1,4 +1,6 @@
-"""Convex hulls of points: closed triangle surfaces, with few corners, also of points that are nearly flat."""
+"""Convex hulls of points: closed triangle surfaces, with few corners, also of points that are
+nearly flat.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,8 @@ _THINNEST = 0.001
 
 
 def hull_of(points: Array) -> tuple[Array, NDArray[np.integer]]:
-    """Vertices (n, 3) and outward faces (m, 3) of the convex hull of points; flat points are thickened to 1 mm.
+    """Compute vertices (n, 3) and outward faces (m, 3) of the convex hull of points; flat points
+    are thickened to 1 mm.
 
     Raises:
         ValueError: The points lie on one line.
@@ -35,7 +38,7 @@ def hull_of(points: Array) -> tuple[Array, NDArray[np.integer]]:
 
 
 def simplified(points: Array) -> Array:
-    """Corners of the hull of points, as few as keep every point within 0.5 mm of the hull."""
+    """Simplify a hull: corners of it, as few as keep every point within 0.5 mm of the hull."""
     corners, _ = hull_of(points)
     chosen = np.unique(np.argmax(corners @ directions(24).T, axis=0))
     while len(chosen) < len(corners):
@@ -52,7 +55,9 @@ def simplified(points: Array) -> Array:
 
 
 def _outermost(points: Array, equations: Array) -> tuple[NDArray[np.int64], Array]:
-    """For each plane (k, 4) the point that lies farthest beyond it, and how far; a block of points at a time."""
+    """Find for each plane (k, 4) the point that lies farthest beyond it, and how far; a block of
+    points at a time.
+    """
     best, index = np.full(len(equations), -np.inf), np.zeros(len(equations), dtype=np.int64)
     for start in range(0, len(points), _BLOCK):
         beyond = points[start : start + _BLOCK] @ equations[:, :3].T + equations[:, 3]
@@ -64,7 +69,7 @@ def _outermost(points: Array, equations: Array) -> tuple[NDArray[np.int64], Arra
 
 
 def thickened(points: Array) -> Array:
-    """The points; when they lie within 1 mm of a plane, moved 0.5 mm to both sides of it."""
+    """Return the points; when they lie within 1 mm of a plane, moved 0.5 mm to both sides of it."""
     centred = points - points.mean(axis=0)
     # The right singular vector of the least singular value is the normal of the best plane.
     _, vectors = np.linalg.eigh(centred.T @ centred)
@@ -77,7 +82,9 @@ def thickened(points: Array) -> Array:
 
 
 def directions(count: int) -> Array:
-    """The six axis directions, and about `count` spread evenly over the sphere (Fibonacci), shape (n, 3)."""
+    """Return the six axis directions, and about `count` spread evenly over the sphere (Fibonacci),
+    shape (n, 3).
+    """
     index = np.arange(count) + 0.5
     z = 1 - 2 * index / count
     around = np.pi * (1 + 5**0.5) * index

@@ -8,7 +8,9 @@ from tamp.geometric.scene.pose import Array
 
 
 def outline(points: Array) -> Array:
-    """Corners of the convex hull of points (n, 2), counterclockwise (Andrew's monotone chain)."""
+    """Compute the corners of the convex hull of points (n, 2), counterclockwise (Andrew's monotone
+    chain).
+    """
     ordered = sorted({(round(float(x), 9), round(float(y), 9)) for x, y in points})
     if len(ordered) < 3:
         return np.array(ordered)

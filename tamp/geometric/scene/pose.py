@@ -30,12 +30,28 @@ class Pose:
         x, y, z, w = self.quaternion
         matrix = np.array(
             [
-                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), self.position[0]],
-                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), self.position[1]],
-                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), self.position[2]],
+                [
+                    1 - 2 * (y * y + z * z),
+                    2 * (x * y - z * w),
+                    2 * (x * z + y * w),
+                    self.position[0],
+                ],
+                [
+                    2 * (x * y + z * w),
+                    1 - 2 * (x * x + z * z),
+                    2 * (y * z - x * w),
+                    self.position[1],
+                ],
+                [
+                    2 * (x * z - y * w),
+                    2 * (y * z + x * w),
+                    1 - 2 * (x * x + y * y),
+                    self.position[2],
+                ],
                 [0.0, 0.0, 0.0, 1.0],
             ]
         )
+
         matrix.flags.writeable = False
         return matrix
 
@@ -51,17 +67,19 @@ class Pose:
 
     @classmethod
     def from_matrix(cls, matrix: Array) -> Pose:
-        """From a homogeneous matrix, shape (4, 4)."""
+        """Build a pose from a homogeneous matrix, shape (4, 4)."""
         return cls(_floats3(matrix[:3, 3]), quaternion_from_matrix(matrix[:3, :3]))
 
     @classmethod
     def from_xyz_yaw(cls, x: float, y: float, z: float, yaw: float) -> Pose:
-        """Upright at (x, y, z) metres, turned by yaw radians about z."""
+        """Build a pose upright at (x, y, z) metres, turned by yaw radians about z."""
         return cls((float(x), float(y), float(z)), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
 
     @classmethod
     def from_xyz_rpy(cls, xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Pose:
-        """From a position in metres and URDF's roll, pitch, yaw in radians (fixed axes x, y, z)."""
+        """Build a pose from a position in metres and URDF's roll, pitch, yaw in radians (fixed axes
+        x, y, z).
+        """
         (cr, cp, cy), (sr, sp, sy) = ([f(angle / 2) for angle in rpy] for f in (math.cos, math.sin))
         quaternion = (
             sr * cp * cy - cr * sp * sy,
@@ -75,7 +93,7 @@ class Pose:
         return Pose.from_matrix(self.matrix @ other.matrix)
 
     def inverse(self) -> Pose:
-        """The other frame's pose in this one."""
+        """Return the inverse transform: the other frame's pose in this one."""
         rotation = self.rotation.T
         x, y, z, w = self.quaternion
         return Pose(_floats3(-rotation @ np.array(self.position)), (-x, -y, -z, w))
@@ -86,7 +104,9 @@ class Pose:
 
 
 def quaternion_from_matrix(rotation: Array) -> tuple[float, float, float, float]:
-    """The unit quaternion x, y, z, w of a rotation matrix, shape (3, 3), with w >= 0 (Shepperd's method)."""
+    """Convert a rotation matrix, shape (3, 3), to the unit quaternion x, y, z, w with w >= 0
+    (Shepperd's method).
+    """
     r = rotation
     trace = r[0, 0] + r[1, 1] + r[2, 2]
     squares = (r[0, 0], r[1, 1], r[2, 2], trace)

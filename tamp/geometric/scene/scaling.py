@@ -11,18 +11,18 @@ from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Shape, Sphere,
 
 
 def scale_part(part: Part, factor: float) -> Part:
-    """A part of a body that is scaled by a factor about its origin."""
+    """Scale a part of a body by a factor about the body's origin."""
     return Part(_scale_shape(part.shape, factor), scale_pose(part.pose, factor))
 
 
 def scale_pose(pose: Pose, factor: float) -> Pose:
-    """A pose whose position is scaled."""
+    """Scale the position of a pose."""
     x, y, z = pose.position
     return Pose((x * factor, y * factor, z * factor), pose.quaternion)
 
 
 def scale_visual(visual: Visual, factor: float) -> Visual:
-    """What is drawn of a body that is scaled by a factor about its origin."""
+    """Scale what is drawn of a body by a factor about its origin."""
     x, y, z = visual.scale
     return replace(
         visual,

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from tamp.geometric.scene.pose import Array, Pose
 
 CONTACT_GAP = 0.001
-"""Metres of air that the planner leaves under a resting body, so that resting never counts as a collision."""
+"""Metres of air that the planner leaves under a resting body, so that resting never counts as a
+collision.
+"""
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ class Sphere:
 
 @dataclass(frozen=True, eq=False)
 class Hull:
-    """One convex piece of a mesh: its vertices (n, 3) in metres and its faces (m, 3), outward, read-only."""
+    """One convex piece of a mesh: its vertices (n, 3) in metres and its faces (m, 3), outward,
+    read-only.
+    """
 
     vertices: Array
     faces: NDArray[np.integer]
@@ -63,7 +67,8 @@ class Visual:
     Attributes:
         mesh: A mesh file, or None for the shapes.
         shapes: Primitives at their poses in the visual's frame.
-        scale: Factors by which the file's x, y, z are multiplied to be metres; a negative one mirrors.
+        scale: Factors by which the file's x, y, z are multiplied to be metres; a negative one
+            mirrors.
         pose: T_body_visual: pose of the scaled mesh's frame, or of the shapes', in the body's.
         colour: Its own; None for the body's.
     """
@@ -84,7 +89,8 @@ class Surface:
         body: The body that it belongs to.
         pose: T_body_surface: origin at the rectangle's centre, z the normal pointing up.
         size: Extents along the surface frame's x and y, metres.
-        clearance: Free height above it in metres (a shelf board has another one above), infinite by default.
+        clearance: Free height above it in metres (a shelf board has another one above), infinite by
+            default.
     """
 
     name: str
@@ -116,17 +122,19 @@ class Body:
     """A rigid body.
 
     Attributes:
-        parts: Its convex parts. Boxes, cylinders and spheres have one at the identity, so that the body's frame is at
-            their centre; a mesh keeps its file's frame; furniture has its frame on the floor under its centre.
+        parts: Its convex parts. Boxes, cylinders and spheres have one at the identity, so that the
+            body's frame is at their centre; a mesh keeps its file's frame; furniture has its frame
+            on the floor under its centre.
         pose: T_world_body at the start.
         movable: Whether the robot may move it.
-        support: The surface or cavity that it was declared to stand on (`on:`), or rests on by geometry, or the movable
-            body that carries it; None when it floats or is fixed.
+        support: The surface or cavity that it was declared to stand on (`on:`), or rests on by
+            geometry, or the movable body that carries it; None when it floats or is fixed.
         carriers: The movable bodies that it rests on, one or several.
         mass: Kilograms.
         friction: Coulomb's coefficient.
         visuals: What to draw in place of its parts.
-        center_of_mass: In the body's frame, metres, where a file says it; None for parts of one density.
+        center_of_mass: In the body's frame, metres, where a file says it; None for parts of one
+            density.
     """
 
     name: str
@@ -169,7 +177,9 @@ class RobotStart:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything geometric about a problem. Frozen: plans move bodies by carrying poses beside it."""
+    """Everything geometric about a problem. Frozen: plans move bodies by carrying poses beside
+    it.
+    """
 
     name: str
     bodies: Mapping[str, Body]
@@ -194,5 +204,7 @@ class Scene:
         return tuple(name for name, body in self.bodies.items() if not body.movable)
 
     def world_pose(self, place: Surface | Cavity) -> Pose:
-        """T_world_surface or T_world_cavity; the body that carries it stands at its start."""
+        """Return T_world_surface or T_world_cavity; the body that carries it stands at its
+        start.
+        """
         return self.bodies[place.body].pose @ place.pose
