@@ -76,7 +76,9 @@ class Arrangement:
         self.stats.states += 1
         try:
             code = sweep(conf, conf, PADDING, self._packed) & 3
-        except TypeError:  # a list, or not in C order; converting always would cost a tenth of the check
+        except (
+            TypeError
+        ):  # a list, or not in C order; converting always would cost a tenth of the check
             conf = np.ascontiguousarray(conf, dtype=np.float64)
             code = sweep(conf, conf, PADDING, self._packed) & 3
         if code != UNDECIDED:
@@ -121,7 +123,9 @@ class Arrangement:
             return self._scan(conf, padding)
         return None if code == FREE else self._exact.names(*pair_of(answer))
 
-    def path_hits(self, path: Array, step: float = 0.002, padding: float = 0.0) -> tuple[str, str] | None:
+    def path_hits(
+        self, path: Array, step: float = 0.002, padding: float = 0.0
+    ) -> tuple[str, str] | None:
         """`hits` along the polyline `path` (n, 10), in states between which no point of the robot moves more than
         `step` metres; pieces that the kernel proves free are not sampled.
         """
@@ -145,7 +149,9 @@ class Arrangement:
         offsets = np.linalg.norm(tables.part_poses[tables.parts[:, FRAME] > 0, 9:], axis=1)
         tip = offsets + np.linalg.norm(parts[:, CENTRE : CENTRE + 3], axis=1) + parts[:, RADIUS]
         lengths = np.linalg.norm(tables.joints[:, 9:], axis=1)
-        levers = np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()  # of the yaw, then of each joint
+        levers = (
+            np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
+        )  # of the yaw, then of each joint
         return float(math.hypot(change[0], change[1]) + change[2:] @ levers)
 
     def _scan(self, conf: Array, padding: float) -> tuple[str, str] | None:

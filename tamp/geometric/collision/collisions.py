@@ -66,9 +66,13 @@ class Collisions:
         self._kinematics = kinematics
         collected = Rows()
         self._robot = RobotTables(robot, collected)
-        self._rows = {name: np.array([collected.row(p) for p in body.parts]) for name, body in scene.bodies.items()}
+        self._rows = {
+            name: np.array([collected.row(p) for p in body.parts])
+            for name, body in scene.bodies.items()
+        }
         self._part_matrices = {
-            name: np.array([part.pose.matrix for part in body.parts]) for name, body in scene.bodies.items()
+            name: np.array([part.pose.matrix for part in body.parts])
+            for name, body in scene.bodies.items()
         }
         self._vertices, self._leaves = collected.vertices(), collected.leaves()
         self._room = np.array([*scene.room.x, *scene.room.y], dtype=np.float64)
@@ -80,9 +84,13 @@ class Collisions:
         self._completed: dict[tuple[float, Attachment | None], RobotParts] = {}
         self._fixed = [(name, self._place(name, scene.bodies[name].pose)) for name in scene.fixed]
 
-    def pair(self, body: str, pose: Pose, other: str, other_pose: Pose, padding: float = 0.0) -> bool:
+    def pair(
+        self, body: str, pose: Pose, other: str, other_pose: Pose, padding: float = 0.0
+    ) -> bool:
         """Whether two bodies at these poses are nearer than `padding` metres (with 0: intersect); exact."""
-        return self._touch(body, self._place(body, pose), other, self._place(other, other_pose), padding)
+        return self._touch(
+            body, self._place(body, pose), other, self._place(other, other_pose), padding
+        )
 
     def between(self, body: str, pose: Pose, others: Mapping[str, Pose]) -> str | None:
         """The first of `others` at their poses, or of the fixed bodies, that the body at `pose` intersects; exact."""
@@ -150,7 +158,9 @@ class Collisions:
                 parts = self._robot.complete(opening, None, np.zeros((0, 4, 4)), _NO_ROWS)
             else:
                 T_tool_parts = attachment.T_tool_body.matrix @ self._part_matrices[attachment.body]
-                parts = self._robot.complete(opening, attachment.body, T_tool_parts, self._rows[attachment.body])
+                parts = self._robot.complete(
+                    opening, attachment.body, T_tool_parts, self._rows[attachment.body]
+                )
             self._completed[key] = parts
         return parts
 
@@ -165,7 +175,9 @@ class Collisions:
             low, high = world_box(rows, poses)
             rows[:, LOW : LOW + 3], rows[:, HIGH : HIGH + 3] = low, high
             corners = tuple(low.min(axis=0).tolist()), tuple(high.max(axis=0).tolist())
-            placed = self._placed[key] = _Placed(rows, poses, low.tolist(), high.tolist(), *corners, pose.matrix)
+            placed = self._placed[key] = _Placed(
+                rows, poses, low.tolist(), high.tolist(), *corners, pose.matrix
+            )
         return placed
 
     def _touch(self, first: str, a: _Placed, second: str, b: _Placed, padding: float = 0.0) -> bool:
@@ -176,7 +188,9 @@ class Collisions:
                 continue
             for j, (b_low, b_high) in enumerate(zip(b.lows, b.highs, strict=True)):
                 if _overlap(a_low, a_high, b_low, b_high, padding) and touch(
-                    self._fcl[first].place(i, a.matrix), self._fcl[second].place(j, b.matrix), padding
+                    self._fcl[first].place(i, a.matrix),
+                    self._fcl[second].place(j, b.matrix),
+                    padding,
                 ):
                     return True
         return False
@@ -186,4 +200,6 @@ _NO_ROWS, _NO_POSES = np.zeros((0, WIDTH)), np.zeros((0, 12))
 
 
 def _overlap(a_low: Corner, a_high: Corner, b_low: Corner, b_high: Corner, padding: float) -> bool:
-    return all(a_low[i] <= b_high[i] + padding and b_low[i] <= a_high[i] + padding for i in range(3))
+    return all(
+        a_low[i] <= b_high[i] + padding and b_low[i] <= a_high[i] + padding for i in range(3)
+    )

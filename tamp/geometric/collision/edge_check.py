@@ -58,7 +58,11 @@ def _box(i, margin, parts, placed, reach, box):
 @njit(**{**JIT, "_nrt": True})
 def unpack(packed, index):
     """Table `index` of `Tables.packed`, (rows, columns)."""
-    start, rows, columns = int(packed[3 * index]), int(packed[3 * index + 1]), int(packed[3 * index + 2])
+    start, rows, columns = (
+        int(packed[3 * index]),
+        int(packed[3 * index + 1]),
+        int(packed[3 * index + 2]),
+    )
     return packed[start : start + rows * columns].reshape((rows, columns))
 
 
@@ -103,7 +107,10 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
 
 def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
     """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files has changed."""
-    vector, conf = types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C", readonly=True)
+    vector, conf = (
+        types.Array(types.float64, 1, "C"),
+        types.Array(types.float64, 1, "C", readonly=True),
+    )
     signature = types.int64(conf, conf, types.float64, vector)
 
     @njit(signature, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
@@ -114,8 +121,16 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         for conf in (start, end):
             if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
                 return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
-        joints, vertices, leaves = unpack(tables, np.int64(1)), unpack(tables, np.int64(2)), unpack(tables, np.int64(3))
-        parts, part_poses, pairs = unpack(tables, np.int64(4)), unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
+        joints, vertices, leaves = (
+            unpack(tables, np.int64(1)),
+            unpack(tables, np.int64(2)),
+            unpack(tables, np.int64(3)),
+        )
+        parts, part_poses, pairs = (
+            unpack(tables, np.int64(4)),
+            unpack(tables, np.int64(5)),
+            unpack(tables, np.int64(6)),
+        )
         obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
         n = parts.shape[0]
         # A few allocations, cut into pieces: each costs as much as a pair.
@@ -158,7 +173,10 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             if fresh:
                 for k in range(n):
                     place_part(k, frames, change, parts, part_poses, placed, reach)
-                first, last = 0, _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
+                first, last = (
+                    0,
+                    _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found),
+                )
             else:
                 first, last = lists[head, 0], lists[head, 1]
             before = count
@@ -185,7 +203,11 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                 if far <= padding or count == TASKS:
                     return verdict(np.int64(UNDECIDED), i, other)
                 tasks[count, 0], tasks[count, 1] = i, other
-                guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
+                guesses[count, 0], guesses[count, 1], guesses[count, 2] = (
+                    guess[0],
+                    guess[1],
+                    guess[2],
+                )
                 count += 1
             if count > before:
                 if tail + 2 > INTERVALS:
@@ -202,7 +224,9 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
 
 def sources_digest() -> int:
     """A number that changes with any file that the kernel is compiled from; numba itself looks at one file only."""
-    files = (Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check"))
+    files = (
+        Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check")
+    )
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 

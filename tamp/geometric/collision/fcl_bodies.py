@@ -57,5 +57,7 @@ def gap(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
 def depth(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
     """Metres by which one object has to move to leave another; 0 where they are apart."""
     result = fcl.CollisionResult()
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=20, enable_contact=True), result)
+    fcl.collide(
+        first, second, fcl.CollisionRequest(num_max_contacts=20, enable_contact=True), result
+    )
     return max((abs(float(contact.penetration_depth)) for contact in result.contacts), default=0.0)

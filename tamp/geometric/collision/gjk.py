@@ -12,7 +12,17 @@ import math
 
 import numpy as np
 
-from tamp.geometric.collision.tables import BOX, CENTRE, CYLINDER, KIND, MARGIN, POINT, SIZE, VERTEX_COUNT, VERTICES
+from tamp.geometric.collision.tables import (
+    BOX,
+    CENTRE,
+    CYLINDER,
+    KIND,
+    MARGIN,
+    POINT,
+    SIZE,
+    VERTEX_COUNT,
+    VERTICES,
+)
 from tamp.system.compilation import njit
 
 APART, CLOSE, BETWEEN, UNSURE = 0, 1, 2, 3

@@ -45,7 +45,11 @@ class HandCollisions:
         self._attached: dict[Placed, _Movers] = {}
 
     def hits(
-        self, tools: Sequence[Array], opening: float, attachment: Attachment | None, others: Iterable[Placed]
+        self,
+        tools: Sequence[Array],
+        opening: float,
+        attachment: Attachment | None,
+        others: Iterable[Placed],
     ) -> str | None:
         """The first of `others` that the hand hits at one of the poses.
 
@@ -59,15 +63,22 @@ class HandCollisions:
         if not standing:
             return None
         owners, lows, highs = self._parts(standing)
-        movers = [self._movers(opening), *([] if attachment is None else [self._holding(attachment)])]
+        movers = [
+            self._movers(opening),
+            *([] if attachment is None else [self._holding(attachment)]),
+        ]
         radii = np.concatenate([group.radii for group in movers])
         own = np.concatenate([group.centres for group in movers])
         parts = [part for group in movers for part in group.parts]
         at = np.array(tools)
         centres = own @ at[:, :3, :3].transpose(0, 2, 1) + at[:, None, :3, 3]
-        gaps = np.maximum(np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0)
+        gaps = np.maximum(
+            np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0
+        )
         near = np.nonzero(np.einsum("tpmi,tpmi->tpm", gaps, gaps) <= radii * radii)
-        placed: dict[tuple[int, int], Array] = {}  # where each frame is; the same array, so that a part is placed once
+        placed: dict[
+            tuple[int, int], Array
+        ] = {}  # where each frame is; the same array, so that a part is placed once
         for t, index, k in zip(*(axis.tolist() for axis in near), strict=True):
             name, pose, part = owners[index]
             body, number, frame = parts[k]
@@ -85,7 +96,10 @@ class HandCollisions:
         for name, pose in standing:
             if (name, pose) not in self._boxes:
                 boxes = [bounds((part,), pose) for part in self._scene.bodies[name].parts]
-                self._boxes[name, pose] = np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])
+                self._boxes[name, pose] = (
+                    np.array([low for low, _ in boxes]),
+                    np.array([high for _, high in boxes]),
+                )
             low, high = self._boxes[name, pose]
             owners += [(name, pose, part) for part in range(len(low))]
             lows.append(low)
@@ -97,9 +111,13 @@ class HandCollisions:
         if opening not in self._open:
             fingers = [
                 (body, link.parts, self._T_tool_hand @ _finger(joint, opening))
-                for body, link, joint in zip(self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True)
+                for body, link, joint in zip(
+                    self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True
+                )
             ]
-            self._open[opening] = _Movers.of([(self._hand, self._parts_of_hand, self._T_tool_hand), *fingers])
+            self._open[opening] = _Movers.of(
+                [(self._hand, self._parts_of_hand, self._T_tool_hand), *fingers]
+            )
         return self._open[opening]
 
     def _holding(self, attachment: Attachment) -> _Movers:
@@ -107,7 +125,9 @@ class HandCollisions:
         name, T_tool_body = attachment.body, attachment.T_tool_body
         if (name, T_tool_body) not in self._attached:
             parts = self._scene.bodies[name].parts
-            self._attached[name, T_tool_body] = _Movers.of([(self._held[name], parts, T_tool_body.matrix)])
+            self._attached[name, T_tool_body] = _Movers.of(
+                [(self._held[name], parts, T_tool_body.matrix)]
+            )
         return self._attached[name, T_tool_body]
 
 
@@ -174,7 +194,10 @@ def _core(robot: Robot) -> list[Part]:
             up, down = slopes > 1e-9, slopes < -1e-9
             if (room[~up & ~down] < 0).any():
                 break
-            high, low = float((room[up] / slopes[up]).min()), float((room[down] / slopes[down]).max())
+            high, low = (
+                float((room[up] / slopes[up]).min()),
+                float((room[down] / slopes[down]).max()),
+            )
             best = max(best, (radius**2 * max(high - low, 0.0), float(radius), low, high))
         volume, radius, low, high = best
         if volume > 0.0:

@@ -214,10 +214,17 @@ def _from_self(i, k, far, parts, placed, reach, leaves, guess):
     bound = _from_core(parts, i, placed, reach[k, 0], reach[k, 1], reach[k, 2]) - parts[k, RADIUS]
     if bound >= far:
         return bound, math.inf
-    bound = max(bound, _from_core(parts, k, placed, reach[i, 0], reach[i, 1], reach[i, 2]) - parts[i, RADIUS])
+    bound = max(
+        bound,
+        _from_core(parts, k, placed, reach[i, 0], reach[i, 1], reach[i, 2]) - parts[i, RADIUS],
+    )
     if bound >= far or guess[0] != 0.0 or guess[1] != 0.0 or guess[2] != 0.0:
         return bound, math.inf
-    guess[0], guess[1], guess[2] = reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2]
+    guess[0], guess[1], guess[2] = (
+        reach[i, 0] - reach[k, 0],
+        reach[i, 1] - reach[k, 1],
+        reach[i, 2] - reach[k, 2],
+    )
     swapped = parts[i, LEAF_COUNT] == 0
     a, b = (k, i) if swapped else (i, k)
     if parts[a, LEAF_COUNT] == 0:
@@ -241,7 +248,22 @@ def _from_floor(i, parts, placed, vertices):
 
 
 @njit(**JIT)
-def check(i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess, s, weights):
+def check(
+    i,
+    other,
+    near,
+    far,
+    parts,
+    placed,
+    reach,
+    obstacles,
+    obstacle_poses,
+    vertices,
+    leaves,
+    guess,
+    s,
+    weights,
+):
     """Decide a pair as `separation` does, from its spheres when they suffice.
 
     `guess` is (0, 0, 0) or the direction that a check of this pair nearby ended with; it gets the one of this check.

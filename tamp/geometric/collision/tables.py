@@ -60,7 +60,9 @@ class Tables(NamedTuple):
             rows, columns = table.shape if table.ndim == 2 else (1, len(table))
             header += [offset, rows, columns]
             offset += table.size
-        return np.concatenate([np.array(header, dtype=np.float64), *(table.ravel() for table in self)])
+        return np.concatenate(
+            [np.array(header, dtype=np.float64), *(table.ravel() for table in self)]
+        )
 
 
 def pose_rows(matrices: Array) -> Array:
@@ -80,7 +82,9 @@ class Rows:
     def row(self, part: Part, cover: tuple[Array, float] | None = None) -> Array:
         """The row of one part (WIDTH,), without its pose; `cover`: leaves (k, 4) in the part's frame, slack."""
         row = np.zeros(WIDTH)
-        row[KIND], row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3], row[RADIUS], row[MARGIN] = _core(part.shape)
+        row[KIND], row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3], row[RADIUS], row[MARGIN] = _core(
+            part.shape
+        )
         if isinstance(part.shape, Hull):
             row[VERTICES], row[VERTEX_COUNT] = self._vertex_count, len(part.shape.vertices)
             self._vertices.append(np.asarray(part.shape.vertices, dtype=np.float64))
@@ -115,7 +119,13 @@ def _core(shape: Shape) -> tuple[int, Array, Array, float, float]:
         return CYLINDER, half, origin, float(np.hypot(shape.radius, shape.height / 2)), 0.0
     low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
     centre = (low + high) / 2
-    return HULL, (high - low) / 2, centre, float(np.linalg.norm(shape.vertices - centre, axis=1).max()), 0.0
+    return (
+        HULL,
+        (high - low) / 2,
+        centre,
+        float(np.linalg.norm(shape.vertices - centre, axis=1).max()),
+        0.0,
+    )
 
 
 def world_box(rows: Array, poses: Array) -> tuple[Array, Array]:

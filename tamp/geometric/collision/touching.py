@@ -51,7 +51,9 @@ class Touching:
             T = pose.matrix
             near = [other for other in self._there if other != body and self._close(body, other)]
             self._touched[body] = {
-                other: self._depth(body, T, other) for other in near if self._gap(body, T, other) <= NEAR
+                other: self._depth(body, T, other)
+                for other in near
+                if self._gap(body, T, other) <= NEAR
             }
         return self._touched[body]
 
@@ -72,8 +74,15 @@ class Touching:
             aside = SIDEWAYS * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(DIRECTIONS)])
             # Straight up is tried first: of equals the first one is taken.
             ways = [up, *(up + one for one in aside)]
-            around = [other for other in self._there if other != body and self._close(body, other, lift + SIDEWAYS)]
-            room = [min(self._gap(body, _moved(pose.matrix, way), other) for other in around) for way in ways]
+            around = [
+                other
+                for other in self._there
+                if other != body and self._close(body, other, lift + SIDEWAYS)
+            ]
+            room = [
+                min(self._gap(body, _moved(pose.matrix, way), other) for other in around)
+                for way in ways
+            ]
             self._ways[body, lift] = ways[int(np.argmax(np.round(room, 4)))]
         return self._ways[body, lift]
 

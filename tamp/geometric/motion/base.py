@@ -17,12 +17,16 @@ from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
 
 YAW = (2,)
-WEIGHTS = np.array([1.0, 1.0, 0.5])  # a radian of turning weighs half a metre, as in OMPL's SE2 space
+WEIGHTS = np.array(
+    [1.0, 1.0, 0.5]
+)  # a radian of turning weighs half a metre, as in OMPL's SE2 space
 CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
 REACH = 1.0  # the longest edge of the trees, weighted metres
 SHORTCUTS = 30
 PATIENCE = 8
-CURVE_STEP = 0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
+CURVE_STEP = (
+    0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
+)
 RETREATS = (0.3, 0.6)  # metres to back away from furniture before turning
 PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
 
@@ -98,7 +102,14 @@ def plan_base(
         if path is None:
             plane = PlaneSpace(room.x, room.y)
             found, _ = connect(
-                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline, reach=REACH
+                plane,
+                start,
+                [goal],
+                edge_free,
+                seed=seed,
+                checks=budget,
+                deadline=deadline,
+                reach=REACH,
             )
             path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
         if path is not None and len(path) > 2:
@@ -114,7 +125,9 @@ def plan_base(
     return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
 
 
-def _simple(start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline) -> Array | None:
+def _simple(
+    start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline
+) -> Array | None:
     """The first free one of the paths that a driver would think of."""
     for path in _turn_and_drive(start, goal):
         if deadline.passed:
@@ -170,19 +183,30 @@ def _drive(
 
     def curve_free(a: Array, b: Array) -> bool:
         samples = sampled(a, b)
-        return all(_inside(room, base) for base in samples) and all(edge_free(c, d) for c, d in pairwise(samples))
+        return all(_inside(room, base) for base in samples) and all(
+            edge_free(c, d) for c, d in pairwise(samples)
+        )
 
     vertices: list[Array] = [start, goal]
     if not curve_free(start, goal):
         found, _ = connect(
-            plane, start, [goal], curve_free, seed=seed, checks=budget, deadline=deadline, reach=2.0 * REACH
+            plane,
+            start,
+            [goal],
+            curve_free,
+            seed=seed,
+            checks=budget,
+            deadline=deadline,
+            reach=2.0 * REACH,
         )
         if found is None:
             return None
         rest = [*found[1:-1], goal]
         vertices = [start]
         while rest:  # from each vertex jump as far ahead as a free curve leads
-            jump = next((j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0)
+            jump = next(
+                (j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0
+            )
             vertices.append(rest[jump])
             rest = rest[jump + 1 :]
     pieces = [sampled(a, b) for a, b in pairwise(vertices)]

@@ -17,8 +17,12 @@ from tamp.geometric.scene.pose import Array
 
 EdgeTest = Callable[[Array, Array], bool]
 
-ROUNDING = 0.3  # the largest distance from a corner at which its rounding begins (radians or metres)
-SHARE = 0.4  # of an adjacent edge that a rounding may use: a straight part stays between two roundings
+ROUNDING = (
+    0.3  # the largest distance from a corner at which its rounding begins (radians or metres)
+)
+SHARE = (
+    0.4  # of an adjacent edge that a rounding may use: a straight part stays between two roundings
+)
 HALVINGS = 3  # smaller roundings to try where larger ones are not free
 CHORD = 0.06  # length of the chords of a rounding, of which there are between 2 and 8
 TICK = 0.05  # seconds: a corner is passed unrounded if its jump of the velocity takes the acceleration limit no longer
@@ -76,7 +80,11 @@ class Corner:
     @property
     def bend(self) -> Array:
         """Second derivative within the rounding; zero for a corner that is not rounded."""
-        return (self.after - self.before) / (2.0 * self.reach) if self.reach else np.zeros_like(self.before)
+        return (
+            (self.after - self.before) / (2.0 * self.reach)
+            if self.reach
+            else np.zeros_like(self.before)
+        )
 
     def shares(self) -> Array:
         """Parameters in [0, 1] between which the chords of the rounding run, evenly spaced in the station."""
@@ -103,14 +111,26 @@ def corners(path: Array, acceleration: Array, edge_free: EdgeTest | None = None)
     lengths = np.linalg.norm(steps, axis=1)
     along = steps / lengths[:, None]
     inner = [
-        _corner(path[k], along[k - 1], along[k], float(min(lengths[k - 1], lengths[k])), acceleration, edge_free)
+        _corner(
+            path[k],
+            along[k - 1],
+            along[k],
+            float(min(lengths[k - 1], lengths[k])),
+            acceleration,
+            edge_free,
+        )
         for k in range(1, len(path) - 1)
     ]
     return [Corner(path[0], along[0], along[0]), *inner, Corner(path[-1], along[-1], along[-1])]
 
 
 def _corner(
-    vertex: Array, before: Array, after: Array, shorter: float, acceleration: Array, edge_free: EdgeTest | None
+    vertex: Array,
+    before: Array,
+    after: Array,
+    shorter: float,
+    acceleration: Array,
+    edge_free: EdgeTest | None,
 ) -> Corner:
     with np.errstate(divide="ignore"):
         smooth = TICK**2 * float(np.min(acceleration / np.abs(after - before)))
@@ -118,20 +138,26 @@ def _corner(
         return Corner(vertex, before, after, window=0.5 * shorter)
     if edge_free is not None:
         for halving in range(HALVINGS + 1):
-            rounded = Corner(vertex, before, after, reach=min(SHARE * shorter, ROUNDING) * 0.5**halving)
+            rounded = Corner(
+                vertex, before, after, reach=min(SHARE * shorter, ROUNDING) * 0.5**halving
+            )
             if all(edge_free(a, b) for a, b in pairwise(rounded.curve())):
                 return rounded
     return Corner(vertex, before, after)
 
 
-_Node = tuple[Array, float, Array, Array, Array, Array, int]  # Rail's columns, then the edge it lies on, or -1
+_Node = tuple[
+    Array, float, Array, Array, Array, Array, int
+]  # Rail's columns, then the edge it lies on, or -1
 
 
 def lay(passed: list[Corner]) -> Rail:
     """The rail through corners at which the motion does not rest, except at the first and the last."""
     *columns, edges = zip(*_nodes(passed), strict=True)
     on = np.array(edges)
-    return Rail(*(np.array(column) for column in columns), straight=(on[:-1] == on[1:]) & (on[1:] >= 0))
+    return Rail(
+        *(np.array(column) for column in columns), straight=(on[:-1] == on[1:]) & (on[1:] >= 0)
+    )
 
 
 def _nodes(passed: list[Corner]) -> Iterator[_Node]:
@@ -149,17 +175,37 @@ def _nodes(passed: list[Corner]) -> Iterator[_Node]:
         if last.reach:
             for t, position in zip(last.shares()[1:-1], last.curve()[1:-1], strict=True):
                 tangent = (1 - t) * u + t * v
-                yield position, station + (2 * t - 1) * last.reach, tangent, np.abs(tangent), last.bend, last.bend, -1
+                yield (
+                    position,
+                    station + (2 * t - 1) * last.reach,
+                    tangent,
+                    np.abs(tangent),
+                    last.bend,
+                    last.bend,
+                    -1,
+                )
         else:
             gaps = [
                 extent if _covered(first, last, extent) else last.window,
                 lengths[k + 1] if _covered(last, passed[k + 2], lengths[k + 1]) else last.window,
             ]
-            bend = (v - u) / (0.5 * sum(gaps))  # the jump, spread over the time between the middles of the intervals
-            yield last.vertex, station, 0.5 * (u + v), np.maximum(np.abs(u), np.abs(v)), bend, bend, -1
+            bend = (v - u) / (
+                0.5 * sum(gaps)
+            )  # the jump, spread over the time between the middles of the intervals
+            yield (
+                last.vertex,
+                station,
+                0.5 * (u + v),
+                np.maximum(np.abs(u), np.abs(v)),
+                bend,
+                bend,
+                -1,
+            )
 
 
-def _straight(first: Corner, last: Corner, station: float, extent: float, edge: int) -> Iterator[_Node]:
+def _straight(
+    first: Corner, last: Corner, station: float, extent: float, edge: int
+) -> Iterator[_Node]:
     """The part of an edge that belongs to neither corner, with nodes at both ends."""
     u, zero = first.after, np.zeros_like(first.after)
     begin, end = first.taken, extent - last.taken

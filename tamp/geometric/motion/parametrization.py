@@ -29,7 +29,12 @@ def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
     Returns:
         Shape (m,), or None when the analysis fails numerically.
     """
-    algorithm = TOPPRA([_Limits(rail, velocity, acceleration)], _Interval(rail), rail.stations, solver_wrapper="seidel")
+    algorithm = TOPPRA(
+        [_Limits(rail, velocity, acceleration)],
+        _Interval(rail),
+        rail.stations,
+        solver_wrapper="seidel",
+    )
     rates = algorithm.compute_parameterization(0.0, 0.0)[1]
     if rates is None or not np.all(np.isfinite(rates)) or np.any(rates[1:-1] <= 0.0):
         return None
@@ -48,18 +53,33 @@ class _Limits(LinearConstraint):
         before, after = rail.bends_before, rail.bends_after
         gaps = np.diff(rail.stations)[:, None]
         start = rail.tangents, after
-        end = rail.tangents[1:] + 2.0 * gaps * before[1:], before[1:]  # x at the interval's end is x + 2 gap u
-        self.rows = [np.hstack([s, np.vstack([e, s[-1:]])]) for s, e in zip(start, end, strict=True)]
+        end = (
+            rail.tangents[1:] + 2.0 * gaps * before[1:],
+            before[1:],
+        )  # x at the interval's end is x + 2 gap u
+        self.rows = [
+            np.hstack([s, np.vstack([e, s[-1:]])]) for s, e in zip(start, end, strict=True)
+        ]
         self.limits = np.tile(acceleration, 4)
         with np.errstate(divide="ignore"):
             fastest = np.min(velocity / rail.steepest, axis=1)
         self.bounds = np.stack([np.zeros(len(fastest)), fastest**2], axis=1)
 
-    def compute_constraint_params(self, path: Any, gridpoints: Array, *_: Any, **__: Any) -> tuple[Any, ...]:
+    def compute_constraint_params(
+        self, path: Any, gridpoints: Array, *_: Any, **__: Any
+    ) -> tuple[Any, ...]:
         """The coefficients a, b, c, F, g and the bounds of u and x, as toppra wants them."""
         a, b = self.rows
         identity = np.eye(a.shape[1])
-        return a, b, np.zeros_like(a), np.vstack([identity, -identity]), self.limits, None, self.bounds
+        return (
+            a,
+            b,
+            np.zeros_like(a),
+            np.vstack([identity, -identity]),
+            self.limits,
+            None,
+            self.bounds,
+        )
 
 
 class _Interval:

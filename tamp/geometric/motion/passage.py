@@ -114,9 +114,17 @@ class Passage:
     def open_towards(self, target: Array, reach: float) -> bool:
         """Whether the disc gets within `reach` metres of a point (2,) in a straight line, or in two."""
         x, y = float(target[0]), float(target[1])
-        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):  # as for most poses, after the first few
+        if any(
+            math.hypot(a - x, b - y) <= reach for a, b in self._open
+        ):  # as for most poses, after the first few
             return True
-        for middle in (None, *(self._start + 1.2 * np.array([math.cos(a), math.sin(a)]) for a in np.arange(8) * 0.785)):
+        for middle in (
+            None,
+            *(
+                self._start + 1.2 * np.array([math.cos(a), math.sin(a)])
+                for a in np.arange(8) * 0.785
+            ),
+        ):
             first = self._start if middle is None else middle
             way = target - first
             distance = float(np.linalg.norm(way))
@@ -188,15 +196,21 @@ class Passage:
         if not near.any() or float(widest[near].max()) >= self.radius - self.slack:
             return None
         _, _, free = self._floor
-        standing = near & (free >= self.radius)  # behind a door there is room to stand; beside a wall there is no door
-        return self._gap(int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0))))
+        standing = near & (
+            free >= self.radius
+        )  # behind a door there is room to stand; beside a wall there is no door
+        return self._gap(
+            int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
+        )
 
     def narrow(self, goal: Array) -> Gap | None:
         """The narrowest place on the widest way to a base position (2,), where the base hardly fits through it."""
         if not self.known:
             return None
         xs, ys, _ = self._floor
-        target = int(np.argmin(np.abs(xs - goal[0]))) * len(ys) + int(np.argmin(np.abs(ys - goal[1])))
+        target = int(np.argmin(np.abs(xs - goal[0]))) * len(ys) + int(
+            np.argmin(np.abs(ys - goal[1]))
+        )
         gap = self._gap(target)
         beside = math.dist(gap.place, goal[:2]) < self.radius
         return gap if gap.width <= DOOR * gap.base and not beside else None
@@ -220,7 +234,9 @@ class Passage:
             return Gap(place, 0.0, 2 * self.radius, (name,))
         across = first - point
         for other, second in nearest[1:]:
-            if (second - point) @ across < -0.5 * np.linalg.norm(across) * np.linalg.norm(second - point):
+            if (second - point) @ across < -0.5 * np.linalg.norm(across) * np.linalg.norm(
+                second - point
+            ):
                 names = tuple(dict.fromkeys((name, other)))
                 return Gap(place, float(np.linalg.norm(second - first)), 2 * self.radius, names)
         return Gap(place, 2 * float(flat[least]), 2 * self.radius, (name,))
@@ -229,7 +245,11 @@ class Passage:
 def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
     """The radius of the largest disc about the base's origin that is in the base, and between which heights."""
     parts = robot.links[0].parts
-    if len(parts) != 1 or not isinstance(parts[0].shape, Box) or parts[0].pose.quaternion[:3] != (0.0, 0.0, 0.0):
+    if (
+        len(parts) != 1
+        or not isinstance(parts[0].shape, Box)
+        or parts[0].pose.quaternion[:3] != (0.0, 0.0, 0.0)
+    ):
         return None
     size, (x, y, z) = parts[0].shape.size, parts[0].pose.position
     return min(size[0] / 2 - abs(x), size[1] / 2 - abs(y)), (z - size[2] / 2, z + size[2] / 2)

@@ -65,7 +65,11 @@ class PlaneSpace:
 
     def build(self) -> Any:
         """OMPL's space."""
-        space = ob.SE2StateSpace() if self.turning_radius is None else ob.ReedsSheppStateSpace(self.turning_radius)
+        space = (
+            ob.SE2StateSpace()
+            if self.turning_radius is None
+            else ob.ReedsSheppStateSpace(self.turning_radius)
+        )
         bounds = ob.RealVectorBounds(2)
         for i, (low, high) in enumerate((self.x, self.y)):
             bounds.setLow(i, float(low))
@@ -87,7 +91,9 @@ class PlaneSpace:
 class _WholeEdges(ob.MotionValidator):
     """Asks for a whole edge in one call, and counts."""
 
-    def __init__(self, information: ob.SpaceInformation, space: JointSpace | PlaneSpace, edge_free: EdgeTest) -> None:
+    def __init__(
+        self, information: ob.SpaceInformation, space: JointSpace | PlaneSpace, edge_free: EdgeTest
+    ) -> None:
         super().__init__(information)
         self.space = space
         self.edge_free = edge_free
@@ -96,7 +102,9 @@ class _WholeEdges(ob.MotionValidator):
     def checkMotion(self, start: Any, end: Any) -> bool:
         """Called back by the planner for every edge that it wants to add; it plans from the goals to the start."""
         self.checks += 1
-        return bool(self.edge_free(np.array(self.space.read(end)), np.array(self.space.read(start))))
+        return bool(
+            self.edge_free(np.array(self.space.read(end)), np.array(self.space.read(start)))
+        )
 
 
 def connect(
@@ -130,18 +138,25 @@ def connect(
         [-pi, pi)), or None; and the number of edges asked for. None at once when the space's bounds leave out the
         start or all goals: OMPL would wait for others until the time is up.
     """
-    ou.setLogLevel(ou.LOG_NONE)  # setSeed logs an error that is none: the generators made below are all seeded by it
+    ou.setLogLevel(
+        ou.LOG_NONE
+    )  # setSeed logs an error that is none: the generators made below are all seeded by it
     ou.RNG.setSeed(seed)
     built = space.build()
     information = ob.SpaceInformation(built)
     validator = _WholeEdges(information, space, edge_free)
     information.setMotionValidator(validator)
-    information.setStateValidityChecker(ob.AllValidStateValidityChecker(information))  # an edge's test covers its ends
+    information.setStateValidityChecker(
+        ob.AllValidStateValidityChecker(information)
+    )  # an edge's test covers its ends
     information.setup()
     problem = ob.ProblemDefinition(information)
     # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree of the first has
     # grown, which it never does where the first is shut in.
-    first, ends = _state(built, space, start), [_state(built, space, goal) for goal in goals if _finite(goal)]
+    first, ends = (
+        _state(built, space, start),
+        [_state(built, space, goal) for goal in goals if _finite(goal)],
+    )
     inside = [state for state in ends if built.satisfiesBounds(state)]
     if not inside or not _finite(start) or not built.satisfiesBounds(first):
         return None, 0
@@ -160,7 +175,11 @@ def connect(
     def finished() -> bool:
         nonlocal iterations
         iterations += 1
-        return validator.checks >= checks or iterations >= ITERATIONS_PER_CHECK * checks or deadline.passed
+        return (
+            validator.checks >= checks
+            or iterations >= ITERATIONS_PER_CHECK * checks
+            or deadline.passed
+        )
 
     planner.solve(ob.PlannerTerminationCondition(finished))
     if not problem.hasExactSolution():

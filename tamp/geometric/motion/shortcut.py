@@ -55,7 +55,10 @@ def shortcut(
         if i == j:
             continue
         first, second = (
-            path[k] + (share * total - stations[k]) / (stations[k + 1] - stations[k]) * (path[k + 1] - path[k])
+            path[k]
+            + (share * total - stations[k])
+            / (stations[k + 1] - stations[k])
+            * (path[k + 1] - path[k])
             for k, share in ((i, low), (j, high))
         )
         landing = nearest(first, second, periodic)
@@ -66,7 +69,9 @@ def shortcut(
             refused += 1
             continue
         refused = 0
-        path = without_repeats(np.concatenate([path[: i + 1], [first, landing], path[j + 1 :] + (landing - second)]))
+        path = without_repeats(
+            np.concatenate([path[: i + 1], [first, landing], path[j + 1 :] + (landing - second)])
+        )
         stations = _stations(path, scale)
     return path, checks
 
@@ -81,7 +86,9 @@ def _skip_vertices(
 ) -> tuple[Array, int]:
     """From each kept vertex jump as far ahead as halving steps find a free edge."""
     kept = [path[0]]
-    shift = np.zeros(path.shape[1])  # whole turns that the cuts so far have taken out of the rest of the path
+    shift = np.zeros(
+        path.shape[1]
+    )  # whole turns that the cuts so far have taken out of the rest of the path
     i, checks = 0, 0
     while i < len(path) - 1:
         jump = len(path) - 1 - i

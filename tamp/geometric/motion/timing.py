@@ -51,7 +51,10 @@ def time_path(
         From the path's first row to its last, both exactly; samples at most about TICK seconds apart on straight parts.
     """
     path = without_repeats(np.asarray(path, dtype=float))
-    velocity, acceleration = np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float)
+    velocity, acceleration = (
+        np.asarray(velocity, dtype=float),
+        np.asarray(acceleration, dtype=float),
+    )
     if len(path) == 1:
         return Timed(np.zeros(1), path)
     passed = corners(path, acceleration, edge_free)
@@ -87,7 +90,10 @@ def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) ->
     """One edge from rest to rest: full acceleration, full speed, full braking."""
     step = np.abs(end - start)
     with np.errstate(divide="ignore"):
-        top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))  # in edges per second (squared)
+        top, push = (
+            float(np.min(velocity / step)),
+            float(np.min(acceleration / step)),
+        )  # in edges per second (squared)
     top = min(top, push**0.5)  # a short edge brakes before it reaches full speed
     ramp = top / push
     duration = 1.0 / top + ramp
@@ -105,7 +111,9 @@ def _joined(pieces: list[Timed]) -> Timed:
     starts = np.cumsum([0.0] + [piece.duration for piece in pieces])
     times = [start + piece.times[1:] for start, piece in zip(starts[:-1], pieces, strict=True)]
     positions = [piece.positions[1:] for piece in pieces]
-    return Timed(np.concatenate([np.zeros(1), *times]), np.concatenate([pieces[0].positions[:1], *positions]))
+    return Timed(
+        np.concatenate([np.zeros(1), *times]), np.concatenate([pieces[0].positions[:1], *positions])
+    )
 
 
 def _sampled(rail: Rail, rates: Array) -> Timed:
@@ -121,7 +129,10 @@ def _sampled(rail: Rail, rates: Array) -> Timed:
     travelled = (rates[i] + 0.5 * (rates[i + 1] - rates[i]) * shares) * elapsed / gaps[i]
     positions = rail.positions[i] + travelled[:, None] * (rail.positions[i + 1] - rail.positions[i])
     positions[ends - 1] = rail.positions[1:]
-    return Timed(np.concatenate([[0.0], starts[i] + elapsed]), np.concatenate([rail.positions[:1], positions]))
+    return Timed(
+        np.concatenate([[0.0], starts[i] + elapsed]),
+        np.concatenate([rail.positions[:1], positions]),
+    )
 
 
 def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
@@ -131,5 +142,9 @@ def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
     rest = np.zeros((1, rates.shape[1]))
     middles = 0.5 * (np.concatenate([[0.0], spans]) + np.concatenate([spans, [0.0]]))
     changes = np.diff(np.concatenate([rest, rates, rest]), axis=0) / middles[:, None]
-    excess = max(1.0, float(np.max(np.abs(rates) / velocity)), float(np.max(np.abs(changes) / acceleration)) ** 0.5)
+    excess = max(
+        1.0,
+        float(np.max(np.abs(rates) / velocity)),
+        float(np.max(np.abs(changes) / acceleration)) ** 0.5,
+    )
     return Timed(timed.times * excess, timed.positions)

@@ -64,19 +64,29 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     Raises:
         InputError: Unknown relation, name or mode.
     """
-    name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
+    name, colon, mode = (
+        text.rpartition(":")
+        if text.endswith(tuple(f":{mode}" for mode in MODES))
+        else (text, "", "")
+    )
     if Path(name).suffix in known.get(ANY, {}):
         return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
     name, colon, mode = text.partition(":")
     if relation not in known or relation == ANY:
         choices = [other for other in known if other != ANY]
         remedy = f"Of one's own: {relation}=FILE{next(iter(known[ANY]))}" if known.get(ANY) else ""
-        raise InputError(f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy)
+        raise InputError(
+            f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
+        )
     if name not in known[relation]:
-        raise InputError(f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation])
+        raise InputError(
+            f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation]
+        )
     if colon and mode not in MODES:
         remedy = f"For example: {relation}={name}:alone"
-        raise InputError(f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy)
+        raise InputError(
+            f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy
+        )
     return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
 
 
@@ -111,6 +121,9 @@ def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
     for pair in pairs:
         relation, equals, name = pair.partition("=")
         if not (relation and equals and name):
-            raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
+            raise InputError(
+                f"--sampler wants RELATION=NAME, not '{pair}'",
+                remedy="For example: --sampler on=uniform",
+            )
         chosen[relation] = name
     return chosen

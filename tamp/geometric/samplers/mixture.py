@@ -124,7 +124,9 @@ class Ledger:
         if trusted.kept / trusted.work * chosen.work < ENOUGH:
             return None
         most, count = chosen.reasons.most_common(1)[0]
-        chosen.out = f"none of its {chosen.judged} proposals was of use (most often, {count} times: {most})"
+        chosen.out = (
+            f"none of its {chosen.judged} proposals was of use (most often, {count} times: {most})"
+        )
         return chosen
 
     def allowance(self, account: Account, deadline: Deadline) -> float:
@@ -140,11 +142,11 @@ class Ledger:
 
 def sidelined(relation: str, account: Account, rest: Sequence[str]) -> str:
     """The sentence for the user."""
-    return (
-        f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}; {', '.join(rest)} goes on without it"
-    )
+    return f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}; {', '.join(rest)} goes on without it"
 
 
 def accounts(memory: Mapping[str, object]) -> dict[str, tuple[Account, ...]]:
     """The accounts of all relations in the memory of a run."""
-    return {item.relation: tuple(item.accounts) for item in memory.values() if isinstance(item, Ledger)}
+    return {
+        item.relation: tuple(item.accounts) for item in memory.values() if isinstance(item, Ledger)
+    }

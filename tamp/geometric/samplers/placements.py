@@ -26,14 +26,20 @@ class SurfacePlacements:
     Where the body is larger than the region, uniform in the positions of its centre; overhang is judged afterwards.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """World poses at rest in the region `arguments[1]`; none when no stable face fits under its ceiling."""
         body, region_name = arguments
         region = scene.surfaces.get(region_name) or scene.cavities[region_name]
         room = region.clearance if isinstance(region, Surface) else region.size[2]
         resting = resting_of(scene.bodies[body])
         faces = [face for face in resting.faces if face.extent + 2 * CONTACT_GAP <= room]
-        if not faces and resting.lying is not None and resting.lying.extent + 2 * CONTACT_GAP <= room:
+        if (
+            not faces
+            and resting.lying is not None
+            and resting.lying.extent + 2 * CONTACT_GAP <= room
+        ):
             faces = [resting.lying]
         if not faces:
             return []
@@ -50,7 +56,9 @@ class SurfacePlacements:
 class UniformPlacements:
     """Uniform positions in the grown box of the region's body, uniform rotations (LEARNING.md, section 1)."""
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """World poses; most of them float, sink or lean."""
         region = scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
         support = scene.bodies[region.body]
@@ -60,12 +68,16 @@ class UniformPlacements:
         quaternions = rng.normal(size=(count, 4))
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
         return [
-            Pose((float(x), float(y), float(z)), (float(q[0]), float(q[1]), float(q[2]), float(q[3])))
+            Pose(
+                (float(x), float(y), float(z)), (float(q[0]), float(q[1]), float(q[2]), float(q[3]))
+            )
             for (x, y, z), q in zip(positions, quaternions, strict=True)
         ]
 
 
-def position_inside(face: Face, yaw: float, size: Sequence[float], rng: Random) -> tuple[float, float]:
+def position_inside(
+    face: Face, yaw: float, size: Sequence[float], rng: Random
+) -> tuple[float, float]:
     """A random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at a yaw in radians.
 
     The outline stays inside; where it cannot, the centre of mass does.

@@ -54,8 +54,14 @@ def python_grounding(path: Path, source: str | None = None) -> Grounding:
     """
     found = python_object(path, source)
     if isinstance(found, type) or not isinstance(found, Generator | Classifier):
-        what = f"'{NAME}' has neither propose nor classify" if found is not None else f"it defines no '{NAME}'"
+        what = (
+            f"'{NAME}' has neither propose nor classify"
+            if found is not None
+            else f"it defines no '{NAME}'"
+        )
         what = f"'{NAME}' is a class, not an object" if isinstance(found, type) else what
-        remedy = f"{NAME} = Mine(), an object with the methods of tamp/geometric/samplers/sampler.py"
+        remedy = (
+            f"{NAME} = Mine(), an object with the methods of tamp/geometric/samplers/sampler.py"
+        )
         raise InputError(what, file=path, remedy=remedy)
     return found

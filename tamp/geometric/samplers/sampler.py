@@ -21,7 +21,9 @@ class Generator(Protocol):
     which it raises, repeats itself, proposes nothing of use, or takes more than a tenth of the time.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
         """At most `count` world poses of body `arguments[0]`, the best first; an empty list when there will be none.
 
         Args:

@@ -21,7 +21,9 @@ def body_hull(body: Body) -> tuple[Array, Triangles]:
     """Vertices (n, 3) and triangles (m, 3), outward, of the convex hull of all parts. Metres."""
     if len(body.parts) == 1:
         return _placed(body.parts[0])
-    from scipy.spatial import ConvexHull  # half a second to import, and only bodies of several parts need it
+    from scipy.spatial import (
+        ConvexHull,
+    )  # half a second to import, and only bodies of several parts need it
 
     vertices = np.concatenate([_placed(part)[0] for part in body.parts])
     hull = ConvexHull(vertices)
@@ -59,7 +61,9 @@ def _mesh(shape: Shape) -> tuple[Array, Triangles]:
         return _prism(np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]]) * half[:2], half[2])
     if isinstance(shape, Cylinder):
         angles = np.arange(SIDES) * 2 * math.pi / SIDES
-        return _prism(shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1), shape.height / 2)
+        return _prism(
+            shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1), shape.height / 2
+        )
     return _ball(shape)
 
 

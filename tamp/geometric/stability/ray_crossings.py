@@ -50,7 +50,9 @@ class Solid:
         # The planes of each part, (p, most), the first one repeated behind the last: one look for all parts.
         places = np.arange((last - self._first).max())
         self._planes = np.where(
-            places < (last - self._first)[:, None], self._first[:, None] + places, self._first[:, None]
+            places < (last - self._first)[:, None],
+            self._first[:, None] + places,
+            self._first[:, None],
         )
         self._corners = np.concatenate(corners)
         self._cumulative = np.cumsum(np.concatenate(areas))
@@ -94,14 +96,18 @@ class Solid:
 
     def solid_at(self, origin: Array, direction: Array) -> Contact | None:
         """The stretch of solid that contains, or begins at, the origin of a line; None where there is none."""
-        starts, ends, start_planes, end_planes = (row[0] for row in self.crossings(origin[None], direction))
+        starts, ends, start_planes, end_planes = (
+            row[0] for row in self.crossings(origin[None], direction)
+        )
         crossed = np.flatnonzero(ends > starts)
         here = crossed[(starts[crossed] <= SEAM) & (ends[crossed] >= -SEAM)]
         if len(here) == 0:
             return None
         first, last = here[np.argmin(starts[here])], here[np.argmax(ends[here])]
         for _ in range(len(crossed)):  # parts that touch the stretch lengthen it, one after another
-            low = crossed[(starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM)]
+            low = crossed[
+                (starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM)
+            ]
             high = crossed[(ends[crossed] > ends[last]) & (starts[crossed] <= ends[last] + SEAM)]
             if len(low) == 0 and len(high) == 0:
                 break

@@ -18,7 +18,9 @@ def cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array |
     if not crossing.any():
         return None
     share = above[a[crossing]] / (above[a[crossing]] - above[b[crossing]])
-    points = vertices[a[crossing]] + share[:, None] * (vertices[b[crossing]] - vertices[a[crossing]])
+    points = vertices[a[crossing]] + share[:, None] * (
+        vertices[b[crossing]] - vertices[a[crossing]]
+    )
     corners = outline(points[:, :2])
     return corners if len(corners) >= 3 else None
 

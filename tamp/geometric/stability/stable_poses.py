@@ -88,7 +88,12 @@ class Resting:
         """All ways to rest that withstand a tilt of STABLE, the present one first, then the steadiest."""
         down = -self.body.pose.rotation[2]
         faces = stable_faces(self.body)
-        faces.sort(key=lambda face: (-round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)), -face.angle))
+        faces.sort(
+            key=lambda face: (
+                -round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)),
+                -face.angle,
+            )
+        )
         return tuple(faces)
 
     @cached_property
@@ -98,7 +103,9 @@ class Resting:
         What lies there can lie so elsewhere, though a touch may roll it: a way to rest where there is no better one.
         """
         down = -self.body.pose.rotation[2]
-        if self.body.support is None or all(isinstance(part.shape, Sphere) for part in self.body.parts):
+        if self.body.support is None or all(
+            isinstance(part.shape, Sphere) for part in self.body.parts
+        ):
             return None
         if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT) for face in self.faces):
             return None
@@ -118,7 +125,9 @@ class Resting:
         return best
 
 
-def rest(resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_region: Pose) -> Pose | Rejection:
+def rest(
+    resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_region: Pose
+) -> Pose | Rejection:
     """Put a proposed pose to rest in a region, or say why it cannot.
 
     The result touches the region (up to CONTACT_GAP) with a stable face whose support lies inside the region.
@@ -134,7 +143,9 @@ def rest(resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_reg
     if abs(bottom) > SNAP_HEIGHT:
         return Rejection("too high" if bottom > 0 else "too low")
     yaw = _yaw_between(face.rotation, T_region_body.rotation)
-    return settle(face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region)
+    return settle(
+        face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region
+    )
 
 
 def settle(
@@ -181,7 +192,9 @@ def _balanced(base: Array, centre: Array, half: Array) -> bool:
     edges = np.roll(base, -1, axis=0) - base
     lengths = np.linalg.norm(edges, axis=1)
     offsets = centre - base
-    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(lengths, 1e-12)
+    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(
+        lengths, 1e-12
+    )
     return bool((distances > BALANCE).all())
 
 
@@ -203,7 +216,9 @@ def stable_faces(body: Body) -> list[Face]:
         touching = turned[turned[:, 2] < low + FLAT, :2]
         centre = rotation @ centre_of_mass_
         # Within the base no edge is farther from the centre of mass than the base's box: most facets end here.
-        room = float(np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min())
+        room = float(
+            np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min()
+        )
         if room < math.tan(STABLE) * max(float(centre[2]) - low, 1e-6) - FLAT:
             continue
         base = outline(touching)
@@ -213,7 +228,9 @@ def stable_faces(body: Body) -> list[Face]:
         if angle < STABLE:
             continue
         extent = float(np.ptp(turned[:, 2]))
-        faces.append(Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy()))
+        faces.append(
+            Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
+        )
     return faces
 
 
@@ -229,7 +246,9 @@ def facets(body: Body, most: int) -> list[Face] | None:
         turned = vertices @ rotation.T
         low = float(turned[:, 2].min())
         seen = outline(turned[:, :2])
-        faces.append(Face(rotation, -low, float(np.ptp(turned[:, 2])), seen, seen, 0.0, seen.mean(axis=0)))
+        faces.append(
+            Face(rotation, -low, float(np.ptp(turned[:, 2])), seen, seen, 0.0, seen.mean(axis=0))
+        )
     return faces
 
 
@@ -247,7 +266,9 @@ def curved_face(body: Body) -> Face | None:
     if angle < 0.0:
         return None
     extent = float(high[2] - low[2])
-    return Face(rotation, -float(low[2]), extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
+    return Face(
+        rotation, -float(low[2]), extent, outline(turned[:, :2]), base, angle, centre[:2].copy()
+    )
 
 
 def _facet_normals(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:
@@ -280,5 +301,7 @@ def _tipping_angle(base: Array, centre: Array, height: float) -> float:
     """The tilt, radians, that brings the centre of mass over the nearest edge of the base; negative when outside."""
     edges = np.roll(base, -1, axis=0) - base
     offsets = centre - base
-    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.linalg.norm(edges, axis=1)
+    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.linalg.norm(
+        edges, axis=1
+    )
     return math.atan2(float(distances.min()), max(height, 1e-6))

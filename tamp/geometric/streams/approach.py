@@ -28,13 +28,17 @@ SLIDES = 9
 """Where on each stretch of the way out a body is looked at that leaves what it touches."""
 
 
-def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: Call) -> bool | Rejection:
+def test_approach(
+    context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
+) -> bool | Rejection:
     """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
     fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
     hit = approach_hits(context, pose, grasp, fixed)
     if hit is None:
         return True
-    loaded = f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    loaded = (
+        f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    )
     return Rejection(f"{loaded or _flat(context, body, pose, hit)}hand hits {hit}")
 
 
@@ -52,11 +56,17 @@ def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
     low, high = bounds(context.scene.bodies[body].parts, pose)
     tall = float(high[2] - low[2])
     below = bounds(context.scene.bodies[hit].parts, context.scene.bodies[hit].pose)
-    carries = (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
-    return f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+    carries = (
+        (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
+    )
+    return (
+        f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+    )
 
 
-def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]) -> str | None:
+def approach_hits(
+    context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]
+) -> str | None:
     """The first of other bodies that the hand hits on its way to the grasp, or on its way back with the body."""
     standing = list(others)
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
@@ -71,7 +81,9 @@ def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[t
     leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
     if leaving:  # the hand must not touch them, the body in it only while it leaves them
         steps = [_moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, SLIDES)]
-        steps += [_moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]]
+        steps += [
+            _moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]
+        ]
         bodies = [step @ grasp.T_tool_body.matrix for step in steps]
         for name in leaving:
             if not touching.separates(grasp.body, bodies, name):

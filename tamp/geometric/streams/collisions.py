@@ -49,7 +49,10 @@ def test_reach_clear(
     place = {other: other_pose}
     empty = context.collisions.arrangement(place, None, fixed=False)
     loaded = context.collisions.arrangement(place, context.attachment(grasp), fixed=False)
-    approach, lift = (np.array([context.conf(base.array, q) for q in path]) for path in (reach.approach, reach.lift))
+    approach, lift = (
+        np.array([context.conf(base.array, q) for q in path])
+        for path in (reach.approach, reach.lift)
+    )
     if not (empty.free(home) and loaded.free(home)):
         return Rejection(f"base hits {other}", (other,))
     out = lift[-1]
@@ -65,7 +68,9 @@ def test_reach_clear(
     return True
 
 
-def _out_of_the_way(context: Context, body: str, base: BaseConf, other: str, other_pose: Pose) -> bool:
+def _out_of_the_way(
+    context: Context, body: str, base: BaseConf, other: str, other_pose: Pose
+) -> bool:
     """Whether the other body is farther from the base than the arm, stretched out with the body in hand, can be."""
     arm = context.robot.T_base_arm.position
     stretched = math.hypot(arm[0], arm[1]) + arm_length(context.robot) + 2 * context.radius(body)

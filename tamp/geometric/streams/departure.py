@@ -30,15 +30,27 @@ def lift_hits(
         padding: Metres that robot and body keep to the others.
     """
     held, body = context.attachment(grasp), grasp.body
-    standing = {name: context.scene.bodies[name].pose for name in context.scene.fixed} if others is None else others
+    standing = (
+        {name: context.scene.bodies[name].pose for name in context.scene.fixed}
+        if others is None
+        else others
+    )
     leaving = {
         name: other for name, other in standing.items() if context.touching.together(body, pose, name, other)
     }  # fmt: skip
     collisions = context.collisions
     if not leaving:
-        among = context.fixed_only(grasp) if others is None else collisions.arrangement(others, held, fixed=False)
+        among = (
+            context.fixed_only(grasp)
+            if others is None
+            else collisions.arrangement(others, held, fixed=False)
+        )
         return among.path_hits(lift, padding=padding)
-    rest = {} if others is None else {name: other for name, other in others.items() if name not in leaving}
+    rest = (
+        {}
+        if others is None
+        else {name: other for name, other in others.items() if name not in leaving}
+    )
     among = collisions.arrangement(rest, held, fixed=others is None, without=leaving)
     hand = collisions.arrangement(leaving, None, opening=grasp.opening, fixed=False)
     hit = among.path_hits(lift, padding=padding) or hand.path_hits(lift, padding=padding)

@@ -55,9 +55,13 @@ def strain(
     weight = body.mass * GRAVITY
     grip = PAD_FRICTION * body.friction * force
     spread = [patch[:, [0, 2]] - patch[:, [0, 2]].mean(axis=0) for patch in patches]
-    about_closing = sum(grip * (EDGE / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread)
+    about_closing = sum(
+        grip * (EDGE / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread
+    )
     reach = np.min([np.ptp(patch[:, [0, 2]], axis=0) for patch in patches], axis=0) / 2 + EDGE
-    holds = np.array([2 * force * reach[1] + grip * width, about_closing, 2 * force * reach[0] + grip * width])
+    holds = np.array(
+        [2 * force * reach[1] + grip * width, about_closing, 2 * force * reach[0] + grip * width]
+    )
     shaken = np.concatenate([up + SHAKE * SIDES for up in ups])
     turns = np.cross(lever, weight * shaken) / holds
     slip = (1.0 + SHAKE) * weight / (2 * grip)

@@ -68,7 +68,9 @@ def _is_narrow(shape: object, opening: float) -> bool:
 def _width(shape: object, up: Array) -> float | None:
     """The least distance, metres, of contacts on two sides of a box or can that lies flat; `up` (3,) in its frame."""
     if isinstance(shape, Box):
-        level = [size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL]
+        level = [
+            size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL
+        ]
         return min(level) if len(level) == 2 else None
     if isinstance(shape, Cylinder) and abs(float(up[2])) >= LEVEL:
         return 2 * shape.radius * math.cos(CONE)

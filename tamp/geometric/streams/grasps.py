@@ -150,7 +150,12 @@ def _canonical(
     rest = [pair for pair in straight if abs(pair[0] @ up) >= LEVEL_CLOSING]
     sides = [pair for pair in level if abs(pair[1] @ up) < LEVEL]
     tall = solid.extent(up)[1] - solid.centre @ up > 2 * HALF_HAND
-    for directions, high in ((level, False), (sides if tall else [], True), (_slanted(axes, up), False), (rest, False)):
+    for directions, high in (
+        (level, False),
+        (sides if tall else [], True),
+        (_slanted(axes, up), False),
+        (rest, False),
+    ):
         order = [directions[index] for index in rng.permutation(len(directions))]
         tools = (_at_middle(solid, closing, approach, up, high) for closing, approach in order)
         yield (closed for closed in map(fit.close, tools) if closed is not None)
@@ -162,16 +167,22 @@ def _grasp(body: Body, closed: Closed) -> Grasp:
 
 def _straight(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
     """Closing and approach directions from above and from the sides."""
-    return [(axis, a) for axis in axes for a in _approaches(axis, up, math.pi / 2) if a @ up < LEVEL]
+    return [
+        (axis, a) for axis in axes for a in _approaches(axis, up, math.pi / 2) if a @ up < LEVEL
+    ]
 
 
 def _slanted(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
     """Closing and approach directions 30, 45 and 60 degrees from straight down."""
     level = [axis for axis in axes if abs(axis @ up) < LEVEL_CLOSING]
-    return [(axis, a) for axis in level for a in _approaches(axis, up, STEP) if -0.9 < a @ up < -0.4]
+    return [
+        (axis, a) for axis in level for a in _approaches(axis, up, STEP) if -0.9 < a @ up < -0.4
+    ]
 
 
-def _closing_axes(body: Body, solid: Solid, up: Array, widest: float, rng: np.random.Generator) -> list[Array]:
+def _closing_axes(
+    body: Body, solid: Solid, up: Array, widest: float, rng: np.random.Generator
+) -> list[Array]:
     """Directions (3,) in which the fingers may close, each with both signs.
 
     A box's edges; for other bodies the horizontal directions in which they are narrowest, and some all around.
@@ -182,7 +193,9 @@ def _closing_axes(body: Body, solid: Solid, up: Array, widest: float, rng: np.ra
     else:
         around = R[:, 2] if isinstance(shape, Cylinder) else up
         level = np.cross(around, up)
-        first = level / np.linalg.norm(level) if np.linalg.norm(level) > 0.1 else _perpendicular(around)
+        first = (
+            level / np.linalg.norm(level) if np.linalg.norm(level) > 0.1 else _perpendicular(around)
+        )
         second = np.cross(around, first)
 
         def ring(angles: Array) -> list[Array]:
@@ -194,7 +207,9 @@ def _closing_axes(body: Body, solid: Solid, up: Array, widest: float, rng: np.ra
         if not isinstance(shape, Cylinder | Sphere):
             fine = ring(np.arange(180) * math.pi / 180)
             widths = np.diff([solid.extent(axis) for axis in fine], axis=1).ravel()
-            axes += [fine[i] for i in range(180) if widths[i] < min(widths[i - 1], widths[(i + 1) % 180])]
+            axes += [
+                fine[i] for i in range(180) if widths[i] < min(widths[i - 1], widths[(i + 1) % 180])
+            ]
     return [sign * axis for axis in axes for sign in (1.0, -1.0)]
 
 
@@ -217,7 +232,9 @@ def _angles(step: float) -> Array:
     return np.arange(0.0, 2 * math.pi - 1e-9, step)
 
 
-def _at_middle(solid: Solid, closing: Array, approach: Array, up: Array, near_top: bool = False) -> Array:
+def _at_middle(
+    solid: Solid, closing: Array, approach: Array, up: Array, near_top: bool = False
+) -> Array:
     """The tool at the body's centre line, no deeper than its centre; a side grasp leaves room above the support.
 
     Or, from the side, near the top of a tall body: what hides its middle, such as a box that it stands in, does not
@@ -227,10 +244,14 @@ def _at_middle(solid: Solid, closing: Array, approach: Array, up: Array, near_to
     low, high = solid.extent(up)
     sideways = 1.0 - abs(approach @ up)
     if abs(closing @ up) < 0.5:
-        wanted = high - HALF_HAND / 2 if near_top else max(float(point @ up), low + HALF_HAND * sideways)
+        wanted = (
+            high - HALF_HAND / 2 if near_top else max(float(point @ up), low + HALF_HAND * sideways)
+        )
         point += (min(wanted, high - 0.01) - point @ up) * up * sideways
     depth = float(point @ approach) - solid.extent(approach)[0]
-    return _tool(closing, approach, _deep(solid, point, approach, max(min(depth, DEPTH[1]), DEPTH[0])))
+    return _tool(
+        closing, approach, _deep(solid, point, approach, max(min(depth, DEPTH[1]), DEPTH[0]))
+    )
 
 
 def _deep(solid: Solid, point: Array, approach: Array, depth: float) -> Array:
@@ -242,7 +263,9 @@ def _deep(solid: Solid, point: Array, approach: Array, depth: float) -> Array:
     return point + (start + min(depth, thickness - TIP - 0.003) - point @ approach) * approach
 
 
-def _antipodal(solid: Solid, up: Array, widest: float, rng: np.random.Generator) -> Iterator[Array | None]:
+def _antipodal(
+    solid: Solid, up: Array, widest: float, rng: np.random.Generator
+) -> Iterator[Array | None]:
     """Random tool poses whose closing line meets the surface squarely on both sides; None for a draw without."""
     while True:
         points, normals = solid.surface_points(rng, BATCH)
@@ -259,7 +282,9 @@ def _antipodal(solid: Solid, up: Array, widest: float, rng: np.random.Generator)
             aside = aside - np.einsum("ij,ij->i", aside, along)[:, None] * along
         near = rng.random(BATCH) < np.exp(-np.sum(aside**2, axis=1) / 0.03**2) + 0.1
         yield from (
-            _around(solid, points[i], closings[i], up, widest, rng) if narrow[i] and near[i] else None
+            _around(solid, points[i], closings[i], up, widest, rng)
+            if narrow[i] and near[i]
+            else None
             for i in range(BATCH)
         )
 
@@ -271,7 +296,9 @@ def _around(
     width = solid.solid_at(point, closing)
     if width is None or width.start < -0.002 or width.end > widest:
         return None
-    if -(width.start_normal @ closing) < math.cos(CONE) or width.end_normal @ closing < math.cos(CONE):
+    if -(width.start_normal @ closing) < math.cos(CONE) or width.end_normal @ closing < math.cos(
+        CONE
+    ):
         return None
     angle = _angles(STEP)[rng.integers(len(_angles(STEP)))]
     first, second = _across(closing, up)

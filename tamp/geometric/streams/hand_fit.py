@@ -54,7 +54,11 @@ class HandFit:
         self._body = FclBody(body.parts)
         self._parts = [self._body.place(index, np.eye(4)) for index in range(len(body.parts))]
         hand, left, right = robot.links[-3:]
-        self._hand, self._left, self._right = FclBody(hand.parts), FclBody(left.parts), FclBody(right.parts)
+        self._hand, self._left, self._right = (
+            FclBody(hand.parts),
+            FclBody(left.parts),
+            FclBody(right.parts),
+        )
         self._T_tool_hand = robot.T_hand_tool.inverse().matrix
 
     @property
@@ -97,7 +101,9 @@ class HandFit:
         joint = self._robot.fingers[index]
         T_hand_finger = joint.origin.matrix.copy()
         T_hand_finger[:3, 3] += T_hand_finger[:3, :3] @ np.array(joint.axis) * position
-        return self._touches((self._left, self._right)[index], T_body_tool @ self._T_tool_hand @ T_hand_finger)
+        return self._touches(
+            (self._left, self._right)[index], T_body_tool @ self._T_tool_hand @ T_hand_finger
+        )
 
     def _touches(self, link: FclBody, T_body_link: Array) -> bool:
         (item,) = (link.place(index, T_body_link) for index in range(len(link.objects)))

@@ -61,7 +61,9 @@ def _nearest_stand(context: Context, x: float, y: float) -> float | None:
     among = context.fixed_only(None)
     for distance in RINGS:
         for angle in np.arange(BEARINGS) * 2 * math.pi / BEARINGS:
-            base = np.array((x, y, 0.0)) - (distance + foot) * np.array((math.cos(angle), math.sin(angle), 0.0))
+            base = np.array((x, y, 0.0)) - (distance + foot) * np.array(
+                (math.cos(angle), math.sin(angle), 0.0)
+            )
             base[2] = angle
             inside = room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]
             if inside and among.free(context.conf(base, context.home)):

@@ -80,7 +80,9 @@ def inverse_kinematics(
             yield reason if failures < PATIENCE else replace(reason, given_up=True)
 
 
-def _standing(context: Context, body: str, grasp: Grasp, base: Array, call: Call) -> Rejection | None:
+def _standing(
+    context: Context, body: str, grasp: Grasp, base: Array, call: Call
+) -> Rejection | None:
     """Why the robot cannot stand there with the arm at home, with the body or without; cheap, and often the answer."""
     room = context.scene.room
     if not (room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]):
@@ -111,14 +113,20 @@ def _reaching(
     context: Context, pose: Pose, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
 ) -> tuple[BaseConf, Reach] | Rejection:
     empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
-    T_base_tool = np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
+    T_base_tool = (
+        np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
+    )
     solutions = context.ik.solve(T_base_tool)
     if len(solutions) == 0:
         return Rejection("out of reach")
     # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch possible.
-    order = np.argsort(np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions)))
+    order = np.argsort(
+        np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions))
+    )
     reason = Rejection("no straight approach")
-    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(grasp.body, pose, LIFT)
+    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
+        grasp.body, pose, LIFT
+    )
     confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs
@@ -130,7 +138,9 @@ def _reaching(
         reach = _approach(context, T_base_tool, conf[3:], up)
         if reach is None:
             continue
-        approach, lift = (np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift))
+        approach, lift = (
+            np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift)
+        )
         hit = (
             empty.path_hits(approach)
             or lift_hits(context, pose, grasp, lift)

@@ -54,7 +54,9 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
         )  # fmt: skip
 
     stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
-    query = _Query(plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands)
+    query = _Query(
+        plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands
+    )
     for planned in _attempts(context, poses, held, query):
         if isinstance(planned, Rejection):
             yield planned
@@ -112,10 +114,21 @@ def _transits(
     out = reach.lift[-1]
 
     def plan(arrangement: Arrangement, effort: int) -> Planned:
-        return plan_arm(arrangement, stand, context.home, out, context.robot, call.rng, call.deadline, effort=effort)
+        return plan_arm(
+            arrangement,
+            stand,
+            context.home,
+            out,
+            context.robot,
+            call.rng,
+            call.deadline,
+            effort=effort,
+        )
 
     reached = context.conf(stand, context.home), context.conf(stand, out)
-    query = _Query(plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached)
+    query = _Query(
+        plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached
+    )
     with_body = {**others, body: pose}
     for loaded in _attempts(context, others, grasp, query):
         if isinstance(loaded, Rejection):
@@ -146,7 +159,9 @@ def _attempts(
             return
 
 
-def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int) -> Rejection:
+def _diagnosed(
+    context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int
+) -> Rejection:
     """Name the movable bodies in the way: those that a path among the fixed bodies alone runs into."""
     relaxed = query.plan(context.fixed_only(held), effort)
     if relaxed.path is None:
@@ -154,7 +169,11 @@ def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, que
         ahead = _straight_ahead(context, held, query)
         where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
         ends = [end[:2] for end in query.ends]
-        gap = context.passage.narrow(ends[1]) if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any() else None
+        gap = (
+            context.passage.narrow(ends[1])
+            if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any()
+            else None
+        )
         if gap is not None:
             return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
         return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
@@ -174,7 +193,9 @@ def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list
     """The fixed bodies that the straight way runs into."""
     start, goal = query.ends
     arrangement = context.fixed_only(held)
-    hits = [arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)]
+    hits = [
+        arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)
+    ]
     return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
 
 

@@ -56,10 +56,14 @@ def draw(
         at: Where bodies are wanted in the scene, whatever the plan has.
     """
     ledger = Ledger.of(relation, mixture, call.memory)
-    poses: dict[str, Pose] = {name: pose for _, name, pose in call.fluents if name != arguments[0]} | dict(at)
+    poses: dict[str, Pose] = {
+        name: pose for _, name, pose in call.fluents if name != arguments[0]
+    } | dict(at)
     alone = len(mixture.generators) == 1
     sources: list[_Source] = []
-    for index, (generator, account) in enumerate(zip(mixture.generators, ledger.accounts, strict=True)):
+    for index, (generator, account) in enumerate(
+        zip(mixture.generators, ledger.accounts, strict=True)
+    ):
         # The trusted one draws the numbers that it would draw alone; each has a scene of its own.
         rng = call.rng if index == len(mixture.generators) - 1 else call.rng.spawn(1)[0]
         sources.append(_Source(generator, account, context.scene_at(poses, arguments[0]), rng))
@@ -72,7 +76,10 @@ def draw(
         if result is None:
             break
         yield result
-    unruly = next((source for source in sources if source.account.out is not None or source.strikes >= STALE), None)
+    unruly = next(
+        (source for source in sources if source.account.out is not None or source.strikes >= STALE),
+        None,
+    )
     if unruly is not None:
         yield Rejection(f"{unruly.account.name}: {unruly.wrong}", given_up=True)
 
@@ -188,7 +195,13 @@ class _Drawer:
             if allowed <= 0.0:
                 raise Misbehaved(f"it took {account.seconds:.2f} s to propose poses")
             proposals = ask(
-                source.generator, source.scene, self.arguments, BATCH, source.rng, self.call.deadline, allowed
+                source.generator,
+                source.scene,
+                self.arguments,
+                BATCH,
+                source.rng,
+                self.call.deadline,
+                allowed,
             )
         except Misbehaved as error:
             self._misbehaved(source, str(error), refused)
@@ -223,7 +236,10 @@ class _Drawer:
     def _is_new(self, source: _Source, pose: Pose) -> bool:
         """Whether the generator has not proposed this pose, to a tenth of a millimetre, in this call before."""
         sign = 1.0 if pose.quaternion[3] >= 0.0 else -1.0
-        key = (*(round(x, 4) for x in pose.position), *(round(sign * q, 3) for q in pose.quaternion))
+        key = (
+            *(round(x, 4) for x in pose.position),
+            *(round(sign * q, 3) for q in pose.quaternion),
+        )
         if key in source.seen:
             return False
         source.seen.add(key)

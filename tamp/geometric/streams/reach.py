@@ -43,7 +43,9 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
         lowest = np.array((*(low + high)[:2] / 2, low[2]))
         measured = too_high(context, lowest) if side == "high" else None
         most = f"too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m"
-        return Rejection(f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})")
+        return Rejection(
+            f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})"
+        )
     offset = math.hypot(shoulder[0], shoulder[1])
     horizontal = math.hypot(
         max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),

@@ -12,7 +12,16 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cavity, Cylinder, Part, Sphere, Surface
+from tamp.geometric.scene.scene import (
+    CONTACT_GAP,
+    Body,
+    Box,
+    Cavity,
+    Cylinder,
+    Part,
+    Sphere,
+    Surface,
+)
 from tamp.geometric.stability.hulls import body_hull, part_mesh
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
@@ -52,7 +61,8 @@ def no_grasp(body: Body, opening: float) -> Rejection:
     if width > opening + HALF_MILLIMETRE:
         return Rejection(f"no grasp: every width is over the hand's {opening * 100:.0f} cm")
     return Rejection(
-        f"no grasp was found ({100 * width:.1f} cm wide, the hand opens {100 * opening:.0f} cm)", given_up=True
+        f"no grasp was found ({100 * width:.1f} cm wide, the hand opens {100 * opening:.0f} cm)",
+        given_up=True,
     )
 
 
@@ -81,7 +91,11 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     ways = context.resting(body).ways
     if not ways:
         ball = all(isinstance(part.shape, Sphere) for part in shape.parts)
-        reason = f"a sphere rests on no stable face ({body})" if ball else f"{body} rests on no stable face"
+        reason = (
+            f"a sphere rests on no stable face ({body})"
+            if ball
+            else f"{body} rests on no stable face"
+        )
         return Rejection(reason, given_up=True)
     low = [face for face in ways if face.extent + 2 * CONTACT_GAP <= room]
     if not low:
@@ -89,7 +103,9 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
         what = f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)"
         return Rejection(what, given_up=_could_fit(shape, room, None))
     if isinstance(region, Cavity) and not any(fits(face, region.size) for face in low):
-        size, space = (" x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size))
+        size, space = (
+            " x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size)
+        )
         what = f"protrudes ({body} takes {size} m, {region.name} has {space} m)"
         return Rejection(what, given_up=_could_fit(shape, room, region))
     return _out_of_reach(context, body, region, room)
@@ -138,13 +154,22 @@ def _room_around(face: Face) -> float:
     return max(0.0, float((across / np.maximum(np.linalg.norm(edges, axis=1), 1e-12)).min()))
 
 
-def _out_of_reach(context: Context, body: str, region: Surface | Cavity, room: float) -> Rejection | None:
+def _out_of_reach(
+    context: Context, body: str, region: Surface | Cavity, room: float
+) -> Rejection | None:
     """Why the arm gets nowhere near the region; the body may stand out over the edge of a surface."""
     beyond = 2 * context.radius(body) if isinstance(region, Surface) else 0.0
     height = min(room, HEADROOM)
-    box = Part(Box((region.size[0] + beyond, region.size[1] + beyond, height)), Pose((0.0, 0.0, height / 2)))
+    box = Part(
+        Box((region.size[0] + beyond, region.size[1] + beyond, height)),
+        Pose((0.0, 0.0, height / 2)),
+    )
     reachable = within_reach(context, *bounds((box,), context.scene.world_pose(region)))
-    return Rejection(f"{region.name} is {reachable.reason}") if isinstance(reachable, Rejection) else None
+    return (
+        Rejection(f"{region.name} is {reachable.reason}")
+        if isinstance(reachable, Rejection)
+        else None
+    )
 
 
 def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
@@ -153,7 +178,9 @@ def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
     if sides is None:
         return True
     low = [side for side in sides if ROUNDED * side.extent - HALF_MILLIMETRE <= room]
-    return any(cavity is None or fits(side, [length / ROUNDED for length in cavity.size]) for side in low)
+    return any(
+        cavity is None or fits(side, [length / ROUNDED for length in cavity.size]) for side in low
+    )
 
 
 def _least_width(body: Body) -> float:

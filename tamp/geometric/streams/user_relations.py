@@ -33,12 +33,23 @@ def sample_relation(
     where the relation has no test and a classifier, `judge`, that is asked here, with the inputs at these indices.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
-    at = {name: pose for name, pose in pairwise((body, *others)) if isinstance(name, str) and isinstance(pose, Pose)}
+    at = {
+        name: pose
+        for name, pose in pairwise((body, *others))
+        if isinstance(name, str) and isinstance(pose, Pose)
+    }
     scene = context.scene
-    regions = [place for place in (*scene.surfaces.values(), *scene.cavities.values()) if place.body in scene.fixed]
+    regions = [
+        place
+        for place in (*scene.surfaces.values(), *scene.cavities.values())
+        if place.body in scene.fixed
+    ]
 
     def certified(proposal: Pose) -> Pose | Rejection:
-        rested = [rest(context.resting(body), proposal, region, scene.world_pose(region)) for region in regions]
+        rested = [
+            rest(context.resting(body), proposal, region, scene.world_pose(region))
+            for region in regions
+        ]
         pose = next((pose for pose in rested if isinstance(pose, Pose)), None)
         if pose is None:
             return Rejection("rests nowhere")
@@ -52,15 +63,21 @@ def sample_relation(
         answer = _answer(_asked(context, classifier, names, {**at, body: pose}, call))
         return answer if isinstance(answer, Rejection) else pose
 
-    yield from draw(context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at)
+    yield from draw(
+        context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
+    )
 
 
-def test_relation(context: Context, *arguments: Any, classifier: Classifier, call: Call) -> Rejection | bool:
+def test_relation(
+    context: Context, *arguments: Any, classifier: Classifier, call: Call
+) -> Rejection | bool:
     """Whether the classifier says that the relation holds; a pose among the arguments is that of the body before it."""
     return _answer(_probability(context, arguments, classifier, call))
 
 
-def fails_relation(context: Context, *arguments: Any, classifier: Classifier, call: Call) -> bool | Rejection:
+def fails_relation(
+    context: Context, *arguments: Any, classifier: Classifier, call: Call
+) -> bool | Rejection:
     """Whether the classifier says that the relation does not hold."""
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
@@ -74,7 +91,9 @@ def _answer(number: float) -> bool | Rejection:
     return True if number >= LIKELY else Rejection(f"unlikely ({number:.2f})")
 
 
-def _probability(context: Context, arguments: tuple[Any, ...], classifier: Classifier, call: Call) -> float:
+def _probability(
+    context: Context, arguments: tuple[Any, ...], classifier: Classifier, call: Call
+) -> float:
     poses: dict[str, Pose] = {}
     names: list[str] = []
     for argument in arguments:
@@ -85,7 +104,9 @@ def _probability(context: Context, arguments: tuple[Any, ...], classifier: Class
     return _asked(context, classifier, names, poses, call)
 
 
-def _asked(context: Context, classifier: Classifier, names: list[str], poses: dict[str, Pose], call: Call) -> float:
+def _asked(
+    context: Context, classifier: Classifier, names: list[str], poses: dict[str, Pose], call: Call
+) -> float:
     """The probability with bodies at poses, and the others where the step has them, or else at their start."""
     bodies = context.scene.bodies
     around: dict[str, Pose] = {name: pose for _, name, pose in call.fluents}
