@@ -41,7 +41,9 @@ class Attachment:
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """A body at a pose: rows (k, WIDTH) and poses (k, 12) of its parts, their world boxes, the box of all."""
+    """A body at a pose: rows (k, WIDTH) and poses (k, 12) of its parts, their world boxes, the box
+    of all.
+    """
 
     rows: Array
     poses: Array
@@ -87,13 +89,17 @@ class Collisions:
     def pair(
         self, body: str, pose: Pose, other: str, other_pose: Pose, padding: float = 0.0
     ) -> bool:
-        """Whether two bodies at these poses are nearer than `padding` metres (with 0: intersect); exact."""
+        """Check whether two bodies at these poses are nearer than `padding` metres (with 0:
+        intersect); exact.
+        """
         return self._touch(
             body, self._place(body, pose), other, self._place(other, other_pose), padding
         )
 
     def between(self, body: str, pose: Pose, others: Mapping[str, Pose]) -> str | None:
-        """The first of `others` at their poses, or of the fixed bodies, that the body at `pose` intersects; exact."""
+        """Return the first of `others` at their poses, or of the fixed bodies, that the body at
+        `pose` intersects; exact.
+        """
         placed = self._place(body, pose)
         for other, other_pose in others.items():
             if other != body and self._touch(body, placed, other, self._place(other, other_pose)):
@@ -111,7 +117,7 @@ class Collisions:
         fixed: bool = True,
         without: Container[str] = (),
     ) -> Arrangement:
-        """The robot among the fixed bodies (if `fixed`) and the movable ones at `poses`.
+        """Set up the robot among the fixed bodies (if `fixed`) and the movable ones at `poses`.
 
         Args:
             poses: T_world_body by name; the attached body is left out.

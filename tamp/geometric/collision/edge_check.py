@@ -33,18 +33,20 @@ from tamp.system.compilation import njit
 
 @njit(**INLINE)
 def verdict(code, part, other):
-    """A code and the pair that it rests on, in one integer; `pair_of` reads it."""
+    """Pack a code and the pair that it rests on into one integer; `pair_of` reads it."""
     return code | part << 2 | (other + 4096) << 14
 
 
 def pair_of(verdict: int) -> tuple[int, int]:
-    """The robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other part."""
+    """Return the robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other
+    part.
+    """
     return verdict >> 2 & 4095, (verdict >> 14) - 4096
 
 
 @njit(**INLINE)
 def _box(i, margin, parts, placed, reach, box):
-    """World box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
+    """Compute the world box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
     for r in range(3):
         half = (
             abs(placed[i, 3 * r]) * parts[i, SIZE]
@@ -57,7 +59,7 @@ def _box(i, margin, parts, placed, reach, box):
 
 @njit(**{**JIT, "_nrt": True})
 def unpack(packed, index):
-    """Table `index` of `Tables.packed`, (rows, columns)."""
+    """Return table `index` of `Tables.packed`, (rows, columns)."""
     start, rows, columns = (
         int(packed[3 * index]),
         int(packed[3 * index + 1]),
@@ -77,7 +79,8 @@ def _overlap(box, i, obstacles, j):
 
 @njit(**JIT)
 def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found):
-    """All pairs whose bounding spheres or boxes, grown by what the pair needs, overlap: rows (part, other) of `found`.
+    """Find all pairs whose bounding spheres or boxes, grown by what the pair needs, overlap (broad
+    phase): rows (part, other) of `found`.
 
     All parts are placed. The last row of `box` is the box around the whole robot.
     """
@@ -106,7 +109,9 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
 
 
 def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
-    """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files has changed."""
+    """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files
+    has changed.
+    """
     vector, conf = (
         types.Array(types.float64, 1, "C"),
         types.Array(types.float64, 1, "C", readonly=True),
@@ -153,8 +158,8 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             ready[k] = 0
         found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
 
-        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The first three, the ends
-        # (of no length) and the whole, find theirs themselves.
+        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
+        # first three, the ends (of no length) and the whole, find theirs themselves.
         intervals = np.empty((INTERVALS if moves else 1, 2))
         lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
         tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
@@ -193,8 +198,8 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                             ready[p] = head
                 far = demand(i, other, half, padding, parts, reach)
                 answer = check(
-                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess,
-                    s, weights,
+                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
+                    vertices, leaves, guess, s, weights,
                 )  # fmt: skip
                 if answer == APART:
                     continue
@@ -223,7 +228,9 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
 
 
 def sources_digest() -> int:
-    """A number that changes with any file that the kernel is compiled from; numba itself looks at one file only."""
+    """Return a number that changes with any file that the kernel is compiled from; numba itself
+    looks at one file only.
+    """
     files = (
         Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check")
     )
@@ -231,11 +238,14 @@ def sources_digest() -> int:
 
 
 sweep = _compiled(sources_digest())
-"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two configurations (10,) is free.
+"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two
+configurations (10,) is free.
 
-Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked middle are at least
-this far from everything, all states between at least half of it. `tables`: `Tables.packed`, the robot and the bodies.
+Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked
+middle are at least this far from everything, all states between at least half of it. `tables`:
+`Tables.packed`, the robot and the bodies.
 
-The verdict is FREE; or HIT, with the pair that is nearer than the padding at some state of the edge; or UNDECIDED, with
-a pair for which rounding or room did not suffice. Arrays that are not of float64 in C order raise TypeError.
+The verdict is FREE; or HIT, with the pair that is nearer than the padding at some state of the
+edge; or UNDECIDED, with a pair for which rounding or room did not suffice. Arrays that are not of
+float64 in C order raise TypeError.
 """

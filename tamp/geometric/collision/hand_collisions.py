@@ -1,4 +1,6 @@
-"""The hand and the wrist behind it against bodies: what is in their way is in it wherever the base stands."""
+"""The hand and the wrist behind it against bodies: what is in their way is in it wherever the base
+stands.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +20,17 @@ from tamp.geometric.scene.scene import Cylinder, Hull, Part, Scene
 Placed = tuple[str, Pose]
 
 SLACK = 1e-4
-"""What is added to the balls around parts, metres, so that rounding never keeps FCL from being asked."""
+"""What is added to the balls around parts, metres, so that rounding never keeps FCL from being
+asked."""
 
 
 class HandCollisions:
-    """Exact collision of the hand, its fingers, the wrist and the body in the hand, placed by the tool's pose.
+    """Exact collision of the hand, its fingers, the wrist and the body in the hand, placed by the
+    tool's pose.
 
-    The wrist is the last link, and of the link before, which turns about the last joint's axis, what is there however
-    it turns. It only says no: a hand that is free here may still belong to an arm that is not.
+    The wrist is the last link, and of the link before, which turns about the last joint's axis,
+    what is there however it turns. It only says no: a hand that is free here may still belong to an
+    arm that is not.
     """
 
     def __init__(self, scene: Scene, robot: Robot) -> None:
@@ -51,7 +56,7 @@ class HandCollisions:
         attachment: Attachment | None,
         others: Iterable[Placed],
     ) -> str | None:
-        """The first of `others` that the hand hits at one of the poses.
+        """Return the first of `others` that the hand hits at one of the poses.
 
         Args:
             tools: T_world_tool (4, 4).
@@ -107,7 +112,7 @@ class HandCollisions:
         return owners, np.concatenate(lows), np.concatenate(highs)
 
     def _movers(self, opening: float) -> _Movers:
-        """The hand, the wrist and the fingers."""
+        """Collect the parts of the hand, the wrist and the fingers."""
         if opening not in self._open:
             fingers = [
                 (body, link.parts, self._T_tool_hand @ _finger(joint, opening))
@@ -121,7 +126,7 @@ class HandCollisions:
         return self._open[opening]
 
     def _holding(self, attachment: Attachment) -> _Movers:
-        """The body in the hand."""
+        """Collect the parts of the body in the hand."""
         name, T_tool_body = attachment.body, attachment.T_tool_body
         if (name, T_tool_body) not in self._attached:
             parts = self._scene.bodies[name].parts
@@ -147,7 +152,7 @@ class _Movers:
 
     @classmethod
     def of(cls, bodies: Sequence[tuple[FclBody, tuple[Part, ...], Array]]) -> _Movers:
-        """Of all parts of bodies at their T_tool_body."""
+        """Bound all parts of bodies at their T_tool_body by balls."""
         parts: list[tuple[FclBody, int, Array]] = []
         centres: list[Array] = []
         radii: list[float] = []
@@ -161,17 +166,18 @@ class _Movers:
 
 
 def _finger(joint: Joint, opening: float) -> Array:
-    """T_hand_finger (4, 4) of a finger that stands at half the opening."""
+    """Compute T_hand_finger (4, 4) of a finger that stands at half the opening."""
     matrix = joint.origin.matrix.copy()
     matrix[:3, 3] += joint.origin.rotation @ np.array(joint.axis) * (opening / 2)
     return matrix
 
 
 def _core(robot: Robot) -> list[Part]:
-    """In the last link's frame: the largest cylinder about the last joint's axis within each part of the link before.
+    """Compute the largest cylinder about the last joint's axis within each part of the link before,
+    in the last link's frame.
 
-    A half-space n x <= d holds a cylinder of radius r and heights [low, high] along the unit axis u when
-    |n - (n u) u| r + (n u) h <= d at both ends.
+    A half-space n x <= d holds a cylinder of radius r and heights [low, high] along the unit axis u
+    when |n - (n u) u| r + (n u) h <= d at both ends.
     """
     joint = robot.joints[-1]
     axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
@@ -208,7 +214,7 @@ def _core(robot: Robot) -> list[Part]:
 
 
 def _along(axis: Array) -> Array:
-    """A frame (4, 4) whose z is a unit vector."""
+    """Return a frame (4, 4) whose z is a unit vector."""
     other = np.cross(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
     matrix = np.eye(4)
     matrix[:3, 0] = other / np.linalg.norm(other)

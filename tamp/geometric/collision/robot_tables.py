@@ -18,7 +18,8 @@ class RobotParts:
 
     Attributes:
         rows, poses, pairs: As in `Tables`.
-        owners: For each row the name of its link, or of the attached body, and which part of that it is.
+        owners: For each row the name of its link, or of the attached body, and which part of that
+            it is.
     """
 
     rows: Array
@@ -31,7 +32,8 @@ class RobotTables:
     """Prepares a robot's rows once and completes them for an opening and an attached body.
 
     Args:
-        robot: The robot; its links are the base, the arm's foot, one link a joint, the hand and two fingers.
+        robot: The robot; its links are the base, the arm's foot, one link a joint, the hand and two
+            fingers.
         collected: Where its vertices and leaves go.
     """
 
@@ -73,7 +75,7 @@ class RobotTables:
     def complete(
         self, opening: float, held: str | None, T_tool_parts: Array, held_rows: Array
     ) -> RobotParts:
-        """The rows with the fingers at `opening` metres and a body in the hand.
+        """Complete the rows with the fingers at `opening` metres and a body in the hand.
 
         The hand, the fingers and the body that they hold are one group, not checked within itself.
 
@@ -98,7 +100,9 @@ class RobotTables:
         return RobotParts(rows, poses, np.concatenate([self._pairs, pairs.reshape(-1, 2)]), owners)
 
     def _fingers(self, matrices: Array) -> tuple[Array, Array]:
-        """Poses (n, 12) with the fingers closed, and how far (n, 3) each part slides per metre of half the opening."""
+        """Compute poses (n, 12) with the fingers closed, and how far (n, 3) each part slides per
+        metre of half the opening.
+        """
         slides = np.zeros((len(matrices), 3))
         hand = self.robot.T_flange_hand.matrix
         for link, joint in zip(self.robot.links[-2:], self.robot.fingers, strict=True):

@@ -13,8 +13,8 @@ from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
-CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
-REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they turn out to be blocked
+CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
+REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
 SHORTCUTS = 30
 PATIENCE = 5
 
@@ -31,10 +31,11 @@ def plan_arm(
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
 ) -> Planned:
-    """A collision-free path of the arm from `start` to one of `goals`.
+    """Plan a collision-free path of the arm from `start` to one of `goals`.
 
-    The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the result has been
-    certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+    The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the
+    result has been certified by `checker.edge_free` as it is returned. Deterministic, as long as
+    the deadline does not cut it.
 
     Args:
         checker: The robot among the bodies.

@@ -20,7 +20,7 @@ YAW = (2,)
 WEIGHTS = np.array(
     [1.0, 1.0, 0.5]
 )  # a radian of turning weighs half a metre, as in OMPL's SE2 space
-CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
+CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 REACH = 1.0  # the longest edge of the trees, weighted metres
 SHORTCUTS = 30
 PATIENCE = 8
@@ -47,12 +47,13 @@ def plan_base(
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
 ) -> Planned:
-    """A collision-free path of the base from `start` to `goal`.
+    """Plan a collision-free path of the base from `start` to `goal`.
 
-    With "se2" the base moves in any direction: the straight line (translating and turning at once), turning before or
-    after driving, and backing away first are tried in this order, then RRTConnect; the path is shortened. With
-    "reeds-shepp" it drives like a car, along sampled curves of `turning_radius` metres. Every edge of the result has
-    been certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+    With "se2" the base moves in any direction: the straight line (translating and turning at once),
+    turning before or after driving, and backing away first are tried in this order, then
+    RRTConnect; the path is shortened. With "reeds-shepp" it drives like a car, along sampled curves
+    of `turning_radius` metres. Every edge of the result has been certified by `checker.edge_free`
+    as it is returned. Deterministic, as long as the deadline does not cut it.
 
     Args:
         checker: The robot, with what it holds, among the bodies.
@@ -68,8 +69,8 @@ def plan_base(
         shortcuts: Random cuts to try ("se2" only).
 
     Returns:
-        The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the numbers are
-        unwrapped, so that no edge turns the longer way round.
+        The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the
+        numbers are unwrapped, so that no edge turns the longer way round.
 
     Raises:
         ValueError: Unknown steering.
@@ -114,7 +115,8 @@ def plan_base(
             path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
         if path is not None and len(path) > 2:
             path, _ = shortcut(
-                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS, periodic=YAW
+                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS,
+                periodic=YAW,
             )  # fmt: skip
     else:
         plane = PlaneSpace(room.x, room.y, turning_radius)
@@ -128,7 +130,7 @@ def plan_base(
 def _simple(
     start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline
 ) -> Array | None:
-    """The first free one of the paths that a driver would think of."""
+    """Return the first free one of the paths that a driver would think of."""
     for path in _turn_and_drive(start, goal):
         if deadline.passed:
             return None
@@ -156,7 +158,9 @@ def _turn_and_drive(start: Array, goal: Array) -> Iterator[Array]:
 
 
 def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
-    """Bases reached from `base` by sliding out, without turning: backwards first, then ever more to the sides."""
+    """List bases reached from `base` by sliding out, without turning: backwards first, then ever
+    more to the sides.
+    """
     for angle in np.pi + np.array([0.0, 1.0, -1.0, 2.0, -2.0]) * np.pi / 4:
         heading = base[2] + angle
         for distance in RETREATS:
@@ -176,7 +180,7 @@ def _drive(
     budget: int,
     deadline: Deadline,
 ) -> Array | None:
-    """Reeds-Shepp curves from start to goal, sampled."""
+    """Compute Reeds-Shepp curves from start to goal, sampled."""
 
     def sampled(a: Array, b: Array) -> Array:
         return unwrap(curve(plane, a, b, CURVE_STEP), YAW)

@@ -1,6 +1,8 @@
-"""How fast a rail may be run along: toppra's reachability analysis. The only file that imports toppra, 0.75 s.
+"""Time-optimal path parameterization of a rail: toppra's reachability analysis. The only file that
+imports toppra, 0.75 s.
 
-Pham and Pham, "A new approach to time-optimal path parameterization based on reachability analysis", T-RO 2018.
+Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
+analysis", T-RO 2018.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ with undrawn():
 
 
 def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
-    """The fastest rate of the station at each node, from rest to rest.
+    """Compute the fastest rate of the station at each node, from rest to rest.
 
     Args:
         rail: The geometry.
@@ -42,7 +44,8 @@ def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
 
 
 class _Limits(LinearConstraint):
-    """a u + b x <= limit at both ends of every interval, with x the squared rate of the station and u its acceleration.
+    """Constraints a u + b x <= limit at both ends of every interval, with x the squared rate of the
+    station and u its acceleration.
 
     toppra's own joint limits know one second derivative per node; a rail has one on either side.
     """
@@ -68,7 +71,7 @@ class _Limits(LinearConstraint):
     def compute_constraint_params(
         self, path: Any, gridpoints: Array, *_: Any, **__: Any
     ) -> tuple[Any, ...]:
-        """The coefficients a, b, c, F, g and the bounds of u and x, as toppra wants them."""
+        """Return the coefficients a, b, c, F, g and the bounds of u and x, as toppra wants them."""
         a, b = self.rows
         identity = np.eye(a.shape[1])
         return (

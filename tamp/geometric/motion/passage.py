@@ -1,7 +1,9 @@
-"""How wide the way is that leads the base from its start to anywhere: what lies behind a door that is too narrow.
+"""The width of the way that leads the base from its start to anywhere: what lies behind a door that
+is too narrow.
 
-The base is thought of as the largest disc in it, and of the fixed bodies there are only slices at its height: where
-even the disc cannot go, the base cannot. Movable bodies could be taken away, so they are left out.
+The base is thought of as the largest disc in it, and of the fixed bodies there are only slices at
+its height: where even the disc cannot go, the base cannot. Movable bodies could be taken away, so
+they are left out.
 """
 
 from __future__ import annotations
@@ -50,7 +52,9 @@ class Slice:
 
 @dataclass(frozen=True)
 class Gap:
-    """The narrowest place (2,) of the widest way: its width and the base's, metres, and the bodies beside it."""
+    """The narrowest place (2,) of the widest way: its width and the base's, metres, and the bodies
+    beside it.
+    """
 
     place: tuple[float, float]
     width: float
@@ -105,14 +109,16 @@ class Passage:
         return found
 
     def clearance(self, points: Array) -> Array:
-        """The distances (n,) of points (n, 2) from the slices; infinite without any."""
+        """Compute the distances (n,) of points (n, 2) from the slices; infinite without any."""
         least = np.full(len(points), np.inf)
         for piece in self.slices:
             np.minimum(least, distances(points, piece.corners), out=least)
         return least
 
     def open_towards(self, target: Array, reach: float) -> bool:
-        """Whether the disc gets within `reach` metres of a point (2,) in a straight line, or in two."""
+        """Check whether the disc gets within `reach` metres of a point (2,) in a straight line, or
+        in two.
+        """
         x, y = float(target[0]), float(target[1])
         if any(
             math.hypot(a - x, b - y) <= reach for a, b in self._open
@@ -157,7 +163,9 @@ class Passage:
 
     @cached_property
     def _widest(self) -> tuple[Array, NDArray[np.intp]]:
-        """For each cell the clearance of the widest way from the start, and the cell before it on that way."""
+        """For each cell the clearance of the widest way from the start, and the cell before it on
+        that way.
+        """
         xs, ys, free = self._floor
         columns = len(ys)
         flat = free.ravel().tolist()
@@ -185,7 +193,9 @@ class Passage:
         return np.array(best).reshape(free.shape), before
 
     def closed(self, low: Array, high: Array, reach: float) -> Gap | None:
-        """The gap that keeps the base from within `reach` metres of a box (2,), (2,); None unless that is proven."""
+        """Return the gap that keeps the base from within `reach` metres of a box (2,), (2,); None
+        unless that is proven.
+        """
         if not self.known or self.open_towards((low + high) / 2, reach):
             return None
         xs, ys, _ = self._floor
@@ -204,7 +214,9 @@ class Passage:
         )
 
     def narrow(self, goal: Array) -> Gap | None:
-        """The narrowest place on the widest way to a base position (2,), where the base hardly fits through it."""
+        """Find the narrowest place on the widest way to a base position (2,), where the base hardly
+        fits through it.
+        """
         if not self.known:
             return None
         xs, ys, _ = self._floor
@@ -216,7 +228,7 @@ class Passage:
         return gap if gap.width <= DOOR * gap.base and not beside else None
 
     def _gap(self, target: int) -> Gap:
-        """The narrowest place on the way to a cell."""
+        """Find the narrowest place on the way to a cell."""
         xs, ys, free = self._floor
         _, before = self._widest
         flat = free.ravel()
@@ -243,7 +255,9 @@ class Passage:
 
 
 def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
-    """The radius of the largest disc about the base's origin that is in the base, and between which heights."""
+    """Compute the radius of the largest disc about the base's origin that is in the base, and
+    between which heights.
+    """
     parts = robot.links[0].parts
     if (
         len(parts) != 1
@@ -256,7 +270,7 @@ def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
 
 
 def _nearest(point: Array, corners: Array) -> Array:
-    """The point of a polygon's edge that is nearest to a point (2,)."""
+    """Return the point of a polygon's edge that is nearest to a point (2,)."""
     best, least = corners[0], math.inf
     for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         edge = b - a

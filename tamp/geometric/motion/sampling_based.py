@@ -1,7 +1,8 @@
 """RRTConnect, the bidirectional sampling-based planner. The only file that knows OMPL.
 
 Kuffner and LaValle, "RRT-Connect: An efficient approach to single-query path planning", ICRA 2000.
-OMPL's states are read by explicit slices: iterating over one crashes the process, and nothing checks bounds.
+OMPL's states are read by explicit slices: iterating over one crashes the process, and nothing
+checks bounds.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class JointSpace:
     upper: Sequence[float]
 
     def build(self) -> Any:
-        """OMPL's space."""
+        """Build OMPL's space."""
         space = ob.RealVectorStateSpace(len(self.lower))
         bounds = ob.RealVectorBounds(len(self.lower))
         for i, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
@@ -42,7 +43,7 @@ class JointSpace:
         return space
 
     def read(self, state: Any) -> list[float]:
-        """The numbers of a state."""
+        """Return the numbers of a state."""
         return state[0 : len(self.lower)]
 
     def write(self, state: Any, conf: Array) -> None:
@@ -55,8 +56,9 @@ class PlaneSpace:
     """Positions and headings in a rectangle: x and y limits in metres; the yaw wraps.
 
     Attributes:
-        turning_radius: None for a base that moves in any direction; a radius in metres makes the edges Reeds-Shepp
-            curves (Reeds and Shepp, "Optimal paths for a car that goes both forwards and backwards", 1990).
+        turning_radius: None for a base that moves in any direction; a radius in metres makes the
+            edges Reeds-Shepp curves (Reeds and Shepp, "Optimal paths for a car that goes both
+            forwards and backwards", 1990).
     """
 
     x: tuple[float, float]
@@ -64,7 +66,7 @@ class PlaneSpace:
     turning_radius: float | None = None
 
     def build(self) -> Any:
-        """OMPL's space."""
+        """Build OMPL's space."""
         space = (
             ob.SE2StateSpace()
             if self.turning_radius is None
@@ -78,11 +80,13 @@ class PlaneSpace:
         return space
 
     def read(self, state: Any) -> tuple[float, float, float]:
-        """The numbers of a state."""
+        """Return the numbers of a state."""
         return state.getX(), state.getY(), state.getYaw()
 
     def write(self, state: Any, conf: Array) -> None:
-        """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's bounds."""
+        """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's
+        bounds.
+        """
         state.setXY(float(conf[0]), float(conf[1]))
         yaw = math.atan2(math.sin(conf[2]), math.cos(conf[2]))
         state.setYaw(-math.pi if yaw >= math.pi else yaw)
@@ -100,7 +104,9 @@ class _WholeEdges(ob.MotionValidator):
         self.checks = 0
 
     def checkMotion(self, start: Any, end: Any) -> bool:
-        """Called back by the planner for every edge that it wants to add; it plans from the goals to the start."""
+        """Check an edge that the planner wants to add, which calls this back; it plans from the
+        goals to the start.
+        """
         self.checks += 1
         return bool(
             self.edge_free(np.array(self.space.read(end)), np.array(self.space.read(start)))
@@ -118,10 +124,12 @@ def connect(
     deadline: Deadline,
     reach: float,
 ) -> tuple[Array | None, int]:
-    """Search a path from `start` to any of `goals`, all of which the caller knows to be free and within the limits.
+    """Search a path from `start` to any of `goals`, all of which the caller knows to be free and
+    within the limits.
 
-    The result depends on the arguments alone, as long as the deadline does not cut the search. An exception raised by
-    `edge_free` (or by a signal handler while it runs) ends the search and reaches the caller.
+    The result depends on the arguments alone, as long as the deadline does not cut the search. An
+    exception raised by `edge_free` (or by a signal handler while it runs) ends the search and
+    reaches the caller.
 
     Args:
         space: What the numbers of a configuration mean, and their limits.
@@ -134,9 +142,10 @@ def connect(
         reach: The longest edge of the trees, in the space's unit (radians or metres).
 
     Returns:
-        The vertices of the path (n, d), from exactly `start` to exactly one of `goals` (in a PlaneSpace: yaws in
-        [-pi, pi)), or None; and the number of edges asked for. None at once when the space's bounds leave out the
-        start or all goals: OMPL would wait for others until the time is up.
+        The vertices of the path (n, d), from exactly `start` to exactly one of `goals` (in a
+        PlaneSpace: yaws in [-pi, pi)), or None; and the number of edges asked for. None at once
+        when the space's bounds leave out the start or all goals: OMPL would wait for others until
+        the time is up.
     """
     ou.setLogLevel(
         ou.LOG_NONE
@@ -151,8 +160,8 @@ def connect(
     )  # an edge's test covers its ends
     information.setup()
     problem = ob.ProblemDefinition(information)
-    # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree of the first has
-    # grown, which it never does where the first is shut in.
+    # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree
+    # of the first has grown, which it never does where the first is shut in.
     first, ends = (
         _state(built, space, start),
         [_state(built, space, goal) for goal in goals if _finite(goal)],
@@ -190,9 +199,11 @@ def connect(
 
 
 def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
-    """Samples of the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape (n, 3).
+    """Sample the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape
+    (n, 3).
 
-    The ends are exactly `start` and `end`. Where the car reverses between two samples, the tip of the cusp is cut.
+    The ends are exactly `start` and `end`. Where the car reverses between two samples, the tip of
+    the cusp is cut.
     """
     built = plane.build()
     first, last, between = (_state(built, plane, conf) for conf in (start, end, start))
@@ -205,7 +216,7 @@ def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
 
 
 def _finite(conf: Array) -> bool:
-    """Whether all numbers are: OMPL holds what is none to be within any bounds."""
+    """Check whether all numbers are finite: OMPL holds what is none to be within any bounds."""
     return bool(np.isfinite(conf).all())
 
 

@@ -1,6 +1,7 @@
 """Shorten a path by straight cuts between random points of it.
 
-Geraerts and Overmars, "Creating high-quality paths for motion planning", IJRR 2007, section 4: random shortcuts.
+Geraerts and Overmars, "Creating high-quality paths for motion planning", IJRR 2007, section 4:
+random shortcuts.
 """
 
 from __future__ import annotations
@@ -27,9 +28,11 @@ def shortcut(
     weights: Array | None = None,
     periodic: Sequence[int] = (),
 ) -> tuple[Array, int]:
-    """A shorter path with the same ends, whose edges are free or parts of the given path's edges.
+    """Shorten a path between the same ends by edges that are free or parts of the given path's
+    edges.
 
-    Vertices that can be skipped are skipped first; then cuts join random points, on the edges as well as at vertices.
+    Vertices that can be skipped are skipped first; then cuts join random points, on the edges as
+    well as at vertices.
 
     Args:
         path: Shape (n, d).
@@ -77,14 +80,14 @@ def shortcut(
 
 
 def _stations(path: Array, weights: Array) -> list[float]:
-    """The distance of each vertex from the start, along the path."""
+    """Compute the distance of each vertex from the start, along the path."""
     return [0.0, *np.cumsum(edge_lengths(path, weights)).tolist()]
 
 
 def _skip_vertices(
     path: Array, edge_free: Callable[[Array, Array], bool], periodic: Sequence[int]
 ) -> tuple[Array, int]:
-    """From each kept vertex jump as far ahead as halving steps find a free edge."""
+    """Jump from each kept vertex as far ahead as halving steps find a free edge."""
     kept = [path[0]]
     shift = np.zeros(
         path.shape[1]

@@ -17,7 +17,9 @@ from tamp.geometric.scene.pose import Array
 
 @dataclass(frozen=True, eq=False)
 class Timed:
-    """A trajectory: positions (m, d) at times (m,) in seconds from 0, increasing, and straight lines in between."""
+    """A trajectory: positions (m, d) at times (m,) in seconds from 0, increasing, and straight
+    lines in between.
+    """
 
     times: Array
     positions: Array
@@ -36,19 +38,21 @@ def time_path(
 ) -> Timed:
     """Time a path, from rest to rest, as fast as the limits allow.
 
-    The trajectory runs along the polyline itself and rests at its corners, except where `edge_free` certifies a
-    rounding, whose chords are then part of the result, and where vertices sample a smooth curve closely. Every vertex
-    that is not rounded is a sample. Velocities between samples, and accelerations as differences of those velocities,
-    stay within the limits.
+    The trajectory runs along the polyline itself and rests at its corners, except where `edge_free`
+    certifies a rounding, whose chords are then part of the result, and where vertices sample a
+    smooth curve closely. Every vertex that is not rounded is a sample. Velocities between samples,
+    and accelerations as differences of those velocities, stay within the limits.
 
     Args:
         path: Shape (n, d); angles unwrapped.
         velocity: Limits, shape (d,), in the path's units per second.
         acceleration: Limits, shape (d,), per second squared.
-        edge_free: Whether the straight edge between two rows is free; None: the polyline is kept exactly.
+        edge_free: Whether the straight edge between two rows is free; None: the polyline is kept
+            exactly.
 
     Returns:
-        From the path's first row to its last, both exactly; samples at most about TICK seconds apart on straight parts.
+        From the path's first row to its last, both exactly; samples at most about TICK seconds
+        apart on straight parts.
     """
     path = without_repeats(np.asarray(path, dtype=float))
     velocity, acceleration = (
@@ -74,7 +78,7 @@ def prefetch() -> threading.Thread:
 
 
 def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
-    """Through corners that are passed without resting, from rest to rest."""
+    """Time a path through corners that are passed without resting, from rest to rest."""
     if len(passed) > 2:
         from tamp.geometric.motion.parametrization import speeds  # toppra takes 0.75 s to import
 
@@ -87,7 +91,7 @@ def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
 
 
 def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
-    """One edge from rest to rest: full acceleration, full speed, full braking."""
+    """Time one edge from rest to rest: full acceleration, full speed, full braking."""
     step = np.abs(end - start)
     with np.errstate(divide="ignore"):
         top, push = (
@@ -107,7 +111,7 @@ def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) ->
 
 
 def _joined(pieces: list[Timed]) -> Timed:
-    """One trajectory after the other, each beginning where the last ended."""
+    """Join trajectories one after the other, each beginning where the last ended."""
     starts = np.cumsum([0.0] + [piece.duration for piece in pieces])
     times = [start + piece.times[1:] for start, piece in zip(starts[:-1], pieces, strict=True)]
     positions = [piece.positions[1:] for piece in pieces]
@@ -117,7 +121,9 @@ def _joined(pieces: list[Timed]) -> Timed:
 
 
 def _sampled(rail: Rail, rates: Array) -> Timed:
-    """The nodes at their times, and more samples on the straight parts; the acceleration is constant between nodes."""
+    """Return the nodes at their times, and more samples on the straight parts; the acceleration is
+    constant between nodes.
+    """
     gaps = np.diff(rail.stations)
     spans = 2.0 * gaps / (rates[:-1] + rates[1:])
     counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
@@ -136,7 +142,7 @@ def _sampled(rail: Rail, rates: Array) -> Timed:
 
 
 def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
-    """The same with all times stretched by the little that differences of the samples may exceed the limits."""
+    """Stretch all times by the little that differences of the samples may exceed the limits."""
     spans = np.diff(timed.times)
     rates = np.diff(timed.positions, axis=0) / spans[:, None]
     rest = np.zeros((1, rates.shape[1]))

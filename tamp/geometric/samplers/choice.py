@@ -1,4 +1,6 @@
-"""Which generators serve a relation: a name, and whether it is mixed with the hand-made one or alone."""
+"""The choice of generators for a relation: a name, and whether it is mixed with the hand-made one
+or alone.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ Registry = Mapping[str, Mapping[str, Callable[..., Grounding]]]
 """Relation to sampler name to what makes it, f(); it may raise InputError. See ANY."""
 
 ANY = "*"
-"""The relation under which a registry has suffixes of files for names; what reads such a file is f(relation, file)."""
+"""The relation under which a registry has suffixes of files for names; what reads such a file is
+f(relation, file)."""
 
 GIVEN = "given"
 """The name of an object that was given in the place of a name."""
@@ -53,7 +56,8 @@ HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
 
 
 def parse_choice(relation: str, text: str, known: Registry, folder: Path | None = None) -> Choice:
-    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole path.
+    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole
+    path.
 
     Args:
         relation: Of any name where a file serves it.
@@ -91,20 +95,22 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
 
 
 def sampler_files(samplers: Iterable[str]) -> list[Path]:
-    """The files that samplers are made from, as far as they are named by files: weights with their card, Python."""
+    """List the files that samplers are made from, as far as they are named by files: weights with
+    their card, Python.
+    """
     names = [Path(text.removesuffix(":alone").removesuffix(":mixed")) for text in samplers]
     return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
 def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:
-    """What makes the chosen sampler; it may raise InputError."""
+    """Return what makes the chosen sampler; it may raise InputError."""
     if choice.name in known.get(relation, {}):
         return known[relation][choice.name]
     return partial(known[ANY][Path(choice.name).suffix], relation, Path(choice.name))
 
 
 def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
-    """The chosen generator, with the relation's hand-made one beside it unless it is to be alone."""
+    """Mix the chosen generator with the relation's hand-made one, unless it is to be alone."""
     trusted = next(iter(SAMPLERS.get(relation, {})), None)
     if choice.alone or trusted is None or choice.name == trusted:
         return Mixture((Path(choice.name).name,), (generator,))
@@ -112,7 +118,7 @@ def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
 
 
 def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
-    """Relation to name, of RELATION=NAME.
+    """Parse RELATION=NAME into a map of relations to names.
 
     Raises:
         InputError: Something else.

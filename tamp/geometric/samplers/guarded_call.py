@@ -1,4 +1,6 @@
-"""Asking a generator that anyone may have written: what comes back are poses, in time, or the reason why not."""
+"""Asking a generator that anyone may have written: what comes back are poses, in time, or the
+reason why not.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,7 @@ def ask(
     deadline: Deadline,
     seconds: float = math.inf,
 ) -> list[Pose]:
-    """At most `count` poses, best first, of finite numbers and with unit quaternions.
+    """Ask for at most `count` poses, best first, of finite numbers and with unit quaternions.
 
     Args:
         generator: Of any behaviour.

@@ -1,4 +1,6 @@
-"""Hand-made generators of placements: `surface`, the engineer's, and `uniform`, the paper's baseline (section IV-A)."""
+"""Hand-made generators of placements: `surface`, the engineer's, and `uniform`, the paper's
+baseline (section IV-A).
+"""
 
 from __future__ import annotations
 
@@ -17,19 +19,24 @@ KEEP_FACE = 0.85
 """The share of `surface` placements that keep the face that is down at the start, when it fits."""
 
 GROWTH = 0.5
-"""`uniform` samples in the first argument's box grown on each side by this much of its largest half extent."""
+"""`uniform` samples in the first argument's box grown on each side by this much of its largest half
+extent."""
 
 
 class SurfacePlacements:
-    """A stable face down, uniform in yaw and in the positions that keep the whole body above the region.
+    """A stable face down, uniform in yaw and in the positions that keep the whole body above the
+    region.
 
-    Where the body is larger than the region, uniform in the positions of its centre; overhang is judged afterwards.
+    Where the body is larger than the region, uniform in the positions of its centre; overhang is
+    judged afterwards.
     """
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
-        """World poses at rest in the region `arguments[1]`; none when no stable face fits under its ceiling."""
+        """Propose world poses at rest in the region `arguments[1]`; none when no stable face fits
+        under its ceiling.
+        """
         body, region_name = arguments
         region = scene.surfaces.get(region_name) or scene.cavities[region_name]
         room = region.clearance if isinstance(region, Surface) else region.size[2]
@@ -54,12 +61,14 @@ class SurfacePlacements:
 
 
 class UniformPlacements:
-    """Uniform positions in the grown box of the region's body, uniform rotations (LEARNING.md, section 1)."""
+    """Uniform positions in the grown box of the region's body, uniform rotations (LEARNING.md,
+    section 1).
+    """
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
-        """World poses; most of them float, sink or lean."""
+        """Propose world poses; most of them float, sink or lean."""
         region = scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
         support = scene.bodies[region.body]
         low, high = bounds(support.parts, support.pose)
@@ -78,7 +87,8 @@ class UniformPlacements:
 def position_inside(
     face: Face, yaw: float, size: Sequence[float], rng: Random
 ) -> tuple[float, float]:
-    """A random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at a yaw in radians.
+    """Draw a random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at
+    a yaw in radians.
 
     The outline stays inside; where it cannot, the centre of mass does.
     """

@@ -1,4 +1,6 @@
-"""Whether a body in the hand hits something while it is lifted off; what it touches at the start it may leave."""
+"""Collision checks of a body in the hand while it is lifted off; what it touches at the start it
+may leave.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +18,11 @@ FINE = 4
 
 
 def lift_hits(
-    context: Context, pose: Pose, grasp: Grasp, lift: Array, others: Mapping[str, Pose] | None = None,
-    padding: float = 0.0,
+    context: Context, pose: Pose, grasp: Grasp, lift: Array,
+    others: Mapping[str, Pose] | None = None, padding: float = 0.0,
 ) -> tuple[str, str] | None:  # fmt: skip
-    """The first pair that collides while a held body is lifted off a pose, as `Arrangement.path_hits` says it.
+    """Return the first pair that collides while a held body is lifted off a pose, as
+    `Arrangement.path_hits` says it.
 
     Args:
         context: The problem's tools.
@@ -36,8 +39,10 @@ def lift_hits(
         else others
     )
     leaving = {
-        name: other for name, other in standing.items() if context.touching.together(body, pose, name, other)
-    }  # fmt: skip
+        name: other
+        for name, other in standing.items()
+        if context.touching.together(body, pose, name, other)
+    }
     collisions = context.collisions
     if not leaving:
         among = (

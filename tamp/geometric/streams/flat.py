@@ -1,4 +1,6 @@
-"""Bodies that lie too flat: wide all around, so that a finger would have to get under them, into what they lie on."""
+"""Bodies that lie too flat: wide all around, so that a finger would have to get under them, into
+what they lie on.
+"""
 
 from __future__ import annotations
 
@@ -28,10 +30,11 @@ HALF_MILLIMETRE = 5e-4
 
 
 def too_flat(context: Context, body: str, pose: Pose) -> str | None:
-    """In words that a box or a can that lies flat here has no grasp; None unless that is proven.
+    """Say in words that a box or a can that lies flat here has no grasp; None unless that is
+    proven.
 
-    Its sides are farther apart than the hand opens, so one finger would hold its underside; and all of that, and what
-    is around, lies on one convex part of a fixed body.
+    Its sides are farther apart than the hand opens, so one finger would hold its underside; and all
+    of that, and what is around, lies on one convex part of a fixed body.
     """
     shape = context.scene.bodies[body]
     if len(shape.parts) != 1 or _is_narrow(shape.parts[0].shape, context.robot.opening):
@@ -59,14 +62,16 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
 
 
 def _is_narrow(shape: object, opening: float) -> bool:
-    """Whether the hand gets around it whichever side is down; most bodies are so."""
+    """Check whether the hand gets around it whichever side is down; most bodies are so."""
     if isinstance(shape, Box):
         return sum(size <= opening for size in shape.size) >= 2
     return not isinstance(shape, Cylinder) or 2 * shape.radius * math.cos(CONE) <= opening
 
 
 def _width(shape: object, up: Array) -> float | None:
-    """The least distance, metres, of contacts on two sides of a box or can that lies flat; `up` (3,) in its frame."""
+    """Compute the least distance, metres, of contacts on two sides of a box or can that lies flat;
+    `up` (3,) in its frame.
+    """
     if isinstance(shape, Box):
         level = [
             size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL
@@ -78,7 +83,7 @@ def _width(shape: object, up: Array) -> float | None:
 
 
 def _underside(placed: Pose, shape: object) -> Array:
-    """Corners (n, 2) of a rectangle around the body as seen from above, grown by BESIDE."""
+    """Return corners (n, 2) of a rectangle around the body as seen from above, grown by BESIDE."""
     size = np.array(shape.size if isinstance(shape, Box) else (0.0, 0.0, 0.0))
     if isinstance(shape, Cylinder):
         size = np.array((2 * shape.radius, 2 * shape.radius, shape.height))

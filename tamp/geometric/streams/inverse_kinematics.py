@@ -1,4 +1,4 @@
-"""Where to stand and how to reach: a base pose and the arm's last stretch to a grasp."""
+"""Base placement and inverse kinematics: a base pose and the arm's last stretch to a grasp."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ FINE = 0.0025
 """and near singularities, where the joints move fast."""
 
 TURN = 0.1
-"""The most that a joint may turn from one to the next, radians: in between, the tool strays by less than 1.5 mm."""
+"""The most that a joint may turn from one to the next, radians: in between, the tool strays by less
+than 1.5 mm."""
 
 BATCH = 16
 """Base poses looked at in one try: most stand in some furniture, which is found out quickly."""
@@ -35,8 +36,9 @@ NOOK = 0.05
 """or, so that no place is ruled out for good, with this probability."""
 
 PATIENCE = 12
-"""Tries without a success after which a grasp there is given up. Poses and grasps are drawn without end, so that no
-solution is lost for good, and another of those is the better bet than the thousandth place for the base."""
+"""Tries without a success after which a grasp there is given up. Poses and grasps are drawn without
+end, so that no solution is lost for good, and another of those is the better bet than the
+thousandth place for the base."""
 
 SOLUTIONS = 24
 """Arm solutions looked at from one base pose,"""
@@ -51,10 +53,12 @@ UNREACHED = ("out of reach", "no straight approach")
 def inverse_kinematics(
     context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
 ) -> Iterator[tuple[BaseConf, Reach] | Rejection]:
-    """Base poses and approaches that are free of the fixed bodies, with the hand empty and with the body in it.
+    """Yield base poses and approaches that are free of the fixed bodies, with the hand empty and
+    with the body in it.
 
-    The approach is a straight line along the tool's axis; with the body in hand it is lifted straight up first, so that
-    it does not scrape along its support. Ends after PATIENCE tries without any success.
+    The approach is a straight line along the tool's axis; with the body in hand it is lifted
+    straight up first, so that it does not scrape along its support. Ends after PATIENCE tries
+    without any success.
     """
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     failures = 0.0
@@ -83,7 +87,9 @@ def inverse_kinematics(
 def _standing(
     context: Context, body: str, grasp: Grasp, base: Array, call: Call
 ) -> Rejection | None:
-    """Why the robot cannot stand there with the arm at home, with the body or without; cheap, and often the answer."""
+    """Say why the robot cannot stand there with the arm at home, with the body or without; cheap,
+    and often the answer.
+    """
     room = context.scene.room
     if not (room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]):
         return Rejection("base outside of the room")
@@ -98,7 +104,9 @@ def _standing(
 
 
 def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool:
-    """Whether the robot can slide out of this place, backwards or to a side, with the body in hand."""
+    """Check whether the robot can slide out of this place, backwards or to a side, with the body in
+    hand.
+    """
     loaded = context.fixed_only(grasp)
     for angle in (math.pi, 0.75 * math.pi, -0.75 * math.pi, 0.5 * math.pi, -0.5 * math.pi):
         heading = base[2] + angle
@@ -119,7 +127,8 @@ def _reaching(
     solutions = context.ik.solve(T_base_tool)
     if len(solutions) == 0:
         return Rejection("out of reach")
-    # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch possible.
+    # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch
+    # possible.
     order = np.argsort(
         np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions))
     )
@@ -157,7 +166,9 @@ def _reaching(
 
 
 def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Reach | None:
-    """The straight lines away from the grasp: back along the tool's axis; and by `lift` (3,), then back."""
+    """Compute the straight lines away from the grasp: back along the tool's axis; and by `lift`
+    (3,), then back.
+    """
     back = T_base_tool[:3, 2]
     away = follow_line(context, T_base_tool, -RETREAT * back, q)
     if away is None:
@@ -174,7 +185,9 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
 
 
 def follow_line(context: Context, T_base_tool: Array, offset: Array, q: Array) -> Array | None:
-    """Arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the base frame, from q."""
+    """Compute arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the
+    base frame, from q.
+    """
     length = float(np.linalg.norm(offset))
     for step in (STEP, FINE):
         count = max(1, math.ceil(length / step))

@@ -1,4 +1,6 @@
-"""Motions of whole actions: drive somewhere, pick, place. What they certify holds in the state that they were shown."""
+"""Motions of whole actions: drive somewhere, pick, place. What they certify holds in the state that
+they were shown.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection
 
 HARDEST = 4
-"""The greatest effort of a motion plan; each level allows four times as many edges as the one before."""
+"""The greatest effort of a motion plan; each level allows four times as many edges as the one
+before."""
 
 LOOKS = 33
 """Configurations on the straight way that are looked at to say what is in it."""
@@ -40,7 +43,7 @@ class _Query:
 
 
 def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[Motion | Rejection]:
-    """The base drives, the arm at home, perhaps with a body in hand."""
+    """Plan a drive of the base, the arm at home, perhaps with a body in hand."""
     start = next(value for name, *values in call.fluents for value in values if name == "at-base")
     held = next((values[1] for name, *values in call.fluents if name == "holding"), None)
     poses = {values[0]: values[1] for name, *values in call.fluents if name == "at-pose"}
@@ -49,8 +52,8 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
     def plan(arrangement: Arrangement, effort: int) -> Planned:
         ends = np.array(start.array), np.array(goal.array)
         return plan_base(
-            arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline, effort=effort,
-            steering=context.steering,
+            arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
+            effort=effort, steering=context.steering,
         )  # fmt: skip
 
     stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
@@ -67,7 +70,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
 def plan_pick(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """From home to the body, close the hand, and back home with it."""
+    """Plan a pick: from home to the body, close the hand, and back home with it."""
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
@@ -86,7 +89,7 @@ def plan_pick(
 def plan_place(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """From home with the body to its place, open the hand, and back home."""
+    """Plan a placement: from home with the body to its place, open the hand, and back home."""
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
@@ -105,7 +108,8 @@ def plan_place(
 def _transits(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[tuple[Array, Array] | Rejection]:
-    """Arm paths from home to before the approach: with the hand empty and the body in place, and with it in hand.
+    """Plan arm paths from home to before the approach: with the hand empty and the body in place,
+    and with it in hand.
 
     One path usually serves both, so the loaded one is planned first; it is the harder.
     """
@@ -146,7 +150,7 @@ def _transits(
 def _attempts(
     context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query
 ) -> Iterator[Array | Rejection]:
-    """Paths, or why there is none, with growing effort; ends when a failure is final."""
+    """Yield paths, or why there is none, with growing effort; end when a failure is final."""
     attachment = None if held is None else context.attachment(held)
     arrangement = context.collisions.arrangement(poses, attachment)
     for effort in range(HARDEST + 1):
@@ -162,7 +166,7 @@ def _attempts(
 def _diagnosed(
     context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int
 ) -> Rejection:
-    """Name the movable bodies in the way: those that a path among the fixed bodies alone runs into."""
+    """Name the movable bodies in the way, which a path among the fixed bodies alone runs into."""
     relaxed = query.plan(context.fixed_only(held), effort)
     if relaxed.path is None:
         failure = relaxed.failure or Failure.EXHAUSTED
@@ -190,7 +194,7 @@ def _diagnosed(
 
 
 def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:
-    """The fixed bodies that the straight way runs into."""
+    """List the fixed bodies that the straight way runs into."""
     start, goal = query.ends
     arrangement = context.fixed_only(held)
     hits = [

@@ -1,4 +1,6 @@
-"""Poses of a relation one after another: batches proposed, judged in their order, the promising ones first."""
+"""Poses of a relation one after another: batches proposed, judged in their order, the promising
+ones first.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,12 @@ BATCH = 16
 """Poses asked of a generator at once."""
 
 PROBATION = 2 * BATCH
-"""Proposals of which none is of use, after which a generator that is new to the run gives way in this try."""
+"""Proposals of which none is of use, after which a generator that is new to the run gives way in
+this try."""
 
 STALE = 3
-"""Batches without anything new, or misbehaviours of a generator that is alone, after which it is asked no more."""
+"""Batches without anything new, or misbehaviours of a generator that is alone, after which it is
+asked no more."""
 
 Judge = Callable[[Pose], Pose | Rejection]
 """Puts a proposal to rest and certifies it, or says why not."""
@@ -41,10 +45,11 @@ def draw(
     call: Call,
     at: Mapping[str, Pose] = MappingProxyType({}),
 ) -> Iterator[Pose | Rejection]:
-    """Poses of the body `arguments[0]` that the judge accepts; a try is a batch of every generator at most.
+    """Draw poses of the body `arguments[0]` that the judge accepts; a try is a batch of every
+    generator at most.
 
-    Of a batch, poses that are clear of the other bodies where the plan has them come first, in the batch's order. One
-    that is not comes last: its test tells the search what is in the way.
+    Of a batch, poses that are clear of the other bodies where the plan has them come first, in the
+    batch's order. One that is not comes last: its test tells the search what is in the way.
 
     Args:
         context: Of the problem.
@@ -110,7 +115,7 @@ class _Source:
     wrong: str = ""
 
     def take_clash(self) -> Pose | None:
-        """The pose that is kept for the end of the batch, once."""
+        """Return the pose that is kept for the end of the batch, once."""
         pose, self.clash = self.clash, None
         return pose
 
@@ -127,7 +132,7 @@ class _Drawer:
     alone: bool
 
     def next(self) -> Pose | Rejection | None:
-        """One try; None when no generator has anything more to give."""
+        """Make one try; None when no generator has anything more to give."""
         refused: Counter[Rejection] = Counter()
         for index in self.ledger.order():
             source = self.sources[index]
@@ -159,7 +164,9 @@ class _Drawer:
         self.call.warn(sidelined(self.ledger.relation, account, names))
 
     def _from(self, source: _Source, refused: Counter[Rejection]) -> Pose | None:
-        """The next pose of a generator's batch that is clear; a new batch is asked for when the last one is used up."""
+        """Return the next pose of a generator's batch that is clear; a new batch is asked for when
+        the last one is used up.
+        """
         if source.ended or source.account.out is not None:
             return None
         if not source.batch:
@@ -221,7 +228,7 @@ class _Drawer:
                 self._misbehaved(source, "it proposes one pose again and again", refused)
 
     def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
-        """Beside the trusted one it is asked no more; alone it has a few more tries."""
+        """Ask a generator beside the trusted one no more; alone it has a few more tries."""
         refused[Rejection(f"{source.account.name}: {what}")] += 1
         source.wrong = what
         if not self.alone:
@@ -234,7 +241,9 @@ class _Drawer:
         source.ended = source.strikes >= STALE
 
     def _is_new(self, source: _Source, pose: Pose) -> bool:
-        """Whether the generator has not proposed this pose, to a tenth of a millimetre, in this call before."""
+        """Check whether the generator has not proposed this pose, to a tenth of a millimetre, in
+        this call before.
+        """
         sign = 1.0 if pose.quaternion[3] >= 0.0 else -1.0
         key = (
             *(round(x, 4) for x in pose.position),

@@ -1,4 +1,5 @@
-"""Why a body cannot be grasped or put somewhere at all; a proof only where every other way was looked at.
+"""Reasons why a body cannot be grasped or put somewhere at all; a proof only where every other way
+was looked at.
 
 What is not proven is said as well, but as given up: a run that ends with it claims nothing.
 """
@@ -36,7 +37,8 @@ HALF_MILLIMETRE = 5e-4
 """What a width must exceed another one by to be called larger, metres."""
 
 MOST_FACETS = 300
-"""Ways up that are looked at for a proof; a body with more is taken for a curved one, of which nothing is proven."""
+"""Ways up that are looked at for a proof; a body with more is taken for a curved one, of which
+nothing is proven."""
 
 FINE = 0.004
 """Spacing of the places that are looked at for a proof that all are taken, metres,"""
@@ -52,11 +54,14 @@ HEADROOM = 2.0
 
 
 def no_grasp(body: Body, opening: float) -> Rejection:
-    """Of a body that gave no grasp, by a hand that opens so wide, metres."""
+    """Say why a body gave no grasp, by a hand that opens so wide, metres."""
     width = narrowest(body)
     if width is None:
         least = _least_width(body)
-        wide = f": no side of {body.name} is under {100 * least:.1f} cm, the hand opens {100 * opening:.0f} cm"
+        wide = (
+            f": no side of {body.name} is under {100 * least:.1f} cm, "
+            f"the hand opens {100 * opening:.0f} cm"
+        )
         return Rejection(f"no grasp was found{wide if least > opening else ''}", given_up=True)
     if width > opening + HALF_MILLIMETRE:
         return Rejection(f"no grasp: every width is over the hand's {opening * 100:.0f} cm")
@@ -67,9 +72,11 @@ def no_grasp(body: Body, opening: float) -> Rejection:
 
 
 def narrowest(body: Body) -> float | None:
-    """The least distance between two contacts that hold a body of one simple shape, metres; None for other bodies.
+    """Compute the least distance between two contacts that hold a body of one simple shape, metres;
+    None for other bodies.
 
-    On a curved side friction holds what is grasped beside its middle, where it is a little narrower.
+    On a curved side friction holds what is grasped beside its middle, where it is a little
+    narrower.
     """
     if len(body.parts) != 1:
         return None
@@ -82,9 +89,12 @@ def narrowest(body: Body) -> float | None:
 
 
 def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
-    """Why a body can be placed nowhere in a region; None where it may."""
+    """Say why a body can be placed nowhere in a region; None where it may."""
     if context.scene.bodies[region.body].movable:
-        what = f"{region.name} is on {region.body}, which may be moved; only fixed bodies can be put things on"
+        what = (
+            f"{region.name} is on {region.body}, which may be moved; "
+            "only fixed bodies can be put things on"
+        )
         return Rejection(what, given_up=True)
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
@@ -112,10 +122,11 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
 
 
 def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
-    """Why a body of one convex part finds no free place among the fixed bodies in a region; None unless proven.
+    """Say why a body of one convex part finds no free place among the fixed bodies in a region;
+    None unless proven.
 
-    Wherever it rests, its centre of mass is over the region and well inside the side that is down; so a disc around it,
-    just above the region, must be free.
+    Wherever it rests, its centre of mass is over the region and well inside the side that is down;
+    so a disc around it, just above the region, must be free.
     """
     shape, ways = context.scene.bodies[body], context.resting(body).ways
     if len(shape.parts) != 1 or not ways:
@@ -147,7 +158,9 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
 
 
 def _room_around(face: Face) -> float:
-    """How far the centre of mass is from the edges of the side that is down, metres; zero where it is not inside."""
+    """Compute how far the centre of mass is from the edges of the side that is down, metres; zero
+    where it is not inside.
+    """
     edges = np.roll(face.base, -1, axis=0) - face.base
     to = face.centre - face.base
     across = edges[:, 0] * to[:, 1] - edges[:, 1] * to[:, 0]
@@ -157,7 +170,9 @@ def _room_around(face: Face) -> float:
 def _out_of_reach(
     context: Context, body: str, region: Surface | Cavity, room: float
 ) -> Rejection | None:
-    """Why the arm gets nowhere near the region; the body may stand out over the edge of a surface."""
+    """Say why the arm gets nowhere near the region; the body may stand out over the edge of a
+    surface.
+    """
     beyond = 2 * context.radius(body) if isinstance(region, Surface) else 0.0
     height = min(room, HEADROOM)
     box = Part(
@@ -173,7 +188,9 @@ def _out_of_reach(
 
 
 def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
-    """Whether the body might rest under so low a ceiling after all, on a side that is not steady; or nobody knows."""
+    """Check whether the body might rest under so low a ceiling after all, on a side that is not
+    steady; or nobody knows.
+    """
     sides = facets(body, MOST_FACETS)
     if sides is None:
         return True
@@ -184,7 +201,7 @@ def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
 
 
 def _least_width(body: Body) -> float:
-    """The least of the body's widths square to a facet, metres."""
+    """Compute the least of the body's widths square to a facet, metres."""
     vertices, triangles = body_hull(body)
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     normals = np.cross(b - a, c - a)

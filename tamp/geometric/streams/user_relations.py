@@ -1,4 +1,6 @@
-"""A user's own relation as streams: sample-<relation> from its generator, test-<relation> from its classifier."""
+"""A user's own relation as streams: sample-<relation> from its generator, test-<relation> from its
+classifier.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +28,13 @@ def sample_relation(
     judge: tuple[Classifier, tuple[int, ...]] | None = None,
     call: Call,
 ) -> Iterator[Pose | Rejection]:
-    """Poses that the generator proposes for the relation's first argument, put to rest on whatever is below them.
+    """Sample poses that the generator proposes for the relation's first argument, put to rest on
+    whatever is below them.
 
-    The generator sees the scene as it will be at that step; a pose among the inputs is that of the body before it. That
-    the body rests there, clear of the fixed bodies, is certified here, everything else by other streams' tests; but
-    where the relation has no test and a classifier, `judge`, that is asked here, with the inputs at these indices.
+    The generator sees the scene as it will be at that step; a pose among the inputs is that of the
+    body before it. That the body rests there, clear of the fixed bodies, is certified here,
+    everything else by other streams' tests; but where the relation has no test and a classifier,
+    `judge`, that is asked here, with the inputs at these indices.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
     at = {
@@ -71,14 +75,16 @@ def sample_relation(
 def test_relation(
     context: Context, *arguments: Any, classifier: Classifier, call: Call
 ) -> Rejection | bool:
-    """Whether the classifier says that the relation holds; a pose among the arguments is that of the body before it."""
+    """Test whether the classifier says that the relation holds; a pose among the arguments is that
+    of the body before it.
+    """
     return _answer(_probability(context, arguments, classifier, call))
 
 
 def fails_relation(
     context: Context, *arguments: Any, classifier: Classifier, call: Call
 ) -> bool | Rejection:
-    """Whether the classifier says that the relation does not hold."""
+    """Test whether the classifier says that the relation does not hold."""
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
         return Rejection("cannot tell")
@@ -107,7 +113,9 @@ def _probability(
 def _asked(
     context: Context, classifier: Classifier, names: list[str], poses: dict[str, Pose], call: Call
 ) -> float:
-    """The probability with bodies at poses, and the others where the step has them, or else at their start."""
+    """Compute the probability with bodies at poses, and the others where the step has them, or else
+    at their start.
+    """
     bodies = context.scene.bodies
     around: dict[str, Pose] = {name: pose for _, name, pose in call.fluents}
     if not call.fluents:
