@@ -131,6 +131,7 @@ class Collisions:
             standing = [one for one in self._fixed if one[0] not in without] + standing
         if opening is None:
             opening = attachment.opening if attachment else self._robot.robot.opening
+
         parts = self._complete(opening, attachment)
         tables = Tables(
             self._room,
@@ -143,6 +144,7 @@ class Collisions:
             np.concatenate([_NO_ROWS, *(placed.rows for _, placed in standing)]),
             np.concatenate([_NO_POSES, *(placed.poses for _, placed in standing)]),
         )
+
         exact = Exact(
             self._kinematics,
             parts,
@@ -152,6 +154,7 @@ class Collisions:
             (self._held[attachment.body], attachment.T_tool_body.matrix) if attachment else None,
             [(name, self._fcl[name], placed.matrix, len(placed.rows)) for name, placed in standing],
         )
+
         return Arrangement(tables, exact)
 
     def _complete(self, opening: float, attachment: Attachment | None) -> RobotParts:

@@ -87,6 +87,7 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
     n, count = parts.shape[0], 0
     for r in range(3):
         box[n, r], box[n, 3 + r] = math.inf, -math.inf
+
     for i in range(n):
         _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
         for r in range(3):
@@ -94,17 +95,20 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
         if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
             found[count, 0], found[count, 1] = i, FLOOR
             count += 1
+
     for p in range(pairs.shape[0]):
         i, k = int(pairs[p, 0]), int(pairs[p, 1])
         if not spheres_apart(i, k, demand(i, SELF - k, half, padding, parts, reach), parts, reach):
             found[count, 0], found[count, 1] = i, SELF - k
             count += 1
+
     for j in range(obstacles.shape[0]):
         if _overlap(box, n, obstacles, j):
             for i in range(n):
                 if _overlap(box, i, obstacles, j):
                     found[count, 0], found[count, 1] = i, j
                     count += 1
+
     return count
 
 
@@ -126,6 +130,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         for conf in (start, end):
             if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
                 return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
+
         joints, vertices, leaves = (
             unpack(tables, np.int64(1)),
             unpack(tables, np.int64(2)),
@@ -148,14 +153,17 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             rows[12 + n : 12 + 2 * n],
             rows[12 + 2 * n :],
         )
+
         moves = False
         for k in range(10):
             change[k] = abs(end[k] - start[k])
             moves = moves or change[k] > 0.0
+
         change[0] = math.hypot(change[0], change[1])
         ready = np.empty(n, dtype=np.int64)
         for k in range(n):
             ready[k] = 0
+
         found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
 
         # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
@@ -168,11 +176,13 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         if moves:
             intervals[1, 0], intervals[1, 1] = 0.0, 0.0
             intervals[2, 0], intervals[2, 1] = 0.5, 0.5
+
         count, head, tail = 0, 0, 3 if moves else 1
         while head < tail:
             middle, half = intervals[head, 0], intervals[head, 1]
             for k in range(10):
                 conf[k] = start[k] + middle * (end[k] - start[k])
+
             place_frames(conf, joints, frames)
             fresh = head < 3
             if fresh:
@@ -184,6 +194,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                 )
             else:
                 first, last = lists[head, 0], lists[head, 1]
+
             before = count
             for t in range(first, last):
                 if fresh:
@@ -196,6 +207,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                         if p >= 0 and ready[p] != head:
                             place_part(p, frames, change, parts, part_poses, placed, reach)
                             ready[p] = head
+
                 far = demand(i, other, half, padding, parts, reach)
                 answer = check(
                     i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
@@ -205,6 +217,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                     continue
                 if answer == CLOSE:
                     return verdict(np.int64(HIT), i, other)
+
                 if far <= padding or count == TASKS:
                     return verdict(np.int64(UNDECIDED), i, other)
                 tasks[count, 0], tasks[count, 1] = i, other
@@ -214,6 +227,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                     guess[2],
                 )
                 count += 1
+
             if count > before:
                 if tail + 2 > INTERVALS:
                     return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
@@ -221,7 +235,9 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                     intervals[tail, 0], intervals[tail, 1] = middle + side * half, 0.5 * half
                     lists[tail, 0], lists[tail, 1] = before, count
                     tail += 1
+
             head += 1
+
         return np.int64(FREE)
 
     return decide  # pyright: ignore[reportReturnType]  # a numba dispatcher

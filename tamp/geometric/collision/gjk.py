@@ -145,7 +145,7 @@ def _on_segment(s, i, j):
 
 @njit(**JIT)
 def _on_triangle(s, i, j, k):
-    """Weigh rows i, j, k of s where their triangle is nearest to the origin (Ericson 2005, 5.1.5)."""
+    """Weigh rows i, j, k of s where their triangle is nearest the origin (Ericson 2005, 5.1.5)."""
     ix, iy, iz = s[i, 0], s[i, 1], s[i, 2]
     jx, jy, jz = s[j, 0], s[j, 1], s[j, 2]
     kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]

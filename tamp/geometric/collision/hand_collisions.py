@@ -67,6 +67,7 @@ class HandCollisions:
         standing = list(others)
         if not standing:
             return None
+
         owners, lows, highs = self._parts(standing)
         movers = [
             self._movers(opening),
@@ -92,6 +93,7 @@ class HandCollisions:
                 matrix = placed[t, id(frame)] = tools[t] @ frame
             if touch(body.place(number, matrix), self._bodies[name].place(part, pose.matrix), 0.0):
                 return name
+
         return None
 
     def _parts(self, standing: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
@@ -205,11 +207,13 @@ def _core(robot: Robot) -> list[Part]:
                 float((room[down] / slopes[down]).max()),
             )
             best = max(best, (radius**2 * max(high - low, 0.0), float(radius), low, high))
+
         volume, radius, low, high = best
         if volume > 0.0:
             matrix = _along(axis)
             matrix[:3, 3] = axis * (low + high) / 2
             cores.append(Part(Cylinder(radius, high - low), Pose.from_matrix(matrix)))
+
     return cores
 
 

@@ -153,7 +153,7 @@ def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, gu
     """Bound the distance of robot part i from obstacle j, by its bounding sphere, then its leaves.
 
     A leaf's centre is in the part and the leaf stands out by SLACK at most; the sphere smaller by
-    that is inside: it gives the upper bound, unless the obstacle is a hull, for which its box stood.
+    that is inside: it gives the upper bound, unless the obstacle is a hull: its box stood for it.
     """
     x, y, z = reach[i, 0], reach[i, 1], reach[i, 2]
     bound = _from_core(obstacles, j, poses, x, y, z) - parts[i, RADIUS]
@@ -206,6 +206,7 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
             if limit > 0.0 and square < limit * limit:
                 best = math.sqrt(square) - radius - leaves[n, 3]
                 bx, by, bz = dx, dy, dz
+
     guess[0], guess[1], guess[2] = turned(placed, k, bx, by, bz)
     return best
 
@@ -222,6 +223,7 @@ def _from_self(i, k, far, parts, placed, reach, leaves, guess):
     )
     if bound >= far or guess[0] != 0.0 or guess[1] != 0.0 or guess[2] != 0.0:
         return bound, math.inf
+
     guess[0], guess[1], guess[2] = (
         reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2],
     )  # fmt: skip
@@ -267,6 +269,7 @@ def check(
         j, b, poses = SELF - other, parts, placed
         bound, inner = _from_self(i, j, far, parts, placed, reach, leaves, guess)
         slack = parts[i, SLACK] + parts[j, SLACK]
+
     if bound >= far:
         return APART
     if inner < near:

@@ -54,12 +54,14 @@ class RobotTables:
                 if link.name in hand
                 else Pose()
             )
+
             for k, part in enumerate(link.parts):
                 row = collected.row(part, covers.get((link.name, k)))
                 row[FRAME], row[ON_FLOOR] = frame, float(frame == 0)
                 owners.append((link.name, k))
                 rows.append(row)
                 matrices.append((offset @ part.pose).matrix)
+
         self._owners, self._rows = tuple(owners), np.array(rows)
         self._poses, self._slides = self._fingers(np.array(matrices))
         pairs = [

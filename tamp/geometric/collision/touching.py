@@ -73,6 +73,7 @@ class Touching:
         touched = self.touched(body, pose)
         if not touched:
             return up
+
         if (body, lift) not in self._ways:
             if all(self._gap(body, _moved(pose.matrix, up), other) > NEAR for other in touched):
                 return up
@@ -90,6 +91,7 @@ class Touching:
                 for way in ways
             ]
             self._ways[body, lift] = ways[int(np.argmax(np.round(room, 4)))]
+
         return self._ways[body, lift]
 
     def separates(self, body: str, T_world_body: Iterable[Array], other: str) -> bool:

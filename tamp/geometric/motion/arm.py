@@ -69,6 +69,7 @@ def plan_arm(
         return Planned(None, Failure.LIMITS, 0)
     if not checker.free(conf(start)):
         return Planned(None, Failure.START, 0)
+
     candidates = candidates[[checker.free(conf(goal)) for goal in candidates]]
     if not len(candidates):
         return Planned(None, Failure.GOAL, 0)
@@ -81,6 +82,7 @@ def plan_arm(
             return Planned(np.array([start, goal]), None, checks)
         if deadline.passed:
             return Planned(None, Failure.TIME, checks)
+
     path, asked = connect(
         JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
         seed=int(rng.integers(1, 2**31)), checks=CHECKS * 4**effort, deadline=deadline, reach=REACH,
@@ -88,6 +90,7 @@ def plan_arm(
     checks += asked
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+
     path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
     checks += asked + len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))

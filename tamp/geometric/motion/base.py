@@ -113,6 +113,7 @@ def plan_base(
                 reach=REACH,
             )
             path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
+
         if path is not None and len(path) > 2:
             path, _ = shortcut(
                 path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS,
@@ -121,6 +122,7 @@ def plan_base(
     else:
         plane = PlaneSpace(room.x, room.y, turning_radius)
         path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
+
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
     certified = all(edge_free(a, b) for a, b in pairwise(path))
@@ -203,6 +205,7 @@ def _drive(
             deadline=deadline,
             reach=2.0 * REACH,
         )
+
         if found is None:
             return None
         rest = [*found[1:-1], goal]
@@ -213,6 +216,7 @@ def _drive(
             )
             vertices.append(rest[jump])
             rest = rest[jump + 1 :]
+
     pieces = [sampled(a, b) for a, b in pairwise(vertices)]
     return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW)
 

@@ -179,9 +179,11 @@ def _nodes(passed: list[Corner]) -> Iterator[_Node]:
         extent, u = lengths[k], first.after
         if not _covered(first, last, extent):
             yield from _straight(first, last, station, extent, k)
+
         station += extent
         if k + 2 == len(passed):
             return
+
         v = last.after
         if last.reach:
             for t, position in zip(last.shares()[1:-1], last.curve()[1:-1], strict=True):
@@ -203,6 +205,7 @@ def _nodes(passed: list[Corner]) -> Iterator[_Node]:
             bend = (v - u) / (
                 0.5 * sum(gaps)
             )  # the jump, spread over the time between the middles of the intervals
+
             yield (
                 last.vertex,
                 station,

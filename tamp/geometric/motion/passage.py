@@ -124,6 +124,7 @@ class Passage:
             math.hypot(a - x, b - y) <= reach for a, b in self._open
         ):  # as for most poses, after the first few
             return True
+
         for middle in (
             None,
             *(
@@ -139,6 +140,7 @@ class Passage:
             if all(self._inside(point) for point in corners) and self._free(corners):
                 self._open.append((float(last[0]), float(last[1])))
                 return True
+
         return False
 
     def _inside(self, point: Array) -> bool:
@@ -180,6 +182,7 @@ class Passage:
             width = -negative
             if width < best[cell]:
                 continue
+
             row, column = divmod(cell, columns)
             for r in (row - 1, row, row + 1):
                 for c in (column - 1, column, column + 1):
@@ -190,6 +193,7 @@ class Passage:
                             best[other] = through
                             before[other] = cell
                             heapq.heappush(queue, (-through, other))
+
         return np.array(best).reshape(free.shape), before
 
     def closed(self, low: Array, high: Array, reach: float) -> Gap | None:
@@ -237,6 +241,7 @@ class Passage:
             if flat[cell] < flat[least]:
                 least = cell
             cell = int(before[cell])
+
         point = np.array([xs[least // len(ys)], ys[least % len(ys)]])
         place = (float(point[0]), float(point[1]))
         nearest = [(piece.body, _nearest(point, piece.corners)) for piece in self.slices]
@@ -244,6 +249,7 @@ class Passage:
         name, first = nearest[0]
         if flat[least] <= 0.0:
             return Gap(place, 0.0, 2 * self.radius, (name,))
+
         across = first - point
         for other, second in nearest[1:]:
             if (second - point) @ across < -0.5 * np.linalg.norm(across) * np.linalg.norm(
@@ -251,6 +257,7 @@ class Passage:
             ):
                 names = tuple(dict.fromkeys((name, other)))
                 return Gap(place, float(np.linalg.norm(second - first)), 2 * self.radius, names)
+
         return Gap(place, 2 * float(flat[least]), 2 * self.radius, (name,))
 
 

@@ -169,6 +169,7 @@ def connect(
     inside = [state for state in ends if built.satisfiesBounds(state)]
     if not inside or not _finite(start) or not built.satisfiesBounds(first):
         return None, 0
+
     for state in inside:
         problem.addStartState(state)
     root = ob.GoalStates(information)
@@ -193,6 +194,7 @@ def connect(
     planner.solve(ob.PlannerTerminationCondition(finished))
     if not problem.hasExactSolution():
         return None, validator.checks
+
     solution: Any = problem.getSolutionPath()
     states = (solution.getState(i) for i in reversed(range(solution.getStateCount())))
     return np.array([space.read(state) for state in states]), validator.checks

@@ -57,6 +57,7 @@ def shortcut(
         i, j = bisect_right(stations, low * total) - 1, bisect_right(stations, high * total) - 1
         if i == j:
             continue
+
         first, second = (
             path[k]
             + (share * total - stations[k])
@@ -64,18 +65,22 @@ def shortcut(
             * (path[k + 1] - path[k])
             for k, share in ((i, low), (j, high))
         )
+
         landing = nearest(first, second, periodic)
         if (high - low) * total - math.dist(first * scale, landing * scale) < GAIN * total:
             continue
+
         checks += 1
         if not edge_free(first, landing):
             refused += 1
             continue
+
         refused = 0
         path = without_repeats(
             np.concatenate([path[: i + 1], [first, landing], path[j + 1 :] + (landing - second)])
         )
         stations = _stations(path, scale)
+
     return path, checks
 
 

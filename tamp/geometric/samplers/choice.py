@@ -75,6 +75,7 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     )
     if Path(name).suffix in known.get(ANY, {}):
         return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
+
     name, colon, mode = text.partition(":")
     if relation not in known or relation == ANY:
         choices = [other for other in known if other != ANY]
@@ -82,15 +83,18 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
         raise InputError(
             f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
         )
+
     if name not in known[relation]:
         raise InputError(
             f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation]
         )
+
     if colon and mode not in MODES:
         remedy = f"For example: {relation}={name}:alone"
         raise InputError(
             f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy
         )
+
     return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
 
 

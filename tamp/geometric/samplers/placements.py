@@ -48,6 +48,7 @@ class SurfacePlacements:
             and resting.lying.extent + 2 * CONTACT_GAP <= room
         ):
             faces = [resting.lying]
+
         if not faces:
             return []
         T_world_region = scene.world_pose(region)
@@ -57,6 +58,7 @@ class SurfacePlacements:
             yaw = rng.uniform(-math.pi, math.pi)
             x, y = position_inside(face, yaw, region.size, rng)
             poses.append(T_world_region @ resting_pose(face, yaw, x, y))
+
         return poses
 
 

@@ -48,6 +48,7 @@ class Solid:
             offsets.append(np.einsum("ij,ij->i", normal, a[kept]))
             areas.append(area[kept])
             corners.append(np.stack([a, b, c], axis=1)[kept])
+
         self._normals, self._offsets = np.concatenate(normals), np.concatenate(offsets)
         self._first = np.array(first)
         last = np.append(self._first[1:], len(self._normals))

@@ -232,16 +232,20 @@ def stable_faces(body: Body) -> list[Face]:
         )
         if room < math.tan(STABLE) * max(float(centre[2]) - low, 1e-6) - FLAT:
             continue
+
         base = outline(touching)
         if len(base) < 3:
             continue
+
         angle = tipping_angle(base, centre[:2], float(centre[2]) - low)
         if angle < STABLE:
             continue
+
         extent = float(np.ptp(turned[:, 2]))
         faces.append(
             Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
         )
+
     return faces
 
 

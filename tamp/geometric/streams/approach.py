@@ -87,6 +87,7 @@ def approach_hits(
     hit = hand.hits(away, context.robot.opening, None, standing)
     if hit is not None:
         return hit
+
     leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
     if leaving:  # the hand must not touch them, the body in it only while it leaves them
         steps = [_moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, SLIDES)]
@@ -99,6 +100,7 @@ def approach_hits(
                 return name
         hit = hand.hits(out, grasp.opening, None, [one for one in standing if one[0] in leaving])
         standing = [one for one in standing if one[0] not in leaving]
+
     return hit or hand.hits(out, grasp.opening, context.attachment(grasp), standing)
 
 

@@ -49,6 +49,7 @@ def test_reach_clear(
         return True
     if _out_of_the_way(context, body, base, other, other_pose):
         return True
+
     home = context.conf(base.array, context.home)
     place = {other: other_pose}
     empty = context.collisions.arrangement(place, None, fixed=False)
@@ -59,6 +60,7 @@ def test_reach_clear(
     )
     if not (empty.free(home) and loaded.free(home)):
         return Rejection(f"base hits {other}", (other,))
+
     out = lift[-1]
     aside = np.array([approach[0], out])
     if (
@@ -67,6 +69,7 @@ def test_reach_clear(
         or empty.path_hits(aside, padding=HAIR)
     ):
         return Rejection(f"hits {other}", (other,))
+
     if not (empty.free(out) and loaded.free(out)):
         return Rejection(f"hits {other}", (other,))
     return True

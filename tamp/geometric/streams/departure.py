@@ -51,6 +51,7 @@ def lift_hits(
             else collisions.arrangement(others, held, fixed=False)
         )
         return among.path_hits(lift, padding=padding)
+
     rest = (
         {}
         if others is None
@@ -61,6 +62,7 @@ def lift_hits(
     hit = among.path_hits(lift, padding=padding) or hand.path_hits(lift, padding=padding)
     if hit is not None:
         return hit
+
     path = np.concatenate([lift[:1], *(np.linspace(a, b, FINE + 1)[1:] for a, b in pairwise(lift))])
     bodies = [context.kinematics.tool(conf) @ grasp.T_tool_body.matrix for conf in path]
     stays = (name for name in leaving if not context.touching.separates(body, bodies, name))

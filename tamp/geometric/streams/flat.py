@@ -39,13 +39,16 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
     shape = context.scene.bodies[body]
     if len(shape.parts) != 1 or _is_narrow(shape.parts[0].shape, context.robot.opening):
         return None
+
     part = shape.parts[0]
     width = _width(part.shape, pose.rotation[2] @ part.pose.rotation)
     if width is None or width <= context.robot.opening + HALF_MILLIMETRE:
         return None
+
     low, high = bounds(shape.parts, pose)
     if high[2] - low[2] > context.robot.opening:  # there is no grasp of it at all, which others say
         return None
+
     corners = _underside(pose @ part.pose, part.shape)
     least, most, under = corners.min(axis=0), corners.max(axis=0), float(low[2]) - UNDER
     parts, lows, highs = context.fixed_parts
@@ -58,6 +61,7 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
         if below is not None and (distances(corners, below) <= 0.0).all():
             tall = f"{1000 * (high[2] - low[2]):.0f} mm tall, {100 * width:.0f} cm wide"
             return f"too flat to be grasped ({tall}): no finger gets between it and {name}"
+
     return None
 
 

@@ -121,6 +121,7 @@ def sample_grasps(
         waiting.sort(key=_strain)
         while waiting and waiting[0][0] <= FAIR:
             yield waiting.pop(0)[1]
+
     failures = 0
     proposals = _antipodal(solid, up, fit.widest, rng)
     while failures < PATIENCE:
@@ -131,18 +132,21 @@ def sample_grasps(
             failures = failures + 1 if closed is None else 0
             if closed is None:
                 continue
+
             looked += 1
             grasp = _grasp(body, closed)
             why = refused(grasp)
             if why is not None:
                 yield why
                 continue
+
             much = strained(closed)
             if much <= FIRM:
                 yield grasp
                 wanted -= 1
             else:
                 waiting.append((much, grasp))
+
         for _, grasp in sorted(waiting, key=_strain):
             yield grasp
         waiting = []
@@ -229,6 +233,7 @@ def _antipodal(
         aside = solid.centre - points
         for along in (closings, np.broadcast_to(up, closings.shape)):
             aside = aside - np.einsum("ij,ij->i", aside, along)[:, None] * along
+
         near = rng.random(BATCH) < np.exp(-np.sum(aside**2, axis=1) / 0.03**2) + 0.1
         yield from (
             _around(solid, points[i], closings[i], up, widest, rng)

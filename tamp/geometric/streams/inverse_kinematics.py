@@ -76,6 +76,7 @@ def inverse_kinematics(
                 reason = None
                 break
             reason = found
+
         if reason is not None:
             if reason.reason in UNREACHED:
                 high = too_high(context, T_world_tool[:3, 3])
@@ -127,6 +128,7 @@ def _reaching(
     solutions = context.ik.solve(T_base_tool)
     if len(solutions) == 0:
         return Rejection("out of reach")
+
     # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch
     # possible.
     order = np.argsort(
@@ -144,9 +146,11 @@ def _reaching(
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
+
         reach = _approach(context, T_base_tool, conf[3:], up)
         if reach is None:
             continue
+
         approach, lift = (
             np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift)
         )
@@ -158,10 +162,13 @@ def _reaching(
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
+
         if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
             reason = Rejection("no room before the approach")
             continue
+
         return BaseConf(float(base[0]), float(base[1]), float(base[2])), reach
+
     return reason
 
 

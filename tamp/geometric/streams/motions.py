@@ -181,6 +181,7 @@ def _diagnosed(
         if gap is not None:
             return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
         return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
+
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
     blockers = tuple(
@@ -190,6 +191,7 @@ def _diagnosed(
     )
     if not blockers:
         return Rejection("no motion found")
+
     return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
 
 

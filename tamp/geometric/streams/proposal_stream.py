@@ -72,6 +72,7 @@ def draw(
         # The trusted one draws the numbers that it would draw alone; each has a scene of its own.
         rng = call.rng if index == len(mixture.generators) - 1 else call.rng.spawn(1)[0]
         sources.append(_Source(generator, account, context.scene_at(poses, arguments[0]), rng))
+
     drawer = _Drawer(context, ledger, sources, poses, arguments, judge, call, alone)
     while any(source.account.out is None and not source.ended for source in sources):
         if not call.ahead:
@@ -81,6 +82,7 @@ def draw(
         if result is None:
             break
         yield result
+
     unruly = next(
         (source for source in sources if source.account.out is not None or source.strikes >= STALE),
         None,
@@ -171,6 +173,7 @@ class _Drawer:
             return None
         if not source.batch:
             self._ask(source, refused)
+
         while source.batch:
             proposal = source.batch.popleft()
             pose = self.judge(proposal)
@@ -179,14 +182,17 @@ class _Drawer:
                 self.ledger.judged(source.account, pose.reason)
                 self.call.refused(proposal, pose.reason)
                 continue
+
             hit = next((name for name in self.poses if self._near(pose, name)), None)
             if hit is None:
                 self.ledger.judged(source.account, None)
                 source.clear = True
                 return pose
+
             self.ledger.judged(source.account, f"hits {hit}")
             self.call.refused(pose, f"hits {hit}")
             source.clash = source.clash or pose
+
         return source.take_clash() if source.clear else None
 
     def _near(self, pose: Pose, other: str) -> bool:
@@ -215,9 +221,11 @@ class _Drawer:
             return
         finally:
             account.seconds += time.perf_counter() - started
+
         if not proposals:
             source.ended = True
             return
+
         fresh = [pose for pose in proposals if self._is_new(source, pose)]
         source.batch.extend(fresh)
         account.work += len(proposals) - len(fresh)

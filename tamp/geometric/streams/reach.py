@@ -48,6 +48,7 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
         return Rejection(
             f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})"
         )
+
     offset = math.hypot(shoulder[0], shoulder[1])
     horizontal = math.hypot(
         max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),
@@ -55,6 +56,7 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
     )
     if math.hypot(horizontal, vertical) > span:
         return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
+
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
     return True if gap is None else Rejection(f"out of reach ({gap.text})")
 

@@ -96,6 +96,7 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
             "only fixed bodies can be put things on"
         )
         return Rejection(what, given_up=True)
+
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
     ways = context.resting(body).ways
@@ -107,17 +108,20 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
             else f"{body} rests on no stable face"
         )
         return Rejection(reason, given_up=True)
+
     low = [face for face in ways if face.extent + 2 * CONTACT_GAP <= room]
     if not low:
         least = min(face.extent for face in ways)
         what = f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)"
         return Rejection(what, given_up=_could_fit(shape, room, None))
+
     if isinstance(region, Cavity) and not any(fits(face, region.size) for face in low):
         size, space = (
             " x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size)
         )
         what = f"protrudes ({body} takes {size} m, {region.name} has {space} m)"
         return Rejection(what, given_up=_could_fit(shape, room, region))
+
     return _out_of_reach(context, body, region, room)
 
 
@@ -131,16 +135,19 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     shape, ways = context.scene.bodies[body], context.resting(body).ways
     if len(shape.parts) != 1 or not ways:
         return None
+
     radius = min(_room_around(face) * max(0.0, 1.0 - 4 * JUST_ABOVE / face.extent) for face in ways)
     cell = max(FINE, math.sqrt(region.size[0] * region.size[1] / PLACES))
     if radius <= cell:
         return None
+
     x, y = (np.arange(-side / 2, side / 2 + cell, cell) for side in region.size[:2])
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     T_world_region = context.scene.world_pose(region)
     places = T_world_region.apply(np.column_stack([grid, np.zeros(len(grid))]))
     if np.ptp(places[:, 2]) > HALF_MILLIMETRE:
         return None
+
     least, names = np.full(len(grid), np.inf), list[str]()
     for name in context.scene.fixed:
         other = context.scene.bodies[name]
@@ -152,6 +159,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
                 np.minimum(least, distances(places[:, :2], corners), out=least)
         if (least < np.minimum(before, radius)).any():
             names.append(name)
+
     if not (least < radius - cell).all():
         return None
     return Rejection(f"every place there hits {' or '.join(names)}")
