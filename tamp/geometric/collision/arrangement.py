@@ -79,9 +79,8 @@ class Arrangement:
         self.stats.states += 1
         try:
             code = sweep(conf, conf, PADDING, self._packed) & 3
-        except (
-            TypeError
-        ):  # a list, or not in C order; converting always would cost a tenth of the check
+        except TypeError:
+            # A list, or not in C order; converting always would cost a tenth of the check.
             conf = np.ascontiguousarray(conf, dtype=np.float64)
             code = sweep(conf, conf, PADDING, self._packed) & 3
         if code != UNDECIDED:
@@ -155,9 +154,8 @@ class Arrangement:
         offsets = np.linalg.norm(tables.part_poses[tables.parts[:, FRAME] > 0, 9:], axis=1)
         tip = offsets + np.linalg.norm(parts[:, CENTRE : CENTRE + 3], axis=1) + parts[:, RADIUS]
         lengths = np.linalg.norm(tables.joints[:, 9:], axis=1)
-        levers = (
-            np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
-        )  # of the yaw, then of each joint
+        # Of the yaw, then of each joint.
+        levers = np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
         return float(math.hypot(change[0], change[1]) + change[2:] @ levers)
 
     def _scan(self, conf: Array, padding: float) -> tuple[str, str] | None:

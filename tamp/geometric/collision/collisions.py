@@ -76,12 +76,14 @@ class Collisions:
             name: np.array([part.pose.matrix for part in body.parts])
             for name, body in scene.bodies.items()
         }
+
         self._vertices, self._leaves = collected.vertices(), collected.leaves()
         self._room = np.array([*scene.room.x, *scene.room.y], dtype=np.float64)
         self._fcl = {name: FclBody(body.parts) for name, body in scene.bodies.items()}
         self._held = {name: FclBody(scene.bodies[name].parts) for name in scene.movable}
         self._links = {link.name: FclBody(link.parts) for link in robot.links}
         self._floor = FclBody((FLOOR_PART,))
+
         self._placed: dict[tuple[str, Pose], _Placed] = {}
         self._completed: dict[tuple[float, Attachment | None], RobotParts] = {}
         self._fixed = [(name, self._place(name, scene.bodies[name].pose)) for name in scene.fixed]

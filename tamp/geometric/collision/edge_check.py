@@ -143,6 +143,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         )
         obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
         n = parts.shape[0]
+
         # A few allocations, cut into pieces: each costs as much as a pair.
         numbers, rows = np.empty(27), np.empty((13 + 3 * n, 12))
         conf, change, guess, weights = numbers[:10], numbers[10:20], numbers[20:23], numbers[23:]

@@ -151,6 +151,7 @@ def _on_triangle(s, i, j, k):
     kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]
     abx, aby, abz = jx - ix, jy - iy, jz - iz
     acx, acy, acz = kx - ix, ky - iy, kz - iz
+
     d1 = -(abx * ix + aby * iy + abz * iz)
     d2 = -(acx * ix + acy * iy + acz * iz)
     if d1 <= 0.0 and d2 <= 0.0:
@@ -175,6 +176,7 @@ def _on_triangle(s, i, j, k):
     if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
         a, b = _on_segment(s, j, k)
         return 0.0, a, b
+
     total = va + vb + vc
     if total <= 0.0:
         a, b = _on_segment(s, i, j)
@@ -202,8 +204,7 @@ def _reduce(s, n, weights):
     """Find the nearest point of the simplex s[:n] to the origin; keep only the rows that carry it.
 
     Returns:
-        The number of rows left, their weights in `weights`; 5 when the origin is inside a
-        tetrahedron.
+        The number of rows left, weights in `weights`; 5 when the origin is inside a tetrahedron.
     """
     weights[0], weights[1], weights[2], weights[3] = 1.0, 0.0, 0.0, 0.0
     if n == 2:
@@ -231,6 +232,7 @@ def _reduce(s, n, weights):
         if best == math.inf:
             return 5
         weights[0], weights[1], weights[2], weights[3] = b0, b1, b2, b3
+
     left = 0
     for i in range(n):
         if weights[i] > 0.0:
@@ -252,8 +254,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
         s, weights: Scratch (4, 3) and (4,).
 
     Returns:
-        APART: the distance is >= far. CLOSE: it is < near. BETWEEN: >= near, and surely < far.
-        UNSURE: else.
+        APART: the distance is >= far. CLOSE: < near. BETWEEN: >= near, surely < far. Or UNSURE.
     """
     margin = a[i, MARGIN] + b[j, MARGIN]
     near, far = near + margin, far + margin
@@ -261,6 +262,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
     norm = math.sqrt(vx * vx + vy * vy + vz * vz)
     if norm < 1e-9:
         vx, vy, vz, norm = 0.0, 0.0, 1.0, 1.0
+
     n, lower, upper = 0, -math.inf, math.inf
     for _ in range(64):
         ax, ay, az = support(a, i, poses_a, vertices, -vx, -vy, -vz)
@@ -276,6 +278,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
                 return BETWEEN
         if upper - lower <= 1e-9:
             break
+
         s[n, 0], s[n, 1], s[n, 2] = wx, wy, wz
         n = _reduce(s, n + 1, weights)
         if n == 5:
@@ -293,4 +296,5 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
         upper = norm
         if lower >= near and upper < far:
             return BETWEEN
+
     return BETWEEN if near <= lower and upper < far else UNSURE

@@ -76,15 +76,16 @@ class HandCollisions:
         radii = np.concatenate([group.radii for group in movers])
         own = np.concatenate([group.centres for group in movers])
         parts = [part for group in movers for part in group.parts]
+
         at = np.array(tools)
         centres = own @ at[:, :3, :3].transpose(0, 2, 1) + at[:, None, :3, 3]
         gaps = np.maximum(
             np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0
         )
         near = np.nonzero(np.einsum("tpmi,tpmi->tpm", gaps, gaps) <= radii * radii)
-        placed: dict[
-            tuple[int, int], Array
-        ] = {}  # where each frame is; the same array, so that a part is placed once
+
+        # Where each frame is; the same array, so that a part is placed once.
+        placed: dict[tuple[int, int], Array] = {}
         for t, index, k in zip(*(axis.tolist() for axis in near), strict=True):
             name, pose, part = owners[index]
             body, number, frame = parts[k]
@@ -188,6 +189,7 @@ def _core(robot: Robot) -> list[Part]:
     for part in robot.links[-5].parts:
         if not isinstance(part.shape, Hull):
             continue
+
         vertices = inverse.apply(part.pose.apply(part.shape.vertices))
         a, b, c = (vertices[part.shape.faces[:, i]] for i in range(3))
         normals = np.cross(b - a, c - a)
@@ -196,6 +198,7 @@ def _core(robot: Robot) -> list[Part]:
         offsets = (vertices @ normals.T).max(axis=0)
         slopes = normals @ axis
         across = np.linalg.norm(normals - slopes[:, None] * axis, axis=1)
+
         best = (0.0, 0.0, 0.0, 0.0)
         for radius in np.arange(0.01, 0.1, 0.002):
             room = offsets - across * radius

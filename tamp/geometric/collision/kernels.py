@@ -57,8 +57,7 @@ FLOOR, ROOM, SELF = -1, -2, -3
 written SELF - k."""
 
 INTERVALS, TASKS = 1024, 4096
-"""Room for the intervals of one edge and for their undecided pairs; an edge that needs more is
-UNDECIDED."""
+"""Room for an edge's intervals and their undecided pairs; one that needs more is UNDECIDED."""
 
 
 @njit(**INLINE)
@@ -185,6 +184,7 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
     first_k, count_k = int(parts[k, LEAVES]), int(parts[k, LEAF_COUNT])
     hx, hy, hz = parts[k, SIZE], parts[k, SIZE + 1], parts[k, SIZE + 2]
     cx, cy, cz = parts[k, CENTRE], parts[k, CENTRE + 1], parts[k, CENTRE + 2]
+
     for m in range(int(parts[i, LEAVES]), int(parts[i, LEAVES]) + int(parts[i, LEAF_COUNT])):
         x, y, z = _leaf_centre(leaves, m, placed, i)
         radius = leaves[m, 3]

@@ -42,6 +42,7 @@ class RobotTables:
         origins = [joint.origin for joint in robot.joints]
         origins[0] = robot.T_base_arm @ origins[0]
         self.joints = pose_rows(np.array([origin.matrix for origin in origins]))
+
         hand = tuple(link.name for link in robot.links[-3:])
         covers = link_covers(robot)
         owners, rows, matrices = [], [], []
@@ -64,6 +65,7 @@ class RobotTables:
 
         self._owners, self._rows = tuple(owners), np.array(rows)
         self._poses, self._slides = self._fingers(np.array(matrices))
+
         pairs = [
             (a, b)
             for b in range(len(rows))
@@ -71,6 +73,7 @@ class RobotTables:
             if _checked(owners[a][0], owners[b][0], robot)
         ]
         self._pairs = np.array(pairs, dtype=np.float64).reshape(-1, 2)
+
         self._beside_hand = [a for a, (name, _) in enumerate(owners) if name not in hand]
         self._T_flange_tool = (robot.T_flange_hand @ robot.T_hand_tool).matrix
 

@@ -77,10 +77,12 @@ class Touching:
         if (body, lift) not in self._ways:
             if all(self._gap(body, _moved(pose.matrix, up), other) > NEAR for other in touched):
                 return up
+
             turn = np.arange(DIRECTIONS) * 2 * math.pi / DIRECTIONS
             aside = SIDEWAYS * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(DIRECTIONS)])
             # Straight up is tried first: of equals the first one is taken.
             ways = [up, *(up + one for one in aside)]
+
             around = [
                 other
                 for other in self._there

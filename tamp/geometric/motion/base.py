@@ -17,9 +17,9 @@ from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
 
 YAW = (2,)
-WEIGHTS = np.array(
-    [1.0, 1.0, 0.5]
-)  # a radian of turning weighs half a metre, as in OMPL's SE2 space
+WEIGHTS = np.array([1.0, 1.0, 0.5])
+"""A radian of turning weighs half a metre, as in OMPL's SE2 space."""
+
 CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 REACH = 1.0  # the longest edge of the trees, weighted metres
 SHORTCUTS = 30

@@ -202,9 +202,8 @@ def _nodes(passed: list[Corner]) -> Iterator[_Node]:
                 extent if _covered(first, last, extent) else last.window,
                 lengths[k + 1] if _covered(last, passed[k + 2], lengths[k + 1]) else last.window,
             ]
-            bend = (v - u) / (
-                0.5 * sum(gaps)
-            )  # the jump, spread over the time between the middles of the intervals
+            # The jump, spread over the time between the middles of the intervals.
+            bend = (v - u) / (0.5 * sum(gaps))
 
             yield (
                 last.vertex,

@@ -56,10 +56,8 @@ class _Limits(LinearConstraint):
         before, after = rail.bends_before, rail.bends_after
         gaps = np.diff(rail.stations)[:, None]
         start = rail.tangents, after
-        end = (
-            rail.tangents[1:] + 2.0 * gaps * before[1:],
-            before[1:],
-        )  # x at the interval's end is x + 2 gap u
+        # At the interval's end x is x + 2 gap u.
+        end = rail.tangents[1:] + 2.0 * gaps * before[1:], before[1:]
         self.rows = [
             np.hstack([s, np.vstack([e, s[-1:]])]) for s, e in zip(start, end, strict=True)
         ]

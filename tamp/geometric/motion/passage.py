@@ -120,9 +120,8 @@ class Passage:
         in two.
         """
         x, y = float(target[0]), float(target[1])
-        if any(
-            math.hypot(a - x, b - y) <= reach for a, b in self._open
-        ):  # as for most poses, after the first few
+        # As for most poses, after the first few.
+        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):
             return True
 
         for middle in (
@@ -210,9 +209,8 @@ class Passage:
         if not near.any() or float(widest[near].max()) >= self.radius - self.slack:
             return None
         _, _, free = self._floor
-        standing = near & (
-            free >= self.radius
-        )  # behind a door there is room to stand; beside a wall there is no door
+        # Behind a door there is room to stand; beside a wall there is no door.
+        standing = near & (free >= self.radius)
         return self._gap(
             int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
         )

@@ -147,19 +147,19 @@ def connect(
         when the space's bounds leave out the start or all goals: OMPL would wait for others until
         the time is up.
     """
-    ou.setLogLevel(
-        ou.LOG_NONE
-    )  # setSeed logs an error that is none: the generators made below are all seeded by it
+    # setSeed logs an error that is none: the generators made below are all seeded by it.
+    ou.setLogLevel(ou.LOG_NONE)
     ou.RNG.setSeed(seed)
+
     built = space.build()
     information = ob.SpaceInformation(built)
     validator = _WholeEdges(information, space, edge_free)
     information.setMotionValidator(validator)
-    information.setStateValidityChecker(
-        ob.AllValidStateValidityChecker(information)
-    )  # an edge's test covers its ends
+    # An edge's test covers its ends.
+    information.setStateValidityChecker(ob.AllValidStateValidityChecker(information))
     information.setup()
     problem = ob.ProblemDefinition(information)
+
     # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree
     # of the first has grown, which it never does where the first is shut in.
     first, ends = (
@@ -172,9 +172,11 @@ def connect(
 
     for state in inside:
         problem.addStartState(state)
+
     root = ob.GoalStates(information)
     root.addState(first)
     problem.setGoal(root)
+
     planner = og.RRTConnect(information)
     planner.setRange(reach)
     planner.setProblemDefinition(problem)

@@ -94,9 +94,8 @@ def _skip_vertices(
 ) -> tuple[Array, int]:
     """Jump from each kept vertex as far ahead as halving steps find a free edge."""
     kept = [path[0]]
-    shift = np.zeros(
-        path.shape[1]
-    )  # whole turns that the cuts so far have taken out of the rest of the path
+    # Whole turns that the cuts so far have taken out of the rest of the path.
+    shift = np.zeros(path.shape[1])
     i, checks = 0, 0
     while i < len(path) - 1:
         jump = len(path) - 1 - i

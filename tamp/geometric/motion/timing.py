@@ -94,10 +94,8 @@ def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) ->
     """Time one edge from rest to rest: full acceleration, full speed, full braking."""
     step = np.abs(end - start)
     with np.errstate(divide="ignore"):
-        top, push = (
-            float(np.min(velocity / step)),
-            float(np.min(acceleration / step)),
-        )  # in edges per second (squared)
+        # In edges per second (squared).
+        top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))
     top = min(top, push**0.5)  # a short edge brakes before it reaches full speed
     ramp = top / push
     duration = 1.0 / top + ramp

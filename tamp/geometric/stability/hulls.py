@@ -23,9 +23,8 @@ def body_hull(body: Body) -> tuple[Array, Triangles]:
     """
     if len(body.parts) == 1:
         return _placed(body.parts[0])
-    from scipy.spatial import (
-        ConvexHull,
-    )  # half a second to import, and only bodies of several parts need it
+    # Half a second to import, and only bodies of several parts need it.
+    from scipy.spatial import ConvexHull
 
     vertices = np.concatenate([_placed(part)[0] for part in body.parts])
     hull = ConvexHull(vertices)

@@ -225,6 +225,7 @@ def stable_faces(body: Body) -> list[Face]:
         low = float(turned[:, 2].min())
         touching = turned[turned[:, 2] < low + FLAT, :2]
         centre = rotation @ centre_of_mass_
+
         # Within the base no edge is farther from the centre of mass than the base's box: most
         # facets end here.
         room = float(

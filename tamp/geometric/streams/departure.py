@@ -38,11 +38,13 @@ def lift_hits(
         if others is None
         else others
     )
+
     leaving = {
         name: other
         for name, other in standing.items()
         if context.touching.together(body, pose, name, other)
     }
+
     collisions = context.collisions
     if not leaving:
         among = (

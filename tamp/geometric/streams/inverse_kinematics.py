@@ -69,6 +69,7 @@ def inverse_kinematics(
             if refused is not None:
                 reason = reason or refused
                 continue
+
             found = _reaching(context, pose, grasp, base, T_world_tool, call)
             if not isinstance(found, Rejection):
                 failures = -math.inf
@@ -138,6 +139,7 @@ def _reaching(
     up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
         grasp.body, pose, LIFT
     )
+
     confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs

@@ -138,6 +138,7 @@ def _transits(
         if isinstance(loaded, Rejection):
             yield loaded
             continue
+
         among = context.collisions.arrangement(with_body)
         if _free(among, query.confs(loaded)):
             yield loaded, loaded

@@ -202,6 +202,7 @@ class _Drawer:
     def _ask(self, source: _Source, refused: Counter[Rejection]) -> None:
         account = source.account
         source.clear, source.clash = False, None
+
         allowed = self.ledger.allowance(account, self.call.deadline)
         started = time.perf_counter()
         try:
@@ -229,6 +230,7 @@ class _Drawer:
         fresh = [pose for pose in proposals if self._is_new(source, pose)]
         source.batch.extend(fresh)
         account.work += len(proposals) - len(fresh)
+
         if len(fresh) <= len(proposals) // 8:
             refused[Rejection("proposed again")] += 1
             account.stale += 1

@@ -42,6 +42,7 @@ def sample_relation(
         for name, pose in pairwise((body, *others))
         if isinstance(name, str) and isinstance(pose, Pose)
     }
+
     scene = context.scene
     regions = [
         place
@@ -57,11 +58,13 @@ def sample_relation(
         pose = next((pose for pose in rested if isinstance(pose, Pose)), None)
         if pose is None:
             return Rejection("rests nowhere")
+
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
             return Rejection(f"hits {hit}")
         if judge is None:
             return pose
+
         classifier, indices = judge
         names = [(body, *others)[index] for index in indices]
         answer = _answer(_asked(context, classifier, names, {**at, body: pose}, call))
