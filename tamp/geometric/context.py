@@ -1,4 +1,6 @@
-"""What all streams of one problem share: the scene, the robot, and the tools that were built for them once."""
+"""The context that all streams of one problem share: the scene, the robot, and the tools that were
+built for them once.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,8 @@ class Context:
         mixtures: Relation to the generators that serve it.
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
         holding: What is in the hand at the start; the scene has that body where it was before.
-        heights: How high the hand reaches, metres, at the places where `streams.heights` measured it.
+        heights: How high the hand reaches, metres, at the places where `streams.heights` measured
+            it.
     """
 
     scene: Scene
@@ -42,9 +45,13 @@ class Context:
     mixtures: Mapping[str, Mixture]
     steering: str = "se2"
     holding: Grasp | None = None
-    heights: dict[tuple[int, int], float | None] = field(default_factory=dict[tuple[int, int], "float | None"])
+    heights: dict[tuple[int, int], float | None] = field(
+        default_factory=dict[tuple[int, int], "float | None"],
+    )
     _radii: dict[str, float] = field(default_factory=dict[str, float])
-    _fixed_only: dict[Grasp | None, Arrangement] = field(default_factory=dict["Grasp | None", Arrangement])
+    _fixed_only: dict[Grasp | None, Arrangement] = field(
+        default_factory=dict["Grasp | None", Arrangement],
+    )
 
     @cached_property
     def kinematics(self) -> Kinematics:
@@ -83,7 +90,9 @@ class Context:
 
     @cached_property
     def fixed_parts(self) -> tuple[list[tuple[str, Part, Pose]], Array, Array]:
-        """Of the fixed bodies: name, part and pose of the body; and all parts' lowest and highest corners, (n, 3)."""
+        """Of the fixed bodies: name, part and pose of the body; and all parts' lowest and highest
+        corners, (n, 3).
+        """
         bodies = [self.scene.bodies[name] for name in self.scene.fixed]
         parts = [(body.name, part, body.pose) for body in bodies for part in body.parts]
         boxes = np.array([bounds((part,), pose) for _, part, pose in parts]).reshape(-1, 2, 3)
@@ -101,36 +110,37 @@ class Context:
         return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
 
     def resting(self, body: str) -> Resting:
-        """The ways in which a body can rest."""
+        """Return the ways in which a body can rest."""
         return resting_of(self.scene.bodies[body])
 
     def radius(self, body: str) -> float:
-        """Of a sphere around the body's frame that contains the body, metres."""
+        """Return the radius of a sphere around the body's frame that contains the body, metres."""
         if body not in self._radii:
             low, high = bounds(self.scene.bodies[body].parts, Pose())
             self._radii[body] = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
         return self._radii[body]
 
     def conf(self, base: tuple[float, float, float] | Array, arm: Array) -> Array:
-        """The configuration (10,) of a base and an arm."""
+        """Return the configuration (10,) of a base and an arm."""
         return np.concatenate([np.asarray(base, dtype=float), arm])
 
     def attachment(self, grasp: Grasp) -> Attachment:
-        """The grasp as the collision layer wants it."""
+        """Return the grasp as the collision layer wants it."""
         return Attachment(grasp.body, grasp.T_tool_body, grasp.opening)
 
     def fixed_only(self, grasp: Grasp | None) -> Arrangement:
-        """The robot, with what it holds, among the fixed bodies."""
+        """Return the robot, with what it holds, among the fixed bodies."""
         if grasp not in self._fixed_only:
             attachment = None if grasp is None else self.attachment(grasp)
             self._fixed_only[grasp] = self.collisions.arrangement({}, attachment)
         return self._fixed_only[grasp]
 
     def scene_at(self, poses: Mapping[str, Pose], proposed: str | None = None) -> Scene:
-        """The scene at a step of the plan: movable bodies at their poses there, those in the hand absent.
+        """Return the scene at a step of the plan: movable bodies at their poses there, those in the
+        hand absent.
 
-        The one that a pose is proposed for stays, at its start: its shape is wanted. Without any poses nothing is known
-        about the step, and everything is at its start.
+        The one that a pose is proposed for stays, at its start: its shape is wanted. Without any
+        poses nothing is known about the step, and everything is at its start.
         """
         if not poses:
             return replace(self.scene, bodies=dict(self.scene.bodies))

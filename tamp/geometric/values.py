@@ -1,4 +1,4 @@
-"""What the cupboard's streams produce and hand to each other."""
+"""The values that the cupboard's streams produce and hand to each other."""
 
 from __future__ import annotations
 
@@ -38,11 +38,14 @@ class BaseConf:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """The arm's last stretch to a grasp, the base standing still. Both lines are straight for the tool.
+    """The arm's last stretch to a grasp, the base standing still. Both lines are straight for the
+    tool.
 
     Attributes:
-        approach: With the hand empty, arm configurations (k, 7) in radians from before the grasp to the grasp.
-        lift: With the body in hand, (m, 7) from the grasp straight up, then back. Its end lies LIFT above approach[0].
+        approach: With the hand empty, arm configurations (k, 7) in radians from before the grasp to
+            the grasp.
+        lift: With the body in hand, (m, 7) from the grasp straight up, then back. Its end lies LIFT
+            above approach[0].
     """
 
     approach: Array

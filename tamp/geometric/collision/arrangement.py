@@ -15,7 +15,8 @@ from tamp.geometric.collision.tables import CENTRE, FRAME, ON_FLOOR, RADIUS, Tab
 from tamp.geometric.scene.pose import Array
 
 PADDING = 0.002
-"""Metres: a transit state is free only when everything is at least this far from everything else."""
+"""Metres: a transit state is free only when everything is at least this far from everything else.
+"""
 
 _TIGHT = 2e-4
 """The padding with which the kernel proves pieces of tight motions free; below the contact gap."""
@@ -55,10 +56,12 @@ class Statistics:
 
 
 class Arrangement:
-    """Answers whether configurations and motions of the robot collide. Made by `Collisions.arrangement`.
+    """Answers whether configurations and motions of the robot collide. Made by
+    `Collisions.arrangement`.
 
-    Checked are the robot against itself and the bodies, the attached body against both, all but the base and the arm's
-    foot against the floor, and the base's centre against the room. Configurations are float arrays (10,).
+    Checked are the robot against itself and the bodies, the attached body against both, all but the
+    base and the arm's foot against the floor, and the base's centre against the room.
+    Configurations are float arrays (10,).
 
     Args:
         tables: What the kernels read.
@@ -72,11 +75,12 @@ class Arrangement:
         self._exact = exact
 
     def free(self, conf: Array) -> bool:
-        """Whether everything is at least PADDING apart at `conf`."""
+        """Check whether everything is at least PADDING apart at `conf`."""
         self.stats.states += 1
         try:
             code = sweep(conf, conf, PADDING, self._packed) & 3
-        except TypeError:  # a list, or not in C order; converting always would cost a tenth of the check
+        except TypeError:
+            # A list, or not in C order; converting always would cost a tenth of the check.
             conf = np.ascontiguousarray(conf, dtype=np.float64)
             code = sweep(conf, conf, PADDING, self._packed) & 3
         if code != UNDECIDED:
@@ -85,10 +89,11 @@ class Arrangement:
         return self._scan(conf, PADDING) is None
 
     def edge_free(self, start: Array, end: Array) -> bool:
-        """Whether the straight line between two configurations is free. Yaw turns the way that the numbers go.
+        """Check whether the straight line between two configurations is free of collision. Yaw
+        turns the way that the numbers go.
 
-        True is a proof: both ends are `free`, and in every state between, checked or not, everything is at least
-        PADDING / 2 apart.
+        True is a proof: both ends are `free`, and in every state between, checked or not,
+        everything is at least PADDING / 2 apart.
         """
         start = np.ascontiguousarray(start, dtype=np.float64)
         end = np.ascontiguousarray(end, dtype=np.float64)
@@ -110,9 +115,11 @@ class Arrangement:
         return True
 
     def hits(self, conf: Array, padding: float = 0.0) -> tuple[str, str] | None:
-        """The names of a pair nearer than `padding` metres (with 0: that intersects or touches); None when free.
+        """Return the names of a colliding pair, nearer than `padding` metres (with 0: that
+        intersects or touches); None when free.
 
-        The first name is a link's or the attached body's, the second another such, a body's, "floor" or "room".
+        The first name is a link's or the attached body's, the second another such, a body's,
+        "floor" or "room".
         """
         conf = np.ascontiguousarray(conf, dtype=np.float64)
         answer = sweep(conf, conf, max(padding, _TOUCH), self._packed)
@@ -121,9 +128,11 @@ class Arrangement:
             return self._scan(conf, padding)
         return None if code == FREE else self._exact.names(*pair_of(answer))
 
-    def path_hits(self, path: Array, step: float = 0.002, padding: float = 0.0) -> tuple[str, str] | None:
-        """`hits` along the polyline `path` (n, 10), in states between which no point of the robot moves more than
-        `step` metres; pieces that the kernel proves free are not sampled.
+    def path_hits(
+        self, path: Array, step: float = 0.002, padding: float = 0.0
+    ) -> tuple[str, str] | None:
+        """Return the `hits` along the polyline `path` (n, 10), in states between which no point of
+        the robot moves more than `step` metres; pieces that the kernel proves free are not sampled.
         """
         path = np.ascontiguousarray(path, dtype=np.float64)
         if len(path) == 1:
@@ -139,17 +148,18 @@ class Arrangement:
         return None
 
     def _motion(self, start: Array, end: Array) -> float:
-        """An upper bound of how far any point of the robot moves between two configurations, metres."""
+        """Bound how far any point of the robot moves between two configurations, metres."""
         change, tables = np.abs(end - start), self.tables
         parts = tables.parts[tables.parts[:, FRAME] > 0]
         offsets = np.linalg.norm(tables.part_poses[tables.parts[:, FRAME] > 0, 9:], axis=1)
         tip = offsets + np.linalg.norm(parts[:, CENTRE : CENTRE + 3], axis=1) + parts[:, RADIUS]
         lengths = np.linalg.norm(tables.joints[:, 9:], axis=1)
-        levers = np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()  # of the yaw, then of each joint
+        # Of the yaw, then of each joint.
+        levers = np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
         return float(math.hypot(change[0], change[1]) + change[2:] @ levers)
 
     def _scan(self, conf: Array, padding: float) -> tuple[str, str] | None:
-        """FCL on all pairs."""
+        """Check all pairs by FCL."""
         tables = self.tables
         for part in range(len(tables.parts)):
             for other in (FLOOR, *range(len(tables.obstacles))):

@@ -41,7 +41,9 @@ class Attachment:
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """A body at a pose: rows (k, WIDTH) and poses (k, 12) of its parts, their world boxes, the box of all."""
+    """A body at a pose: rows (k, WIDTH) and poses (k, 12) of its parts, their world boxes, the box
+    of all.
+    """
 
     rows: Array
     poses: Array
@@ -66,26 +68,40 @@ class Collisions:
         self._kinematics = kinematics
         collected = Rows()
         self._robot = RobotTables(robot, collected)
-        self._rows = {name: np.array([collected.row(p) for p in body.parts]) for name, body in scene.bodies.items()}
-        self._part_matrices = {
-            name: np.array([part.pose.matrix for part in body.parts]) for name, body in scene.bodies.items()
+        self._rows = {
+            name: np.array([collected.row(p) for p in body.parts])
+            for name, body in scene.bodies.items()
         }
+        self._part_matrices = {
+            name: np.array([part.pose.matrix for part in body.parts])
+            for name, body in scene.bodies.items()
+        }
+
         self._vertices, self._leaves = collected.vertices(), collected.leaves()
         self._room = np.array([*scene.room.x, *scene.room.y], dtype=np.float64)
         self._fcl = {name: FclBody(body.parts) for name, body in scene.bodies.items()}
         self._held = {name: FclBody(scene.bodies[name].parts) for name in scene.movable}
         self._links = {link.name: FclBody(link.parts) for link in robot.links}
         self._floor = FclBody((FLOOR_PART,))
+
         self._placed: dict[tuple[str, Pose], _Placed] = {}
         self._completed: dict[tuple[float, Attachment | None], RobotParts] = {}
         self._fixed = [(name, self._place(name, scene.bodies[name].pose)) for name in scene.fixed]
 
-    def pair(self, body: str, pose: Pose, other: str, other_pose: Pose, padding: float = 0.0) -> bool:
-        """Whether two bodies at these poses are nearer than `padding` metres (with 0: intersect); exact."""
-        return self._touch(body, self._place(body, pose), other, self._place(other, other_pose), padding)
+    def pair(
+        self, body: str, pose: Pose, other: str, other_pose: Pose, padding: float = 0.0
+    ) -> bool:
+        """Check whether two bodies at these poses are nearer than `padding` metres (with 0:
+        intersect); exact.
+        """
+        return self._touch(
+            body, self._place(body, pose), other, self._place(other, other_pose), padding
+        )
 
     def between(self, body: str, pose: Pose, others: Mapping[str, Pose]) -> str | None:
-        """The first of `others` at their poses, or of the fixed bodies, that the body at `pose` intersects; exact."""
+        """Return the first of `others` at their poses, or of the fixed bodies, that the body at
+        `pose` intersects; exact.
+        """
         placed = self._place(body, pose)
         for other, other_pose in others.items():
             if other != body and self._touch(body, placed, other, self._place(other, other_pose)):
@@ -103,7 +119,7 @@ class Collisions:
         fixed: bool = True,
         without: Container[str] = (),
     ) -> Arrangement:
-        """The robot among the fixed bodies (if `fixed`) and the movable ones at `poses`.
+        """Set up the robot among the fixed bodies (if `fixed`) and the movable ones at `poses`.
 
         Args:
             poses: T_world_body by name; the attached body is left out.
@@ -117,6 +133,7 @@ class Collisions:
             standing = [one for one in self._fixed if one[0] not in without] + standing
         if opening is None:
             opening = attachment.opening if attachment else self._robot.robot.opening
+
         parts = self._complete(opening, attachment)
         tables = Tables(
             self._room,
@@ -129,6 +146,7 @@ class Collisions:
             np.concatenate([_NO_ROWS, *(placed.rows for _, placed in standing)]),
             np.concatenate([_NO_POSES, *(placed.poses for _, placed in standing)]),
         )
+
         exact = Exact(
             self._kinematics,
             parts,
@@ -138,6 +156,7 @@ class Collisions:
             (self._held[attachment.body], attachment.T_tool_body.matrix) if attachment else None,
             [(name, self._fcl[name], placed.matrix, len(placed.rows)) for name, placed in standing],
         )
+
         return Arrangement(tables, exact)
 
     def _complete(self, opening: float, attachment: Attachment | None) -> RobotParts:
@@ -150,7 +169,9 @@ class Collisions:
                 parts = self._robot.complete(opening, None, np.zeros((0, 4, 4)), _NO_ROWS)
             else:
                 T_tool_parts = attachment.T_tool_body.matrix @ self._part_matrices[attachment.body]
-                parts = self._robot.complete(opening, attachment.body, T_tool_parts, self._rows[attachment.body])
+                parts = self._robot.complete(
+                    opening, attachment.body, T_tool_parts, self._rows[attachment.body]
+                )
             self._completed[key] = parts
         return parts
 
@@ -165,7 +186,9 @@ class Collisions:
             low, high = world_box(rows, poses)
             rows[:, LOW : LOW + 3], rows[:, HIGH : HIGH + 3] = low, high
             corners = tuple(low.min(axis=0).tolist()), tuple(high.max(axis=0).tolist())
-            placed = self._placed[key] = _Placed(rows, poses, low.tolist(), high.tolist(), *corners, pose.matrix)
+            placed = self._placed[key] = _Placed(
+                rows, poses, low.tolist(), high.tolist(), *corners, pose.matrix
+            )
         return placed
 
     def _touch(self, first: str, a: _Placed, second: str, b: _Placed, padding: float = 0.0) -> bool:
@@ -176,7 +199,9 @@ class Collisions:
                 continue
             for j, (b_low, b_high) in enumerate(zip(b.lows, b.highs, strict=True)):
                 if _overlap(a_low, a_high, b_low, b_high, padding) and touch(
-                    self._fcl[first].place(i, a.matrix), self._fcl[second].place(j, b.matrix), padding
+                    self._fcl[first].place(i, a.matrix),
+                    self._fcl[second].place(j, b.matrix),
+                    padding,
                 ):
                     return True
         return False
@@ -186,4 +211,6 @@ _NO_ROWS, _NO_POSES = np.zeros((0, WIDTH)), np.zeros((0, 12))
 
 
 def _overlap(a_low: Corner, a_high: Corner, b_low: Corner, b_high: Corner, padding: float) -> bool:
-    return all(a_low[i] <= b_high[i] + padding and b_low[i] <= a_high[i] + padding for i in range(3))
+    return all(
+        a_low[i] <= b_high[i] + padding and b_low[i] <= a_high[i] + padding for i in range(3)
+    )

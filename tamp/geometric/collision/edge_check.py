@@ -33,18 +33,20 @@ from tamp.system.compilation import njit
 
 @njit(**INLINE)
 def verdict(code, part, other):
-    """A code and the pair that it rests on, in one integer; `pair_of` reads it."""
+    """Pack a code and the pair that it rests on into one integer; `pair_of` reads it."""
     return code | part << 2 | (other + 4096) << 14
 
 
 def pair_of(verdict: int) -> tuple[int, int]:
-    """The robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other part."""
+    """Return the robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other
+    part.
+    """
     return verdict >> 2 & 4095, (verdict >> 14) - 4096
 
 
 @njit(**INLINE)
 def _box(i, margin, parts, placed, reach, box):
-    """World box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
+    """Compute the world box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
     for r in range(3):
         half = (
             abs(placed[i, 3 * r]) * parts[i, SIZE]
@@ -57,8 +59,12 @@ def _box(i, margin, parts, placed, reach, box):
 
 @njit(**{**JIT, "_nrt": True})
 def unpack(packed, index):
-    """Table `index` of `Tables.packed`, (rows, columns)."""
-    start, rows, columns = int(packed[3 * index]), int(packed[3 * index + 1]), int(packed[3 * index + 2])
+    """Return table `index` of `Tables.packed`, (rows, columns)."""
+    start, rows, columns = (
+        int(packed[3 * index]),
+        int(packed[3 * index + 1]),
+        int(packed[3 * index + 2]),
+    )
     return packed[start : start + rows * columns].reshape((rows, columns))
 
 
@@ -73,13 +79,15 @@ def _overlap(box, i, obstacles, j):
 
 @njit(**JIT)
 def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found):
-    """All pairs whose bounding spheres or boxes, grown by what the pair needs, overlap: rows (part, other) of `found`.
+    """Find all pairs whose bounding spheres or boxes, grown by what the pair needs, overlap (broad
+    phase): rows (part, other) of `found`.
 
     All parts are placed. The last row of `box` is the box around the whole robot.
     """
     n, count = parts.shape[0], 0
     for r in range(3):
         box[n, r], box[n, 3 + r] = math.inf, -math.inf
+
     for i in range(n):
         _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
         for r in range(3):
@@ -87,23 +95,31 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
         if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
             found[count, 0], found[count, 1] = i, FLOOR
             count += 1
+
     for p in range(pairs.shape[0]):
         i, k = int(pairs[p, 0]), int(pairs[p, 1])
         if not spheres_apart(i, k, demand(i, SELF - k, half, padding, parts, reach), parts, reach):
             found[count, 0], found[count, 1] = i, SELF - k
             count += 1
+
     for j in range(obstacles.shape[0]):
         if _overlap(box, n, obstacles, j):
             for i in range(n):
                 if _overlap(box, i, obstacles, j):
                     found[count, 0], found[count, 1] = i, j
                     count += 1
+
     return count
 
 
 def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
-    """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files has changed."""
-    vector, conf = types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C", readonly=True)
+    """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files
+    has changed.
+    """
+    vector, conf = (
+        types.Array(types.float64, 1, "C"),
+        types.Array(types.float64, 1, "C", readonly=True),
+    )
     signature = types.int64(conf, conf, types.float64, vector)
 
     @njit(signature, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
@@ -114,10 +130,20 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         for conf in (start, end):
             if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
                 return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
-        joints, vertices, leaves = unpack(tables, np.int64(1)), unpack(tables, np.int64(2)), unpack(tables, np.int64(3))
-        parts, part_poses, pairs = unpack(tables, np.int64(4)), unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
+
+        joints, vertices, leaves = (
+            unpack(tables, np.int64(1)),
+            unpack(tables, np.int64(2)),
+            unpack(tables, np.int64(3)),
+        )
+        parts, part_poses, pairs = (
+            unpack(tables, np.int64(4)),
+            unpack(tables, np.int64(5)),
+            unpack(tables, np.int64(6)),
+        )
         obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
         n = parts.shape[0]
+
         # A few allocations, cut into pieces: each costs as much as a pair.
         numbers, rows = np.empty(27), np.empty((13 + 3 * n, 12))
         conf, change, guess, weights = numbers[:10], numbers[10:20], numbers[20:23], numbers[23:]
@@ -128,18 +154,21 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
             rows[12 + n : 12 + 2 * n],
             rows[12 + 2 * n :],
         )
+
         moves = False
         for k in range(10):
             change[k] = abs(end[k] - start[k])
             moves = moves or change[k] > 0.0
+
         change[0] = math.hypot(change[0], change[1])
         ready = np.empty(n, dtype=np.int64)
         for k in range(n):
             ready[k] = 0
+
         found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
 
-        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The first three, the ends
-        # (of no length) and the whole, find theirs themselves.
+        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
+        # first three, the ends (of no length) and the whole, find theirs themselves.
         intervals = np.empty((INTERVALS if moves else 1, 2))
         lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
         tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
@@ -148,19 +177,25 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
         if moves:
             intervals[1, 0], intervals[1, 1] = 0.0, 0.0
             intervals[2, 0], intervals[2, 1] = 0.5, 0.5
+
         count, head, tail = 0, 0, 3 if moves else 1
         while head < tail:
             middle, half = intervals[head, 0], intervals[head, 1]
             for k in range(10):
                 conf[k] = start[k] + middle * (end[k] - start[k])
+
             place_frames(conf, joints, frames)
             fresh = head < 3
             if fresh:
                 for k in range(n):
                     place_part(k, frames, change, parts, part_poses, placed, reach)
-                first, last = 0, _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
+                first, last = (
+                    0,
+                    _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found),
+                )
             else:
                 first, last = lists[head, 0], lists[head, 1]
+
             before = count
             for t in range(first, last):
                 if fresh:
@@ -173,20 +208,27 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                         if p >= 0 and ready[p] != head:
                             place_part(p, frames, change, parts, part_poses, placed, reach)
                             ready[p] = head
+
                 far = demand(i, other, half, padding, parts, reach)
                 answer = check(
-                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess,
-                    s, weights,
+                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
+                    vertices, leaves, guess, s, weights,
                 )  # fmt: skip
                 if answer == APART:
                     continue
                 if answer == CLOSE:
                     return verdict(np.int64(HIT), i, other)
+
                 if far <= padding or count == TASKS:
                     return verdict(np.int64(UNDECIDED), i, other)
                 tasks[count, 0], tasks[count, 1] = i, other
-                guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
+                guesses[count, 0], guesses[count, 1], guesses[count, 2] = (
+                    guess[0],
+                    guess[1],
+                    guess[2],
+                )
                 count += 1
+
             if count > before:
                 if tail + 2 > INTERVALS:
                     return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
@@ -194,24 +236,33 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
                     intervals[tail, 0], intervals[tail, 1] = middle + side * half, 0.5 * half
                     lists[tail, 0], lists[tail, 1] = before, count
                     tail += 1
+
             head += 1
+
         return np.int64(FREE)
 
     return decide  # pyright: ignore[reportReturnType]  # a numba dispatcher
 
 
 def sources_digest() -> int:
-    """A number that changes with any file that the kernel is compiled from; numba itself looks at one file only."""
-    files = (Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check"))
+    """Return a number that changes with any file that the kernel is compiled from; numba itself
+    looks at one file only.
+    """
+    files = (
+        Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check")
+    )
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 
 sweep = _compiled(sources_digest())
-"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two configurations (10,) is free.
+"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two
+configurations (10,) is free.
 
-Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked middle are at least
-this far from everything, all states between at least half of it. `tables`: `Tables.packed`, the robot and the bodies.
+Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked
+middle are at least this far from everything, all states between at least half of it. `tables`:
+`Tables.packed`, the robot and the bodies.
 
-The verdict is FREE; or HIT, with the pair that is nearer than the padding at some state of the edge; or UNDECIDED, with
-a pair for which rounding or room did not suffice. Arrays that are not of float64 in C order raise TypeError.
+The verdict is FREE; or HIT, with the pair that is nearer than the padding at some state of the
+edge; or UNDECIDED, with a pair for which rounding or room did not suffice. Arrays that are not of
+float64 in C order raise TypeError.
 """

@@ -22,7 +22,7 @@ class FclBody:
         self._at: list[Array | None] = [None] * len(parts)
 
     def place(self, index: int, T_world_body: Array) -> fcl.CollisionObject:
-        """Part `index` with the body at `T_world_body` (4, 4)."""
+        """Place part `index` with the body at `T_world_body` (4, 4)."""
         if self._at[index] is not T_world_body:
             matrix = T_world_body @ self._T_body_part[index]
             self.objects[index].setTransform(fcl.Transform(matrix[:3, :3], matrix[:3, 3]))
@@ -31,7 +31,7 @@ class FclBody:
 
 
 def geometry(shape: Shape) -> fcl.CollisionGeometry:
-    """The FCL geometry of a shape, in the shape's own frame."""
+    """Build the FCL geometry of a shape, in the shape's own frame."""
     if isinstance(shape, Box):
         return fcl.Box(*shape.size)
     if isinstance(shape, Cylinder):
@@ -43,19 +43,23 @@ def geometry(shape: Shape) -> fcl.CollisionGeometry:
 
 
 def touch(first: fcl.CollisionObject, second: fcl.CollisionObject, padding: float) -> bool:
-    """Whether two objects are nearer than `padding` metres; with 0, whether they intersect."""
+    """Check whether two objects are nearer than `padding` metres; with 0, that they intersect."""
     if padding <= 0.0:
         return fcl.collide(first, second) > 0
     return fcl.distance(first, second) < padding
 
 
 def gap(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
-    """Metres between two objects; 0 where they intersect."""
+    """Compute the distance of two objects, metres; 0 where they intersect."""
     return max(0.0, fcl.distance(first, second))
 
 
 def depth(first: fcl.CollisionObject, second: fcl.CollisionObject) -> float:
-    """Metres by which one object has to move to leave another; 0 where they are apart."""
+    """Compute the penetration depth, metres by which one object has to move to leave another; 0
+    where they are apart.
+    """
     result = fcl.CollisionResult()
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=20, enable_contact=True), result)
+    fcl.collide(
+        first, second, fcl.CollisionRequest(num_max_contacts=20, enable_contact=True), result
+    )
     return max((abs(float(contact.penetration_depth)) for contact in result.contacts), default=0.0)

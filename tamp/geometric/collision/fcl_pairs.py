@@ -1,4 +1,4 @@
-"""What FCL says about one pair of an arrangement."""
+"""Exact collision checks by FCL of one pair of an arrangement."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ class Exact:
         links: FCL objects by link name.
         floor: The floor's.
         held: The attached body's objects and its pose in the tool's frame (4, 4), or None.
-        standing: In the order of the obstacles' rows: a body's name, objects, T_world_body (4, 4), number of parts.
+        standing: In the order of the obstacles' rows: a body's name, objects, T_world_body (4, 4),
+            number of parts.
     """
 
     def __init__(
@@ -48,7 +49,9 @@ class Exact:
         self._floor = floor
 
     def nearer(self, conf: Array, part: int, other: int, padding: float) -> bool:
-        """Whether that pair (as in `sweep.pair_of`) is nearer than `padding` metres at `conf`; 0: intersects."""
+        """Check whether that pair (as in `sweep.pair_of`) is nearer than `padding` metres at
+        `conf`; 0: intersects.
+        """
         if other == ROOM:
             return True
         poses = self._kinematics.link_poses(conf, self._opening)
@@ -63,7 +66,7 @@ class Exact:
         return touch(first, second, padding)
 
     def names(self, part: int, other: int) -> tuple[str, str]:
-        """The names of that pair."""
+        """Return the names of that pair."""
         first = self._parts.owners[part][0]
         if other <= SELF:
             return first, self._parts.owners[SELF - other][0]
@@ -72,7 +75,9 @@ class Exact:
         return first, self._row(other)[0]
 
     def _row(self, other: int) -> tuple[str, FclBody, Array, int]:
-        """The body of an obstacle's row: its name, objects, pose, and which part of it the row is."""
+        """Return the body of an obstacle's row: its name, objects, pose, and which part of it the
+        row is.
+        """
         first = 0
         for name, body, matrix, count in self._standing:
             if other < first + count:

@@ -1,9 +1,10 @@
 """Distance queries between convex parts, compiled.
 
-`separation` is the Gilbert-Johnson-Keerthi algorithm (1988) on the Minkowski difference A - B. It answers not with a
-distance but with a decision, and each decision carries its own proof: "apart" rests on a separating plane, whose gap is
-computed from the two support functions alone (a lower bound of the distance whatever the simplex looked like), "close"
-rests on two points of A and B (an upper bound).
+`separation` is the Gilbert-Johnson-Keerthi algorithm (1988) on the Minkowski difference A - B. It
+answers not with a distance but with a decision, and each decision carries its own proof: "apart"
+rests on a separating plane, whose gap is computed from the two support functions alone (a lower
+bound of the distance whatever the simplex looked like), "close" rests on two points of A and B (an
+upper bound).
 """
 
 from __future__ import annotations
@@ -12,11 +13,22 @@ import math
 
 import numpy as np
 
-from tamp.geometric.collision.tables import BOX, CENTRE, CYLINDER, KIND, MARGIN, POINT, SIZE, VERTEX_COUNT, VERTICES
+from tamp.geometric.collision.tables import (
+    BOX,
+    CENTRE,
+    CYLINDER,
+    KIND,
+    MARGIN,
+    POINT,
+    SIZE,
+    VERTEX_COUNT,
+    VERTICES,
+)
 from tamp.system.compilation import njit
 
 APART, CLOSE, BETWEEN, UNSURE = 0, 1, 2, 3
-"""At least `far` apart; nearer than `near`; certainly between the two; rounding keeps it from saying."""
+"""At least `far` apart; nearer than `near`; certainly between the two; rounding keeps it from
+saying."""
 
 JIT = {
     "nogil": True,
@@ -26,10 +38,11 @@ JIT = {
     "no_rewrites": True,
     "_nrt": False,
 }
-"""For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is, with them inside.
+"""For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is,
+with them inside.
 
-They allocate nothing, so that nothing has to be counted (`_nrt`), and have no array expression to rewrite: both would
-only take time when they are compiled.
+They allocate nothing, so that nothing has to be counted (`_nrt`), and have no array expression to
+rewrite: both would only take time when they are compiled.
 """
 
 INLINE = {**JIT, "forceinline": True}
@@ -38,9 +51,10 @@ INLINE = {**JIT, "forceinline": True}
 
 @njit(**INLINE, fastmath={"nnan", "nsz", "reassoc", "contract"})
 def _farthest(vertices, first, last, x, y, z):
-    """Which of the columns first..last-1 of `vertices` is farthest along (x, y, z), up to rounding.
+    """Find the column first..last-1 of `vertices` farthest along (x, y, z), up to rounding.
 
-    Two passes, so that both compile to vector instructions; fast mathematics only reorders the maximum here.
+    Two passes, so that both compile to vector instructions; fast mathematics only reorders the
+    maximum here.
     """
     value = -1e300
     for k in range(first, last):
@@ -54,7 +68,7 @@ def _farthest(vertices, first, last, x, y, z):
 
 @njit(**INLINE)
 def turned(poses, i, x, y, z):
-    """A direction of frame i, in the world's frame."""
+    """Rotate a direction of frame i into the world's frame."""
     return (
         poses[i, 0] * x + poses[i, 1] * y + poses[i, 2] * z,
         poses[i, 3] * x + poses[i, 4] * y + poses[i, 5] * z,
@@ -64,7 +78,7 @@ def turned(poses, i, x, y, z):
 
 @njit(**INLINE)
 def turned_back(poses, i, x, y, z):
-    """A direction of the world's frame, in frame i."""
+    """Rotate a direction of the world's frame into frame i."""
     return (
         poses[i, 0] * x + poses[i, 3] * y + poses[i, 6] * z,
         poses[i, 1] * x + poses[i, 4] * y + poses[i, 7] * z,
@@ -74,20 +88,20 @@ def turned_back(poses, i, x, y, z):
 
 @njit(**INLINE)
 def placed_at(poses, i, x, y, z):
-    """A point of frame i, in the world's frame."""
+    """Transform a point of frame i into the world's frame."""
     x, y, z = turned(poses, i, x, y, z)
     return x + poses[i, 9], y + poses[i, 10], z + poses[i, 11]
 
 
 @njit(**INLINE)
 def in_frame(poses, i, x, y, z):
-    """A point of the world's frame, in frame i."""
+    """Transform a point of the world's frame into frame i."""
     return turned_back(poses, i, x - poses[i, 9], y - poses[i, 10], z - poses[i, 11])
 
 
 @njit(**JIT)
 def support(shapes, i, poses, vertices, dx, dy, dz):
-    """World point of part i's core that is farthest along the world direction (dx, dy, dz)."""
+    """Return the support point of part i's core, farthest along (dx, dy, dz), in the world."""
     x, y, z = turned_back(poses, i, dx, dy, dz)
     kind = shapes[i, KIND]
     if kind == POINT:
@@ -109,7 +123,7 @@ def support(shapes, i, poses, vertices, dx, dy, dz):
 
 @njit(**INLINE)
 def centre(shapes, i, poses):
-    """World position of the centre of part i's box."""
+    """Return the world position of the centre of part i's box."""
     return placed_at(poses, i, shapes[i, CENTRE], shapes[i, CENTRE + 1], shapes[i, CENTRE + 2])
 
 
@@ -120,7 +134,7 @@ def _dot(s, i, j):
 
 @njit(**INLINE)
 def _on_segment(s, i, j):
-    """Weights of rows i, j of s at the point of their segment that is nearest to the origin."""
+    """Weigh rows i, j of s at the point of their segment that is nearest to the origin."""
     aa, ab, bb = _dot(s, i, i), _dot(s, i, j), _dot(s, j, j)
     length = aa - 2.0 * ab + bb
     if length <= 0.0:
@@ -131,12 +145,13 @@ def _on_segment(s, i, j):
 
 @njit(**JIT)
 def _on_triangle(s, i, j, k):
-    """Weights of rows i, j, k of s at the point of their triangle nearest to the origin (Ericson 2005, 5.1.5)."""
+    """Weigh rows i, j, k of s where their triangle is nearest the origin (Ericson 2005, 5.1.5)."""
     ix, iy, iz = s[i, 0], s[i, 1], s[i, 2]
     jx, jy, jz = s[j, 0], s[j, 1], s[j, 2]
     kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]
     abx, aby, abz = jx - ix, jy - iy, jz - iz
     acx, acy, acz = kx - ix, ky - iy, kz - iz
+
     d1 = -(abx * ix + aby * iy + abz * iz)
     d2 = -(acx * ix + acy * iy + acz * iz)
     if d1 <= 0.0 and d2 <= 0.0:
@@ -161,6 +176,7 @@ def _on_triangle(s, i, j, k):
     if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
         a, b = _on_segment(s, j, k)
         return 0.0, a, b
+
     total = va + vb + vc
     if total <= 0.0:
         a, b = _on_segment(s, i, j)
@@ -170,7 +186,7 @@ def _on_triangle(s, i, j, k):
 
 @njit(**JIT)
 def _outside(s, i, j, k, other):
-    """Whether the origin lies beyond the face i, j, k, seen from row `other`; true too when the four are flat."""
+    """Check whether the origin is beyond face i, j, k, seen from `other`; true too when flat."""
     ix, iy, iz = s[i, 0], s[i, 1], s[i, 2]
     jx, jy, jz = s[j, 0], s[j, 1], s[j, 2]
     kx, ky, kz = s[k, 0], s[k, 1], s[k, 2]
@@ -188,7 +204,7 @@ def _reduce(s, n, weights):
     """Find the nearest point of the simplex s[:n] to the origin; keep only the rows that carry it.
 
     Returns:
-        The number of rows left, their weights in `weights`; 5 when the origin is inside a tetrahedron.
+        The number of rows left, weights in `weights`; 5 when the origin is inside a tetrahedron.
     """
     weights[0], weights[1], weights[2], weights[3] = 1.0, 0.0, 0.0, 0.0
     if n == 2:
@@ -216,6 +232,7 @@ def _reduce(s, n, weights):
         if best == math.inf:
             return 5
         weights[0], weights[1], weights[2], weights[3] = b0, b1, b2, b3
+
     left = 0
     for i in range(n):
         if weights[i] > 0.0:
@@ -237,7 +254,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
         s, weights: Scratch (4, 3) and (4,).
 
     Returns:
-        APART: the distance is >= far. CLOSE: it is < near. BETWEEN: >= near, and surely < far. UNSURE: else.
+        APART: the distance is >= far. CLOSE: < near. BETWEEN: >= near, surely < far. Or UNSURE.
     """
     margin = a[i, MARGIN] + b[j, MARGIN]
     near, far = near + margin, far + margin
@@ -245,6 +262,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
     norm = math.sqrt(vx * vx + vy * vy + vz * vz)
     if norm < 1e-9:
         vx, vy, vz, norm = 0.0, 0.0, 1.0, 1.0
+
     n, lower, upper = 0, -math.inf, math.inf
     for _ in range(64):
         ax, ay, az = support(a, i, poses_a, vertices, -vx, -vy, -vz)
@@ -260,6 +278,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
                 return BETWEEN
         if upper - lower <= 1e-9:
             break
+
         s[n, 0], s[n, 1], s[n, 2] = wx, wy, wz
         n = _reduce(s, n + 1, weights)
         if n == 5:
@@ -277,4 +296,5 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
         upper = norm
         if lower >= near and upper < far:
             return BETWEEN
+
     return BETWEEN if near <= lower and upper < far else UNSURE

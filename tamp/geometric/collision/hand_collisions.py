@@ -1,4 +1,6 @@
-"""The hand and the wrist behind it against bodies: what is in their way is in it wherever the base stands."""
+"""The hand and the wrist behind it against bodies: what is in their way is in it wherever the base
+stands.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +20,17 @@ from tamp.geometric.scene.scene import Cylinder, Hull, Part, Scene
 Placed = tuple[str, Pose]
 
 SLACK = 1e-4
-"""What is added to the balls around parts, metres, so that rounding never keeps FCL from being asked."""
+"""What is added to the balls around parts, metres, so that rounding never keeps FCL from being
+asked."""
 
 
 class HandCollisions:
-    """Exact collision of the hand, its fingers, the wrist and the body in the hand, placed by the tool's pose.
+    """Exact collision of the hand, its fingers, the wrist and the body in the hand, placed by the
+    tool's pose.
 
-    The wrist is the last link, and of the link before, which turns about the last joint's axis, what is there however
-    it turns. It only says no: a hand that is free here may still belong to an arm that is not.
+    The wrist is the last link, and of the link before, which turns about the last joint's axis,
+    what is there however it turns. It only says no: a hand that is free here may still belong to an
+    arm that is not.
     """
 
     def __init__(self, scene: Scene, robot: Robot) -> None:
@@ -45,9 +50,13 @@ class HandCollisions:
         self._attached: dict[Placed, _Movers] = {}
 
     def hits(
-        self, tools: Sequence[Array], opening: float, attachment: Attachment | None, others: Iterable[Placed]
+        self,
+        tools: Sequence[Array],
+        opening: float,
+        attachment: Attachment | None,
+        others: Iterable[Placed],
     ) -> str | None:
-        """The first of `others` that the hand hits at one of the poses.
+        """Return the first of `others` that the hand hits at one of the poses.
 
         Args:
             tools: T_world_tool (4, 4).
@@ -58,16 +67,25 @@ class HandCollisions:
         standing = list(others)
         if not standing:
             return None
+
         owners, lows, highs = self._parts(standing)
-        movers = [self._movers(opening), *([] if attachment is None else [self._holding(attachment)])]
+        movers = [
+            self._movers(opening),
+            *([] if attachment is None else [self._holding(attachment)]),
+        ]
         radii = np.concatenate([group.radii for group in movers])
         own = np.concatenate([group.centres for group in movers])
         parts = [part for group in movers for part in group.parts]
+
         at = np.array(tools)
         centres = own @ at[:, :3, :3].transpose(0, 2, 1) + at[:, None, :3, 3]
-        gaps = np.maximum(np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0)
+        gaps = np.maximum(
+            np.maximum(lows[:, None] - centres[:, None], centres[:, None] - highs[:, None]), 0.0
+        )
         near = np.nonzero(np.einsum("tpmi,tpmi->tpm", gaps, gaps) <= radii * radii)
-        placed: dict[tuple[int, int], Array] = {}  # where each frame is; the same array, so that a part is placed once
+
+        # Where each frame is; the same array, so that a part is placed once.
+        placed: dict[tuple[int, int], Array] = {}
         for t, index, k in zip(*(axis.tolist() for axis in near), strict=True):
             name, pose, part = owners[index]
             body, number, frame = parts[k]
@@ -76,6 +94,7 @@ class HandCollisions:
                 matrix = placed[t, id(frame)] = tools[t] @ frame
             if touch(body.place(number, matrix), self._bodies[name].place(part, pose.matrix), 0.0):
                 return name
+
         return None
 
     def _parts(self, standing: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
@@ -85,7 +104,10 @@ class HandCollisions:
         for name, pose in standing:
             if (name, pose) not in self._boxes:
                 boxes = [bounds((part,), pose) for part in self._scene.bodies[name].parts]
-                self._boxes[name, pose] = np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])
+                self._boxes[name, pose] = (
+                    np.array([low for low, _ in boxes]),
+                    np.array([high for _, high in boxes]),
+                )
             low, high = self._boxes[name, pose]
             owners += [(name, pose, part) for part in range(len(low))]
             lows.append(low)
@@ -93,21 +115,27 @@ class HandCollisions:
         return owners, np.concatenate(lows), np.concatenate(highs)
 
     def _movers(self, opening: float) -> _Movers:
-        """The hand, the wrist and the fingers."""
+        """Collect the parts of the hand, the wrist and the fingers."""
         if opening not in self._open:
             fingers = [
                 (body, link.parts, self._T_tool_hand @ _finger(joint, opening))
-                for body, link, joint in zip(self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True)
+                for body, link, joint in zip(
+                    self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True
+                )
             ]
-            self._open[opening] = _Movers.of([(self._hand, self._parts_of_hand, self._T_tool_hand), *fingers])
+            self._open[opening] = _Movers.of(
+                [(self._hand, self._parts_of_hand, self._T_tool_hand), *fingers]
+            )
         return self._open[opening]
 
     def _holding(self, attachment: Attachment) -> _Movers:
-        """The body in the hand."""
+        """Collect the parts of the body in the hand."""
         name, T_tool_body = attachment.body, attachment.T_tool_body
         if (name, T_tool_body) not in self._attached:
             parts = self._scene.bodies[name].parts
-            self._attached[name, T_tool_body] = _Movers.of([(self._held[name], parts, T_tool_body.matrix)])
+            self._attached[name, T_tool_body] = _Movers.of(
+                [(self._held[name], parts, T_tool_body.matrix)]
+            )
         return self._attached[name, T_tool_body]
 
 
@@ -127,7 +155,7 @@ class _Movers:
 
     @classmethod
     def of(cls, bodies: Sequence[tuple[FclBody, tuple[Part, ...], Array]]) -> _Movers:
-        """Of all parts of bodies at their T_tool_body."""
+        """Bound all parts of bodies at their T_tool_body by balls."""
         parts: list[tuple[FclBody, int, Array]] = []
         centres: list[Array] = []
         radii: list[float] = []
@@ -141,17 +169,18 @@ class _Movers:
 
 
 def _finger(joint: Joint, opening: float) -> Array:
-    """T_hand_finger (4, 4) of a finger that stands at half the opening."""
+    """Compute T_hand_finger (4, 4) of a finger that stands at half the opening."""
     matrix = joint.origin.matrix.copy()
     matrix[:3, 3] += joint.origin.rotation @ np.array(joint.axis) * (opening / 2)
     return matrix
 
 
 def _core(robot: Robot) -> list[Part]:
-    """In the last link's frame: the largest cylinder about the last joint's axis within each part of the link before.
+    """Compute the largest cylinder about the last joint's axis within each part of the link before,
+    in the last link's frame.
 
-    A half-space n x <= d holds a cylinder of radius r and heights [low, high] along the unit axis u when
-    |n - (n u) u| r + (n u) h <= d at both ends.
+    A half-space n x <= d holds a cylinder of radius r and heights [low, high] along the unit axis u
+    when |n - (n u) u| r + (n u) h <= d at both ends.
     """
     joint = robot.joints[-1]
     axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
@@ -160,6 +189,7 @@ def _core(robot: Robot) -> list[Part]:
     for part in robot.links[-5].parts:
         if not isinstance(part.shape, Hull):
             continue
+
         vertices = inverse.apply(part.pose.apply(part.shape.vertices))
         a, b, c = (vertices[part.shape.faces[:, i]] for i in range(3))
         normals = np.cross(b - a, c - a)
@@ -168,24 +198,30 @@ def _core(robot: Robot) -> list[Part]:
         offsets = (vertices @ normals.T).max(axis=0)
         slopes = normals @ axis
         across = np.linalg.norm(normals - slopes[:, None] * axis, axis=1)
+
         best = (0.0, 0.0, 0.0, 0.0)
         for radius in np.arange(0.01, 0.1, 0.002):
             room = offsets - across * radius
             up, down = slopes > 1e-9, slopes < -1e-9
             if (room[~up & ~down] < 0).any():
                 break
-            high, low = float((room[up] / slopes[up]).min()), float((room[down] / slopes[down]).max())
+            high, low = (
+                float((room[up] / slopes[up]).min()),
+                float((room[down] / slopes[down]).max()),
+            )
             best = max(best, (radius**2 * max(high - low, 0.0), float(radius), low, high))
+
         volume, radius, low, high = best
         if volume > 0.0:
             matrix = _along(axis)
             matrix[:3, 3] = axis * (low + high) / 2
             cores.append(Part(Cylinder(radius, high - low), Pose.from_matrix(matrix)))
+
     return cores
 
 
 def _along(axis: Array) -> Array:
-    """A frame (4, 4) whose z is a unit vector."""
+    """Return a frame (4, 4) whose z is a unit vector."""
     other = np.cross(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
     matrix = np.eye(4)
     matrix[:3, 0] = other / np.linalg.norm(other)

@@ -1,20 +1,20 @@
 """A robot's motion against bodies and itself, decided in compiled code.
 
-`sweep` proves that a straight line in configuration space is free. It takes an interval of the line, places the robot
-at its middle and asks of every pair (part, obstacle) whether its distance there exceeds what the pair can lose within
-the interval; pairs that do are done with, the others go on to the two halves. Middles are visited level by level, so
-that a blocked edge is rejected early.
+`sweep` proves that a straight line in configuration space is free. It takes an interval of the
+line, places the robot at its middle and asks of every pair (part, obstacle) whether its distance
+there exceeds what the pair can lose within the interval; pairs that do are done with, the others go
+on to the two halves. Middles are visited level by level, so that a blocked edge is rejected early.
 
-How much a pair can lose: let T(s) p = E_1(s) ... E_n(s) p place a point p of a part, each E_j moved by one coordinate
-(base x and y together, base yaw, joints). Swapping one factor at a time,
+How much a pair can lose: let T(s) p = E_1(s) ... E_n(s) p place a point p of a part, each E_j moved
+by one coordinate (base x and y together, base yaw, joints). Swapping one factor at a time,
     T(s) p - T(m) p = sum_j E_1(s) ... E_(j-1)(s) [E_j(s) - E_j(m)] E_(j+1)(m) ... E_n(m) p,
-so |T(s) p - T(m) p| <= sum_j |q_j(s) - q_j(m)| rho_j, with rho_j the distance of the point, placed at the middle m,
-from axis j (1 for a translation). This holds for steps of any length. For two parts of the robot only the joints
-between them count. rho_j is bounded by that of the part's bounding sphere.
+so |T(s) p - T(m) p| <= sum_j |q_j(s) - q_j(m)| rho_j, with rho_j the distance of the point, placed
+at the middle m, from axis j (1 for a translation), bounded by the part's bounding sphere. Steps may
+have any length; for two parts of the robot only the joints between them count.
 
-With the distance d at the middle, half the interval's motion h and the padding p, d >= max(p, h + p / 2) proves that
-the pair stays p / 2 apart in the whole interval, and d < p rejects the edge. So a pair whose motion in the interval is
-below p is always decided.
+With distance d at the middle, half the interval's motion h and padding p, d >= max(p, h + p / 2)
+proves that the pair stays p / 2 apart in the whole interval, and d < p rejects the edge: a pair
+whose motion in the interval is below p is always decided.
 """
 
 from __future__ import annotations
@@ -53,15 +53,16 @@ from tamp.system.compilation import njit
 
 FREE, HIT, UNDECIDED = 0, 1, 2
 FLOOR, ROOM, SELF = -1, -2, -3
-"""What a part met: an obstacle's row (>= 0), the floor, the room's edge, or part k of the robot, written SELF - k."""
+"""What a part met: an obstacle's row (>= 0), the floor, the room's edge, or part k of the robot,
+written SELF - k."""
 
 INTERVALS, TASKS = 1024, 4096
-"""Room for the intervals of one edge and for their undecided pairs; an edge that needs more is UNDECIDED."""
+"""Room for an edge's intervals and their undecided pairs; one that needs more is UNDECIDED."""
 
 
 @njit(**INLINE)
 def _compose(a, i, b, j, out, k):
-    """Row k of out becomes pose a[i] times pose b[j]."""
+    """Set row k of out to pose a[i] times pose b[j]."""
     for r in range(3):
         x, y, z = a[i, 3 * r], a[i, 3 * r + 1], a[i, 3 * r + 2]
         for c in range(3):
@@ -71,7 +72,7 @@ def _compose(a, i, b, j, out, k):
 
 @njit(**JIT)
 def place_frames(conf, joints, frames):
-    """World poses of the base (row 0) and of the frames after each joint (rows 1..7); scratch in row 8."""
+    """Compute forward kinematics: world poses of base (row 0), joints (1..7); scratch in row 8."""
     c, s = math.cos(conf[2]), math.sin(conf[2])
     f = frames
     f[0, 0], f[0, 1], f[0, 2], f[0, 3], f[0, 4], f[0, 5] = c, -s, 0.0, s, c, 0.0
@@ -86,9 +87,9 @@ def place_frames(conf, joints, frames):
 
 @njit(**INLINE)
 def place_part(i, frames, change, parts, part_poses, placed, reach):
-    """Place part i in the world; reach[i] gets its centre (0..2) and how far it moves per unit of the edge.
+    """Place part i in the world; reach[i] gets its centre (0..2) and its motion per unit of edge.
 
-    reach[i, 3 + k]: largest motion due to joints 1..k, k = 0..7; reach[i, 11]: with the base's motion too.
+    reach[i, 3 + k]: at most by joints 1..k, k = 0..7; reach[i, 11]: with the base's motion too.
     """
     frame = int(parts[i, FRAME])
     _compose(frames, frame, part_poses, i, placed, i)
@@ -112,7 +113,7 @@ def place_part(i, frames, change, parts, part_poses, placed, reach):
 
 @njit(**INLINE)
 def _from_core(shapes, i, poses, x, y, z):
-    """Lower bound of a world point's distance from part i: exact but for hulls, whose box stands in for them."""
+    """Bound a world point's distance from part i from below: exact but for hulls (their box)."""
     lx, ly, lz = in_frame(poses, i, x, y, z)
     lx, ly, lz = lx - shapes[i, CENTRE], ly - shapes[i, CENTRE + 1], lz - shapes[i, CENTRE + 2]
     kind = shapes[i, KIND]
@@ -130,7 +131,7 @@ def _from_core(shapes, i, poses, x, y, z):
 
 @njit(**JIT)
 def _away(shapes, i, poses, x, y, z, out):
-    """Into `out`, the direction from the nearest point of part i's box to a world point, or from its centre to that."""
+    """Set `out` to the direction from part i's box (inside: its centre) to a world point."""
     lx, ly, lz = in_frame(poses, i, x, y, z)
     lx, ly, lz = lx - shapes[i, CENTRE], ly - shapes[i, CENTRE + 1], lz - shapes[i, CENTRE + 2]
     hx, hy, hz = shapes[i, SIZE], shapes[i, SIZE + 1], shapes[i, SIZE + 2]
@@ -148,10 +149,10 @@ def _leaf_centre(leaves, k, poses, i):
 
 @njit(**INLINE)
 def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, guess):
-    """Lower and upper bound of the distance of robot part i from obstacle j, by its bounding sphere, then its leaves.
+    """Bound the distance of robot part i from obstacle j, by its bounding sphere, then its leaves.
 
-    A leaf's centre lies inside the part and the leaf stands out by SLACK at most, so that the sphere which is smaller
-    by that much is inside the part: it gives the upper bound, unless the obstacle is a hull, for which its box stood.
+    A leaf's centre is in the part and the leaf stands out by SLACK at most; the sphere smaller by
+    that is inside: it gives the upper bound, unless the obstacle is a hull: its box stood for it.
     """
     x, y, z = reach[i, 0], reach[i, 1], reach[i, 2]
     bound = _from_core(obstacles, j, poses, x, y, z) - parts[i, RADIUS]
@@ -174,7 +175,7 @@ def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, gu
 
 @njit(**JIT)
 def _leaf_distance(i, k, far, parts, placed, leaves, guess):
-    """Lower bound, at most `far`, of the distance between robot parts i and k: leaves of i against leaves or box of k.
+    """Bound the distance of parts i and k from below, at most `far`: leaves on leaves or box.
 
     `guess` gets the direction from k to i between the spheres that are nearest to each other.
     """
@@ -183,6 +184,7 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
     first_k, count_k = int(parts[k, LEAVES]), int(parts[k, LEAF_COUNT])
     hx, hy, hz = parts[k, SIZE], parts[k, SIZE + 1], parts[k, SIZE + 2]
     cx, cy, cz = parts[k, CENTRE], parts[k, CENTRE + 1], parts[k, CENTRE + 2]
+
     for m in range(int(parts[i, LEAVES]), int(parts[i, LEAVES]) + int(parts[i, LEAF_COUNT])):
         x, y, z = _leaf_centre(leaves, m, placed, i)
         radius = leaves[m, 3]
@@ -204,20 +206,27 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
             if limit > 0.0 and square < limit * limit:
                 best = math.sqrt(square) - radius - leaves[n, 3]
                 bx, by, bz = dx, dy, dz
+
     guess[0], guess[1], guess[2] = turned(placed, k, bx, by, bz)
     return best
 
 
 @njit(**INLINE)
 def _from_self(i, k, far, parts, placed, reach, leaves, guess):
-    """Lower and upper bound of the distance between robot parts i and k: spheres against boxes, then leaves."""
+    """Bound the distance between robot parts i and k: spheres against boxes, then leaves."""
     bound = _from_core(parts, i, placed, reach[k, 0], reach[k, 1], reach[k, 2]) - parts[k, RADIUS]
     if bound >= far:
         return bound, math.inf
-    bound = max(bound, _from_core(parts, k, placed, reach[i, 0], reach[i, 1], reach[i, 2]) - parts[i, RADIUS])
+    bound = max(
+        bound,
+        _from_core(parts, k, placed, reach[i, 0], reach[i, 1], reach[i, 2]) - parts[i, RADIUS],
+    )
     if bound >= far or guess[0] != 0.0 or guess[1] != 0.0 or guess[2] != 0.0:
         return bound, math.inf
-    guess[0], guess[1], guess[2] = reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2]
+
+    guess[0], guess[1], guess[2] = (
+        reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2],
+    )  # fmt: skip
     swapped = parts[i, LEAF_COUNT] == 0
     a, b = (k, i) if swapped else (i, k)
     if parts[a, LEAF_COUNT] == 0:
@@ -235,16 +244,19 @@ def _from_self(i, k, far, parts, placed, reach, leaves, guess):
 
 @njit(**INLINE)
 def _from_floor(i, parts, placed, vertices):
-    """Height of the lowest point of robot part i above the plane z = 0; exact."""
+    """Return the height of the lowest point of robot part i above the plane z = 0; exact."""
     _, _, z = support(parts, i, placed, vertices, 0.0, 0.0, -1.0)
     return z - parts[i, MARGIN]
 
 
 @njit(**JIT)
-def check(i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess, s, weights):
+def check(
+    i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, vertices, leaves, guess,
+    s, weights,
+):  # fmt: skip
     """Decide a pair as `separation` does, from its spheres when they suffice.
 
-    `guess` is (0, 0, 0) or the direction that a check of this pair nearby ended with; it gets the one of this check.
+    `guess`: (0, 0, 0) or where a check of this pair nearby ended, a direction; it gets this one's.
     """
     if other == FLOOR:
         height = _from_floor(i, parts, placed, vertices)
@@ -257,6 +269,7 @@ def check(i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, 
         j, b, poses = SELF - other, parts, placed
         bound, inner = _from_self(i, j, far, parts, placed, reach, leaves, guess)
         slack = parts[i, SLACK] + parts[j, SLACK]
+
     if bound >= far:
         return APART
     if inner < near:
@@ -268,7 +281,7 @@ def check(i, other, near, far, parts, placed, reach, obstacles, obstacle_poses, 
 
 @njit(**INLINE)
 def demand(i, other, half, padding, parts, reach):
-    """The distance that pair (i, other) must have in the middle of an interval of half length `half`."""
+    """Return the distance that (i, other) needs amid an interval of half length `half`."""
     if other <= SELF:
         k = SELF - other
         a, b = (i, k) if parts[i, FRAME] <= parts[k, FRAME] else (k, i)
@@ -281,7 +294,7 @@ def demand(i, other, half, padding, parts, reach):
 
 @njit(**INLINE)
 def spheres_apart(i, k, far, parts, reach):
-    """Whether the bounding spheres of robot parts i and k are at least `far` apart."""
+    """Check whether the bounding spheres of robot parts i and k are at least `far` apart."""
     dx, dy, dz = reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2]
     limit = far + parts[i, RADIUS] + parts[k, RADIUS]
     return dx * dx + dy * dy + dz * dz >= limit * limit

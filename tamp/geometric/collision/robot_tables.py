@@ -18,7 +18,8 @@ class RobotParts:
 
     Attributes:
         rows, poses, pairs: As in `Tables`.
-        owners: For each row the name of its link, or of the attached body, and which part of that it is.
+        owners: For each row the name of its link, or of the attached body, and which part of that
+            it is.
     """
 
     rows: Array
@@ -31,7 +32,8 @@ class RobotTables:
     """Prepares a robot's rows once and completes them for an opening and an attached body.
 
     Args:
-        robot: The robot; its links are the base, the arm's foot, one link a joint, the hand and two fingers.
+        robot: The robot; its links are the base, the arm's foot, one link a joint, the hand and two
+            fingers.
         collected: Where its vertices and leaves go.
     """
 
@@ -40,27 +42,45 @@ class RobotTables:
         origins = [joint.origin for joint in robot.joints]
         origins[0] = robot.T_base_arm @ origins[0]
         self.joints = pose_rows(np.array([origin.matrix for origin in origins]))
+
         hand = tuple(link.name for link in robot.links[-3:])
         covers = link_covers(robot)
         owners, rows, matrices = [], [], []
         for index, link in enumerate(robot.links):
             frame = min(max(0, index - 1), len(robot.joints))
-            offset = robot.T_base_arm if index == 1 else robot.T_flange_hand if link.name in hand else Pose()
+            offset = (
+                robot.T_base_arm
+                if index == 1
+                else robot.T_flange_hand
+                if link.name in hand
+                else Pose()
+            )
+
             for k, part in enumerate(link.parts):
                 row = collected.row(part, covers.get((link.name, k)))
                 row[FRAME], row[ON_FLOOR] = frame, float(frame == 0)
                 owners.append((link.name, k))
                 rows.append(row)
                 matrices.append((offset @ part.pose).matrix)
+
         self._owners, self._rows = tuple(owners), np.array(rows)
         self._poses, self._slides = self._fingers(np.array(matrices))
-        pairs = [(a, b) for b in range(len(rows)) for a in range(b) if _checked(owners[a][0], owners[b][0], robot)]
+
+        pairs = [
+            (a, b)
+            for b in range(len(rows))
+            for a in range(b)
+            if _checked(owners[a][0], owners[b][0], robot)
+        ]
         self._pairs = np.array(pairs, dtype=np.float64).reshape(-1, 2)
+
         self._beside_hand = [a for a, (name, _) in enumerate(owners) if name not in hand]
         self._T_flange_tool = (robot.T_flange_hand @ robot.T_hand_tool).matrix
 
-    def complete(self, opening: float, held: str | None, T_tool_parts: Array, held_rows: Array) -> RobotParts:
-        """The rows with the fingers at `opening` metres and a body in the hand.
+    def complete(
+        self, opening: float, held: str | None, T_tool_parts: Array, held_rows: Array
+    ) -> RobotParts:
+        """Complete the rows with the fingers at `opening` metres and a body in the hand.
 
         The hand, the fingers and the body that they hold are one group, not checked within itself.
 
@@ -76,12 +96,18 @@ class RobotTables:
         poses = np.concatenate([self._poses, pose_rows(self._T_flange_tool @ T_tool_parts)])
         poses[:first, 9:] += self._slides * (opening / 2)
         count = len(held_rows)
-        pairs = np.array([(a, first + k) for k in range(count) for a in self._beside_hand], dtype=np.float64)
-        owners = self._owners if held is None else (*self._owners, *((held, k) for k in range(count)))
+        pairs = np.array(
+            [(a, first + k) for k in range(count) for a in self._beside_hand], dtype=np.float64
+        )
+        owners = (
+            self._owners if held is None else (*self._owners, *((held, k) for k in range(count)))
+        )
         return RobotParts(rows, poses, np.concatenate([self._pairs, pairs.reshape(-1, 2)]), owners)
 
     def _fingers(self, matrices: Array) -> tuple[Array, Array]:
-        """Poses (n, 12) with the fingers closed, and how far (n, 3) each part slides per metre of half the opening."""
+        """Compute poses (n, 12) with the fingers closed, and how far (n, 3) each part slides per
+        metre of half the opening.
+        """
         slides = np.zeros((len(matrices), 3))
         hand = self.robot.T_flange_hand.matrix
         for link, joint in zip(self.robot.links[-2:], self.robot.fingers, strict=True):

@@ -18,24 +18,29 @@ FRAME, ON_FLOOR, LOW, HIGH = 14, 15, 16, 19
 WIDTH = 22
 """Columns of a row that describes one convex part.
 
-KIND; SIZE: half extents of its box around CENTRE, both in the part's frame; RADIUS of its sphere around CENTRE;
-MARGIN around the core; VERTICES and LEAVES: first row and number of rows in those tables; SLACK: how far its spheres
-may stand out of it; FRAME: joint (1..7) that moves it, 0 for the base; ON_FLOOR: may touch the floor; LOW and HIGH:
-corners of the world's box around it (obstacles only). Metres.
+KIND; SIZE: half extents of its box around CENTRE, both in the part's frame; RADIUS of its sphere
+around CENTRE; MARGIN around the core; VERTICES and LEAVES: first row and number of rows in those
+tables; SLACK: how far its spheres may stand out of it; FRAME: joint (1..7) that moves it, 0 for the
+base; ON_FLOOR: may touch the floor; LOW and HIGH: corners of the world's box around it (obstacles
+only). Metres.
 """
 
 
 class Tables(NamedTuple):
-    """All that the kernels know about a robot among bodies. Every pose is 9 numbers of R, row by row, then 3 of t.
+    """All that the kernels know about a robot among bodies. Every pose is 9 numbers of R, row by
+    row, then 3 of t.
 
     Attributes:
         room: x low, x high, y low, y high of the base's centre, metres.
-        joints: (7, 12), each joint's frame at angle 0 in the one before it, the first in the base; they turn about z.
-        vertices: (3, v) of all hulls, each in its part's frame; one column a vertex, for vector instructions.
+        joints: (7, 12), each joint's frame at angle 0 in the one before it, the first in the base;
+            they turn about z.
+        vertices: (3, v) of all hulls, each in its part's frame; one column a vertex, for vector
+            instructions.
         leaves: (l, 4) centres and radii of the spheres that cover parts, each in its part's frame.
         parts: (n, WIDTH) the robot's convex parts, those of an attached body last.
         part_poses: (n, 12) in their frames.
-        pairs: (k, 2) rows of `parts` that are checked against each other, the one nearer to the base first.
+        pairs: (k, 2) rows of `parts` that are checked against each other, the one nearer to the
+            base first.
         obstacles: (m, WIDTH) the bodies' convex parts.
         obstacle_poses: (m, 12) in the world.
     """
@@ -51,8 +56,9 @@ class Tables(NamedTuple):
     obstacle_poses: Array
 
     def packed(self) -> Array:
-        """All tables in one vector, which is what the kernels take: Python hands over one array in a microsecond less
-        than nine. It starts with the offset, rows and columns of each; `unpack` reads it.
+        """Pack all tables into one vector, which is what the kernels take: Python hands over one
+        array in a microsecond less than nine. It starts with the offset, rows and columns of each;
+        `unpack` reads it.
         """
         header: list[int] = []
         offset = 3 * len(self)
@@ -60,11 +66,13 @@ class Tables(NamedTuple):
             rows, columns = table.shape if table.ndim == 2 else (1, len(table))
             header += [offset, rows, columns]
             offset += table.size
-        return np.concatenate([np.array(header, dtype=np.float64), *(table.ravel() for table in self)])
+        return np.concatenate(
+            [np.array(header, dtype=np.float64), *(table.ravel() for table in self)]
+        )
 
 
 def pose_rows(matrices: Array) -> Array:
-    """Homogeneous matrices (n, 4, 4) as rows (n, 12) of the tables."""
+    """Return homogeneous matrices (n, 4, 4) as rows (n, 12) of the tables."""
     return np.concatenate([matrices[:, :3, :3].reshape(-1, 9), matrices[:, :3, 3]], axis=1)
 
 
@@ -78,9 +86,13 @@ class Rows:
         self._leaf_count = 0
 
     def row(self, part: Part, cover: tuple[Array, float] | None = None) -> Array:
-        """The row of one part (WIDTH,), without its pose; `cover`: leaves (k, 4) in the part's frame, slack."""
+        """Build the row of one part (WIDTH,), without its pose; `cover`: leaves (k, 4) in the
+        part's frame, slack.
+        """
         row = np.zeros(WIDTH)
-        row[KIND], row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3], row[RADIUS], row[MARGIN] = _core(part.shape)
+        row[KIND], row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3], row[RADIUS], row[MARGIN] = _core(
+            part.shape
+        )
         if isinstance(part.shape, Hull):
             row[VERTICES], row[VERTEX_COUNT] = self._vertex_count, len(part.shape.vertices)
             self._vertices.append(np.asarray(part.shape.vertices, dtype=np.float64))
@@ -94,16 +106,16 @@ class Rows:
         return row
 
     def vertices(self) -> Array:
-        """All hulls' vertices, (3, v)."""
+        """Return all hulls' vertices, (3, v)."""
         return np.ascontiguousarray(np.concatenate([np.zeros((0, 3)), *self._vertices]).T)
 
     def leaves(self) -> Array:
-        """All leaves, (l, 4)."""
+        """Return all leaves, (l, 4)."""
         return np.ascontiguousarray(np.concatenate([np.zeros((0, 4)), *self._leaves]))
 
 
 def _core(shape: Shape) -> tuple[int, Array, Array, float, float]:
-    """Kind, half extents, centre, bounding radius and margin of a shape in its own frame."""
+    """Return kind, half extents, centre, bounding radius and margin of a shape in its own frame."""
     origin = np.zeros(3)
     if isinstance(shape, Sphere):
         return POINT, np.full(3, shape.radius), origin, shape.radius, shape.radius
@@ -115,11 +127,19 @@ def _core(shape: Shape) -> tuple[int, Array, Array, float, float]:
         return CYLINDER, half, origin, float(np.hypot(shape.radius, shape.height / 2)), 0.0
     low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
     centre = (low + high) / 2
-    return HULL, (high - low) / 2, centre, float(np.linalg.norm(shape.vertices - centre, axis=1).max()), 0.0
+    return (
+        HULL,
+        (high - low) / 2,
+        centre,
+        float(np.linalg.norm(shape.vertices - centre, axis=1).max()),
+        0.0,
+    )
 
 
 def world_box(rows: Array, poses: Array) -> tuple[Array, Array]:
-    """Low and high corners (n, 3) of the world's boxes around parts (n, WIDTH) at poses (n, 12)."""
+    """Compute low and high corners (n, 3) of the world's boxes around parts (n, WIDTH) at poses (n,
+    12).
+    """
     rotations = poses[:, :9].reshape(-1, 3, 3)
     centres = np.einsum("nij,nj->ni", rotations, rows[:, CENTRE : CENTRE + 3]) + poses[:, 9:]
     half = np.einsum("nij,nj->ni", np.abs(rotations), rows[:, SIZE : SIZE + 3])

@@ -1,4 +1,6 @@
-"""Bodies that touch each other at the start: moving them apart is no collision until they are clear of each other."""
+"""Bodies that touch each other at the start: moving them apart is no collision until they are clear
+of each other.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +19,8 @@ NEAR = 0.0005
 """Metres of air up to which two bodies count as touching."""
 
 DEEPER = 0.0002
-"""Metres by which a body that moves away may get deeper into one that it touches: the arm's path is not quite straight,
-and depths are not quite exact."""
+"""Metres by which a body that moves away may get deeper into one that it touches: the arm's path is
+not quite straight, and depths are not quite exact."""
 
 SIDEWAYS = 0.02
 """How far a body that touches something is moved aside while it is lifted, metres,"""
@@ -44,41 +46,60 @@ class Touching:
         self._ways: dict[tuple[str, float], Array] = {}
 
     def touched(self, body: str, pose: Pose) -> Mapping[str, float]:
-        """The bodies that a body at a pose touches, with how deep it is in each, metres; none but at its first pose."""
+        """Return the bodies that a body at a pose touches, with how deep it is in each, metres;
+        none but at its first pose.
+        """
         if body not in self._there or pose != self._scene.bodies[body].pose:
             return {}
         if body not in self._touched:
             T = pose.matrix
             near = [other for other in self._there if other != body and self._close(body, other)]
             self._touched[body] = {
-                other: self._depth(body, T, other) for other in near if self._gap(body, T, other) <= NEAR
+                other: self._depth(body, T, other)
+                for other in near
+                if self._gap(body, T, other) <= NEAR
             }
         return self._touched[body]
 
     def together(self, body: str, pose: Pose, other: str, other_pose: Pose) -> bool:
-        """Whether two bodies at these poses are a pair that touches at the start."""
+        """Check whether two bodies at these poses are a pair that touches at the start."""
         return other_pose == self._scene.bodies[other].pose and other in self.touched(body, pose)
 
     def way_out(self, body: str, pose: Pose, lift: float) -> Array:
-        """How a body at a pose is lifted off, (3,), metres: straight up, and away from what it touches beside it."""
+        """Return the lift-off direction of a body at a pose, (3,), metres: straight up, and away
+        from what it touches beside it.
+        """
         up = np.array([0.0, 0.0, lift])
         touched = self.touched(body, pose)
         if not touched:
             return up
+
         if (body, lift) not in self._ways:
             if all(self._gap(body, _moved(pose.matrix, up), other) > NEAR for other in touched):
                 return up
+
             turn = np.arange(DIRECTIONS) * 2 * math.pi / DIRECTIONS
             aside = SIDEWAYS * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(DIRECTIONS)])
             # Straight up is tried first: of equals the first one is taken.
             ways = [up, *(up + one for one in aside)]
-            around = [other for other in self._there if other != body and self._close(body, other, lift + SIDEWAYS)]
-            room = [min(self._gap(body, _moved(pose.matrix, way), other) for other in around) for way in ways]
+
+            around = [
+                other
+                for other in self._there
+                if other != body and self._close(body, other, lift + SIDEWAYS)
+            ]
+            room = [
+                min(self._gap(body, _moved(pose.matrix, way), other) for other in around)
+                for way in ways
+            ]
             self._ways[body, lift] = ways[int(np.argmax(np.round(room, 4)))]
+
         return self._ways[body, lift]
 
     def separates(self, body: str, T_world_body: Iterable[Array], other: str) -> bool:
-        """Whether a body that is moved through poses (4, 4) leaves one that it touches, and stays away."""
+        """Check whether a body that is moved through poses (4, 4) leaves one that it touches, and
+        stays away.
+        """
         deepest = self.touched(body, self._scene.bodies[body].pose).get(other, 0.0) + DEEPER
         clear = False
         for T in T_world_body:
@@ -93,11 +114,13 @@ class Touching:
         return bool(np.all(low <= high_other + reach) and np.all(low_other <= high + reach))
 
     def _gap(self, body: str, T: Array, other: str) -> float:
-        """Metres between a body at T (4, 4) and another one; 0 where they intersect."""
+        """Compute the distance of a body at T (4, 4) from another one, metres; 0 where they
+        intersect.
+        """
         return min(gap(a, b) for a, b in self._pairs(body, T, other))
 
     def _depth(self, body: str, T: Array, other: str) -> float:
-        """Metres by which a body at T (4, 4) is in another one."""
+        """Compute the penetration depth of a body at T (4, 4) in another one, metres."""
         return max(depth(a, b) for a, b in self._pairs(body, T, other))
 
     def _pairs(self, body: str, T: Array, other: str) -> Iterator[tuple[Any, Any]]:

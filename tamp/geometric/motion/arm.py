@@ -13,8 +13,8 @@ from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
-CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
-REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they turn out to be blocked
+CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
+REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
 SHORTCUTS = 30
 PATIENCE = 5
 
@@ -31,10 +31,11 @@ def plan_arm(
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
 ) -> Planned:
-    """A collision-free path of the arm from `start` to one of `goals`.
+    """Plan a collision-free path of the arm from `start` to one of `goals`.
 
-    The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the result has been
-    certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+    The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the
+    result has been certified by `checker.edge_free` as it is returned. Deterministic, as long as
+    the deadline does not cut it.
 
     Args:
         checker: The robot among the bodies.
@@ -68,6 +69,7 @@ def plan_arm(
         return Planned(None, Failure.LIMITS, 0)
     if not checker.free(conf(start)):
         return Planned(None, Failure.START, 0)
+
     candidates = candidates[[checker.free(conf(goal)) for goal in candidates]]
     if not len(candidates):
         return Planned(None, Failure.GOAL, 0)
@@ -80,6 +82,7 @@ def plan_arm(
             return Planned(np.array([start, goal]), None, checks)
         if deadline.passed:
             return Planned(None, Failure.TIME, checks)
+
     path, asked = connect(
         JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
         seed=int(rng.integers(1, 2**31)), checks=CHECKS * 4**effort, deadline=deadline, reach=REACH,
@@ -87,6 +90,7 @@ def plan_arm(
     checks += asked
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+
     path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
     checks += asked + len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))

@@ -17,12 +17,16 @@ from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
 
 YAW = (2,)
-WEIGHTS = np.array([1.0, 1.0, 0.5])  # a radian of turning weighs half a metre, as in OMPL's SE2 space
-CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level of effort allows four times as many
+WEIGHTS = np.array([1.0, 1.0, 0.5])
+"""A radian of turning weighs half a metre, as in OMPL's SE2 space."""
+
+CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 REACH = 1.0  # the longest edge of the trees, weighted metres
 SHORTCUTS = 30
 PATIENCE = 8
-CURVE_STEP = 0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
+CURVE_STEP = (
+    0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
+)
 RETREATS = (0.3, 0.6)  # metres to back away from furniture before turning
 PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
 
@@ -43,12 +47,13 @@ def plan_base(
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
 ) -> Planned:
-    """A collision-free path of the base from `start` to `goal`.
+    """Plan a collision-free path of the base from `start` to `goal`.
 
-    With "se2" the base moves in any direction: the straight line (translating and turning at once), turning before or
-    after driving, and backing away first are tried in this order, then RRTConnect; the path is shortened. With
-    "reeds-shepp" it drives like a car, along sampled curves of `turning_radius` metres. Every edge of the result has
-    been certified by `checker.edge_free` as it is returned. Deterministic, as long as the deadline does not cut it.
+    With "se2" the base moves in any direction: the straight line (translating and turning at once),
+    turning before or after driving, and backing away first are tried in this order, then
+    RRTConnect; the path is shortened. With "reeds-shepp" it drives like a car, along sampled curves
+    of `turning_radius` metres. Every edge of the result has been certified by `checker.edge_free`
+    as it is returned. Deterministic, as long as the deadline does not cut it.
 
     Args:
         checker: The robot, with what it holds, among the bodies.
@@ -64,8 +69,8 @@ def plan_base(
         shortcuts: Random cuts to try ("se2" only).
 
     Returns:
-        The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the numbers are
-        unwrapped, so that no edge turns the longer way round.
+        The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the
+        numbers are unwrapped, so that no edge turns the longer way round.
 
     Raises:
         ValueError: Unknown steering.
@@ -98,24 +103,36 @@ def plan_base(
         if path is None:
             plane = PlaneSpace(room.x, room.y)
             found, _ = connect(
-                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline, reach=REACH
+                plane,
+                start,
+                [goal],
+                edge_free,
+                seed=seed,
+                checks=budget,
+                deadline=deadline,
+                reach=REACH,
             )
             path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
+
         if path is not None and len(path) > 2:
             path, _ = shortcut(
-                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS, periodic=YAW
+                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS,
+                periodic=YAW,
             )  # fmt: skip
     else:
         plane = PlaneSpace(room.x, room.y, turning_radius)
         path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
+
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
     certified = all(edge_free(a, b) for a, b in pairwise(path))
     return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
 
 
-def _simple(start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline) -> Array | None:
-    """The first free one of the paths that a driver would think of."""
+def _simple(
+    start: Array, goal: Array, room: Room, edge_free: EdgeTest, deadline: Deadline
+) -> Array | None:
+    """Return the first free one of the paths that a driver would think of."""
     for path in _turn_and_drive(start, goal):
         if deadline.passed:
             return None
@@ -143,7 +160,9 @@ def _turn_and_drive(start: Array, goal: Array) -> Iterator[Array]:
 
 
 def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
-    """Bases reached from `base` by sliding out, without turning: backwards first, then ever more to the sides."""
+    """List bases reached from `base` by sliding out, without turning: backwards first, then ever
+    more to the sides.
+    """
     for angle in np.pi + np.array([0.0, 1.0, -1.0, 2.0, -2.0]) * np.pi / 4:
         heading = base[2] + angle
         for distance in RETREATS:
@@ -163,28 +182,41 @@ def _drive(
     budget: int,
     deadline: Deadline,
 ) -> Array | None:
-    """Reeds-Shepp curves from start to goal, sampled."""
+    """Compute Reeds-Shepp curves from start to goal, sampled."""
 
     def sampled(a: Array, b: Array) -> Array:
         return unwrap(curve(plane, a, b, CURVE_STEP), YAW)
 
     def curve_free(a: Array, b: Array) -> bool:
         samples = sampled(a, b)
-        return all(_inside(room, base) for base in samples) and all(edge_free(c, d) for c, d in pairwise(samples))
+        return all(_inside(room, base) for base in samples) and all(
+            edge_free(c, d) for c, d in pairwise(samples)
+        )
 
     vertices: list[Array] = [start, goal]
     if not curve_free(start, goal):
         found, _ = connect(
-            plane, start, [goal], curve_free, seed=seed, checks=budget, deadline=deadline, reach=2.0 * REACH
+            plane,
+            start,
+            [goal],
+            curve_free,
+            seed=seed,
+            checks=budget,
+            deadline=deadline,
+            reach=2.0 * REACH,
         )
+
         if found is None:
             return None
         rest = [*found[1:-1], goal]
         vertices = [start]
         while rest:  # from each vertex jump as far ahead as a free curve leads
-            jump = next((j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0)
+            jump = next(
+                (j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0
+            )
             vertices.append(rest[jump])
             rest = rest[jump + 1 :]
+
     pieces = [sampled(a, b) for a, b in pairwise(vertices)]
     return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW)
 

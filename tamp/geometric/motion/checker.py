@@ -1,4 +1,4 @@
-"""What a motion planner asks of the collision layer and of the robot."""
+"""The interfaces by which a motion planner asks the collision layer and the robot."""
 
 from __future__ import annotations
 
@@ -9,17 +9,21 @@ from tamp.geometric.scene.pose import Array
 
 
 class Checker(Protocol):
-    """Decides configurations and straight edges between them; `tamp.geometric.collision.collisions.Arrangement` is one.
+    """Decides configurations and straight edges between them;
+    `tamp.geometric.collision.collisions.Arrangement` is one.
 
-    A configuration has shape (10,): base x, y in metres, base yaw, then the arm's seven joints, radians.
+    A configuration has shape (10,): base x, y in metres, base yaw, then the arm's seven joints,
+    radians.
     """
 
     def free(self, conf: Array, /) -> bool:
-        """Whether nothing touches at `conf`."""
+        """Check whether nothing touches at `conf`."""
         ...
 
     def edge_free(self, start: Array, end: Array, /) -> bool:
-        """Whether nothing touches anywhere on the straight line of stored numbers from `start` to `end`."""
+        """Check whether nothing touches anywhere on the straight line of stored numbers from
+        `start` to `end`.
+        """
         ...
 
 

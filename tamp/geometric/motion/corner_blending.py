@@ -1,7 +1,9 @@
-"""The geometry along which a path is timed: a polyline whose corners are rounded where that is certified.
+"""The geometry along which a path is timed: a polyline whose corners are rounded where that is
+certified.
 
-What comes out is again a polyline, dense in the roundings. The timed trajectory runs between its nodes in straight
-lines, so that it stays exactly on what was checked; tangents and bends say how fast each node may be passed.
+What comes out is again a polyline, dense in the roundings. The timed trajectory runs between its
+nodes in straight lines, so that it stays exactly on what was checked; tangents and bends say how
+fast each node may be passed.
 """
 
 from __future__ import annotations
@@ -17,11 +19,15 @@ from tamp.geometric.scene.pose import Array
 
 EdgeTest = Callable[[Array, Array], bool]
 
-ROUNDING = 0.3  # the largest distance from a corner at which its rounding begins (radians or metres)
-SHARE = 0.4  # of an adjacent edge that a rounding may use: a straight part stays between two roundings
+ROUNDING = (
+    0.3  # the largest distance from a corner at which its rounding begins (radians or metres)
+)
+SHARE = (
+    0.4  # of an adjacent edge that a rounding may use: a straight part stays between two roundings
+)
 HALVINGS = 3  # smaller roundings to try where larger ones are not free
 CHORD = 0.06  # length of the chords of a rounding, of which there are between 2 and 8
-TICK = 0.05  # seconds: a corner is passed unrounded if its jump of the velocity takes the acceleration limit no longer
+TICK = 0.05  # seconds: a corner is passed unrounded if its jump of velocity takes no longer
 STEP = 0.1  # spacing of the nodes on straight parts, at which the acceleration may change
 MOST = 10  # nodes on one straight part
 
@@ -34,7 +40,8 @@ class Rail:
         positions: Shape (m, d).
         stations: Path parameter of the nodes, shape (m,), increasing from 0.
         tangents: First derivative at each node, shape (m, d).
-        steepest: Largest magnitude of the first derivative beside each node, shape (m, d); for the speed limits.
+        steepest: Largest magnitude of the first derivative beside each node, shape (m, d); for the
+            speed limits.
         bends_before: Second derivative just before each node, shape (m, d).
         bends_after: The same just after it.
         straight: For each interval whether it may be sampled more finely, shape (m - 1,).
@@ -58,8 +65,8 @@ class Corner:
         before: Unit direction of the edge that leads to it.
         after: Unit direction of the edge that leads away.
         reach: If positive, it is rounded by a parabola from so far before it to so far after it.
-        window: If positive, it is one sample of a smooth curve and passed as it is: no other sample stands nearer.
-            If neither is, the motion rests there.
+        window: If positive, it is one sample of a smooth curve and passed as it is: no other sample
+            stands nearer. If neither is, the motion rests there.
     """
 
     vertex: Array
@@ -76,14 +83,20 @@ class Corner:
     @property
     def bend(self) -> Array:
         """Second derivative within the rounding; zero for a corner that is not rounded."""
-        return (self.after - self.before) / (2.0 * self.reach) if self.reach else np.zeros_like(self.before)
+        return (
+            (self.after - self.before) / (2.0 * self.reach)
+            if self.reach
+            else np.zeros_like(self.before)
+        )
 
     def shares(self) -> Array:
-        """Parameters in [0, 1] between which the chords of the rounding run, evenly spaced in the station."""
+        """Return parameters in [0, 1] between which the chords of the rounding run, evenly spaced
+        in the station.
+        """
         return np.linspace(0.0, 1.0, int(np.clip(np.ceil(2.0 * self.reach / CHORD), 2, 8)) + 1)
 
     def curve(self) -> Array:
-        """The rounding at those parameters, shape (chords + 1, d)."""
+        """Compute the rounding at those parameters, shape (chords + 1, d)."""
         t = self.shares()[:, None]
         return self.vertex + self.reach * (t**2 * self.after - (1 - t) ** 2 * self.before)
 
@@ -91,8 +104,9 @@ class Corner:
 def corners(path: Array, acceleration: Array, edge_free: EdgeTest | None = None) -> list[Corner]:
     """Decide how to pass each vertex of a path; at its ends the motion rests.
 
-    A corner is rounded if `edge_free` certifies the chords of the rounding. Vertices that sample a smooth curve so
-    closely that the velocity jumps by no more than the acceleration limit allows in TICK seconds are passed unrounded.
+    A corner is rounded if `edge_free` certifies the chords of the rounding. Vertices that sample a
+    smooth curve so closely that the velocity jumps by no more than the acceleration limit allows in
+    TICK seconds are passed unrounded.
 
     Args:
         path: Shape (n, d), n >= 2, no two successive rows equal.
@@ -103,14 +117,26 @@ def corners(path: Array, acceleration: Array, edge_free: EdgeTest | None = None)
     lengths = np.linalg.norm(steps, axis=1)
     along = steps / lengths[:, None]
     inner = [
-        _corner(path[k], along[k - 1], along[k], float(min(lengths[k - 1], lengths[k])), acceleration, edge_free)
+        _corner(
+            path[k],
+            along[k - 1],
+            along[k],
+            float(min(lengths[k - 1], lengths[k])),
+            acceleration,
+            edge_free,
+        )
         for k in range(1, len(path) - 1)
     ]
     return [Corner(path[0], along[0], along[0]), *inner, Corner(path[-1], along[-1], along[-1])]
 
 
 def _corner(
-    vertex: Array, before: Array, after: Array, shorter: float, acceleration: Array, edge_free: EdgeTest | None
+    vertex: Array,
+    before: Array,
+    after: Array,
+    shorter: float,
+    acceleration: Array,
+    edge_free: EdgeTest | None,
 ) -> Corner:
     with np.errstate(divide="ignore"):
         smooth = TICK**2 * float(np.min(acceleration / np.abs(after - before)))
@@ -118,49 +144,82 @@ def _corner(
         return Corner(vertex, before, after, window=0.5 * shorter)
     if edge_free is not None:
         for halving in range(HALVINGS + 1):
-            rounded = Corner(vertex, before, after, reach=min(SHARE * shorter, ROUNDING) * 0.5**halving)
+            rounded = Corner(
+                vertex, before, after, reach=min(SHARE * shorter, ROUNDING) * 0.5**halving
+            )
             if all(edge_free(a, b) for a, b in pairwise(rounded.curve())):
                 return rounded
     return Corner(vertex, before, after)
 
 
-_Node = tuple[Array, float, Array, Array, Array, Array, int]  # Rail's columns, then the edge it lies on, or -1
+_Node = tuple[
+    Array, float, Array, Array, Array, Array, int
+]  # Rail's columns, then the edge it lies on, or -1
 
 
 def lay(passed: list[Corner]) -> Rail:
-    """The rail through corners at which the motion does not rest, except at the first and the last."""
+    """Lay the rail through corners at which the motion does not rest, except at the first and the
+    last.
+    """
     *columns, edges = zip(*_nodes(passed), strict=True)
     on = np.array(edges)
-    return Rail(*(np.array(column) for column in columns), straight=(on[:-1] == on[1:]) & (on[1:] >= 0))
+    return Rail(
+        *(np.array(column) for column in columns), straight=(on[:-1] == on[1:]) & (on[1:] >= 0)
+    )
 
 
 def _nodes(passed: list[Corner]) -> Iterator[_Node]:
-    """The nodes in order: those of each edge's straight part, then those of the corner at its end."""
+    """Yield the nodes in order: those of each edge's straight part, then those of the corner at its
+    end.
+    """
     lengths = [float(np.linalg.norm(b.vertex - a.vertex)) for a, b in pairwise(passed)]
-    station = 0.0  # of the vertex at the start of the edge; a rounding counts as long as the two legs it replaces
+    # Of the vertex at the start of the edge; a rounding counts as long as the two legs it replaces.
+    station = 0.0
     for k, (first, last) in enumerate(pairwise(passed)):
         extent, u = lengths[k], first.after
         if not _covered(first, last, extent):
             yield from _straight(first, last, station, extent, k)
+
         station += extent
         if k + 2 == len(passed):
             return
+
         v = last.after
         if last.reach:
             for t, position in zip(last.shares()[1:-1], last.curve()[1:-1], strict=True):
                 tangent = (1 - t) * u + t * v
-                yield position, station + (2 * t - 1) * last.reach, tangent, np.abs(tangent), last.bend, last.bend, -1
+                yield (
+                    position,
+                    station + (2 * t - 1) * last.reach,
+                    tangent,
+                    np.abs(tangent),
+                    last.bend,
+                    last.bend,
+                    -1,
+                )
         else:
             gaps = [
                 extent if _covered(first, last, extent) else last.window,
                 lengths[k + 1] if _covered(last, passed[k + 2], lengths[k + 1]) else last.window,
             ]
-            bend = (v - u) / (0.5 * sum(gaps))  # the jump, spread over the time between the middles of the intervals
-            yield last.vertex, station, 0.5 * (u + v), np.maximum(np.abs(u), np.abs(v)), bend, bend, -1
+            # The jump, spread over the time between the middles of the intervals.
+            bend = (v - u) / (0.5 * sum(gaps))
+
+            yield (
+                last.vertex,
+                station,
+                0.5 * (u + v),
+                np.maximum(np.abs(u), np.abs(v)),
+                bend,
+                bend,
+                -1,
+            )
 
 
-def _straight(first: Corner, last: Corner, station: float, extent: float, edge: int) -> Iterator[_Node]:
-    """The part of an edge that belongs to neither corner, with nodes at both ends."""
+def _straight(
+    first: Corner, last: Corner, station: float, extent: float, edge: int
+) -> Iterator[_Node]:
+    """Return the part of an edge that belongs to neither corner, with nodes at both ends."""
     u, zero = first.after, np.zeros_like(first.after)
     begin, end = first.taken, extent - last.taken
     parts = int(np.clip(np.ceil((end - begin) / STEP), 1, MOST))
@@ -172,5 +231,5 @@ def _straight(first: Corner, last: Corner, station: float, extent: float, edge: 
 
 
 def _covered(first: Corner, last: Corner, extent: float) -> bool:
-    """Whether the corners at both ends take the whole edge."""
+    """Check whether the corners at both ends take the whole edge."""
     return first.taken + last.taken > (1.0 - 1e-6) * extent

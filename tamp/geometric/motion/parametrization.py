@@ -1,6 +1,8 @@
-"""How fast a rail may be run along: toppra's reachability analysis. The only file that imports toppra, 0.75 s.
+"""Time-optimal path parameterization of a rail: toppra's reachability analysis. The only file that
+imports toppra, 0.75 s.
 
-Pham and Pham, "A new approach to time-optimal path parameterization based on reachability analysis", T-RO 2018.
+Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
+analysis", T-RO 2018.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ with undrawn():
 
 
 def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
-    """The fastest rate of the station at each node, from rest to rest.
+    """Compute the fastest rate of the station at each node, from rest to rest.
 
     Args:
         rail: The geometry.
@@ -29,7 +31,12 @@ def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
     Returns:
         Shape (m,), or None when the analysis fails numerically.
     """
-    algorithm = TOPPRA([_Limits(rail, velocity, acceleration)], _Interval(rail), rail.stations, solver_wrapper="seidel")
+    algorithm = TOPPRA(
+        [_Limits(rail, velocity, acceleration)],
+        _Interval(rail),
+        rail.stations,
+        solver_wrapper="seidel",
+    )
     rates = algorithm.compute_parameterization(0.0, 0.0)[1]
     if rates is None or not np.all(np.isfinite(rates)) or np.any(rates[1:-1] <= 0.0):
         return None
@@ -37,7 +44,8 @@ def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
 
 
 class _Limits(LinearConstraint):
-    """a u + b x <= limit at both ends of every interval, with x the squared rate of the station and u its acceleration.
+    """Constraints a u + b x <= limit at both ends of every interval, with x the squared rate of the
+    station and u its acceleration.
 
     toppra's own joint limits know one second derivative per node; a rail has one on either side.
     """
@@ -48,18 +56,31 @@ class _Limits(LinearConstraint):
         before, after = rail.bends_before, rail.bends_after
         gaps = np.diff(rail.stations)[:, None]
         start = rail.tangents, after
-        end = rail.tangents[1:] + 2.0 * gaps * before[1:], before[1:]  # x at the interval's end is x + 2 gap u
-        self.rows = [np.hstack([s, np.vstack([e, s[-1:]])]) for s, e in zip(start, end, strict=True)]
+        # At the interval's end x is x + 2 gap u.
+        end = rail.tangents[1:] + 2.0 * gaps * before[1:], before[1:]
+        self.rows = [
+            np.hstack([s, np.vstack([e, s[-1:]])]) for s, e in zip(start, end, strict=True)
+        ]
         self.limits = np.tile(acceleration, 4)
         with np.errstate(divide="ignore"):
             fastest = np.min(velocity / rail.steepest, axis=1)
         self.bounds = np.stack([np.zeros(len(fastest)), fastest**2], axis=1)
 
-    def compute_constraint_params(self, path: Any, gridpoints: Array, *_: Any, **__: Any) -> tuple[Any, ...]:
-        """The coefficients a, b, c, F, g and the bounds of u and x, as toppra wants them."""
+    def compute_constraint_params(
+        self, path: Any, gridpoints: Array, *_: Any, **__: Any
+    ) -> tuple[Any, ...]:
+        """Return the coefficients a, b, c, F, g and the bounds of u and x, as toppra wants them."""
         a, b = self.rows
         identity = np.eye(a.shape[1])
-        return a, b, np.zeros_like(a), np.vstack([identity, -identity]), self.limits, None, self.bounds
+        return (
+            a,
+            b,
+            np.zeros_like(a),
+            np.vstack([identity, -identity]),
+            self.limits,
+            None,
+            self.bounds,
+        )
 
 
 class _Interval:

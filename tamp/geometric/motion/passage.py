@@ -1,7 +1,9 @@
-"""How wide the way is that leads the base from its start to anywhere: what lies behind a door that is too narrow.
+"""The width of the way that leads the base from its start to anywhere: what lies behind a door that
+is too narrow.
 
-The base is thought of as the largest disc in it, and of the fixed bodies there are only slices at its height: where
-even the disc cannot go, the base cannot. Movable bodies could be taken away, so they are left out.
+The base is thought of as the largest disc in it, and of the fixed bodies there are only slices at
+its height: where even the disc cannot go, the base cannot. Movable bodies could be taken away, so
+they are left out.
 """
 
 from __future__ import annotations
@@ -50,7 +52,9 @@ class Slice:
 
 @dataclass(frozen=True)
 class Gap:
-    """The narrowest place (2,) of the widest way: its width and the base's, metres, and the bodies beside it."""
+    """The narrowest place (2,) of the widest way: its width and the base's, metres, and the bodies
+    beside it.
+    """
 
     place: tuple[float, float]
     width: float
@@ -105,18 +109,28 @@ class Passage:
         return found
 
     def clearance(self, points: Array) -> Array:
-        """The distances (n,) of points (n, 2) from the slices; infinite without any."""
+        """Compute the distances (n,) of points (n, 2) from the slices; infinite without any."""
         least = np.full(len(points), np.inf)
         for piece in self.slices:
             np.minimum(least, distances(points, piece.corners), out=least)
         return least
 
     def open_towards(self, target: Array, reach: float) -> bool:
-        """Whether the disc gets within `reach` metres of a point (2,) in a straight line, or in two."""
+        """Check whether the disc gets within `reach` metres of a point (2,) in a straight line, or
+        in two.
+        """
         x, y = float(target[0]), float(target[1])
-        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):  # as for most poses, after the first few
+        # As for most poses, after the first few.
+        if any(math.hypot(a - x, b - y) <= reach for a, b in self._open):
             return True
-        for middle in (None, *(self._start + 1.2 * np.array([math.cos(a), math.sin(a)]) for a in np.arange(8) * 0.785)):
+
+        for middle in (
+            None,
+            *(
+                self._start + 1.2 * np.array([math.cos(a), math.sin(a)])
+                for a in np.arange(8) * 0.785
+            ),
+        ):
             first = self._start if middle is None else middle
             way = target - first
             distance = float(np.linalg.norm(way))
@@ -125,6 +139,7 @@ class Passage:
             if all(self._inside(point) for point in corners) and self._free(corners):
                 self._open.append((float(last[0]), float(last[1])))
                 return True
+
         return False
 
     def _inside(self, point: Array) -> bool:
@@ -149,7 +164,9 @@ class Passage:
 
     @cached_property
     def _widest(self) -> tuple[Array, NDArray[np.intp]]:
-        """For each cell the clearance of the widest way from the start, and the cell before it on that way."""
+        """For each cell the clearance of the widest way from the start, and the cell before it on
+        that way.
+        """
         xs, ys, free = self._floor
         columns = len(ys)
         flat = free.ravel().tolist()
@@ -164,6 +181,7 @@ class Passage:
             width = -negative
             if width < best[cell]:
                 continue
+
             row, column = divmod(cell, columns)
             for r in (row - 1, row, row + 1):
                 for c in (column - 1, column, column + 1):
@@ -174,10 +192,13 @@ class Passage:
                             best[other] = through
                             before[other] = cell
                             heapq.heappush(queue, (-through, other))
+
         return np.array(best).reshape(free.shape), before
 
     def closed(self, low: Array, high: Array, reach: float) -> Gap | None:
-        """The gap that keeps the base from within `reach` metres of a box (2,), (2,); None unless that is proven."""
+        """Return the gap that keeps the base from within `reach` metres of a box (2,), (2,); None
+        unless that is proven.
+        """
         if not self.known or self.open_towards((low + high) / 2, reach):
             return None
         xs, ys, _ = self._floor
@@ -188,21 +209,28 @@ class Passage:
         if not near.any() or float(widest[near].max()) >= self.radius - self.slack:
             return None
         _, _, free = self._floor
-        standing = near & (free >= self.radius)  # behind a door there is room to stand; beside a wall there is no door
-        return self._gap(int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0))))
+        # Behind a door there is room to stand; beside a wall there is no door.
+        standing = near & (free >= self.radius)
+        return self._gap(
+            int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
+        )
 
     def narrow(self, goal: Array) -> Gap | None:
-        """The narrowest place on the widest way to a base position (2,), where the base hardly fits through it."""
+        """Find the narrowest place on the widest way to a base position (2,), where the base hardly
+        fits through it.
+        """
         if not self.known:
             return None
         xs, ys, _ = self._floor
-        target = int(np.argmin(np.abs(xs - goal[0]))) * len(ys) + int(np.argmin(np.abs(ys - goal[1])))
+        target = int(np.argmin(np.abs(xs - goal[0]))) * len(ys) + int(
+            np.argmin(np.abs(ys - goal[1]))
+        )
         gap = self._gap(target)
         beside = math.dist(gap.place, goal[:2]) < self.radius
         return gap if gap.width <= DOOR * gap.base and not beside else None
 
     def _gap(self, target: int) -> Gap:
-        """The narrowest place on the way to a cell."""
+        """Find the narrowest place on the way to a cell."""
         xs, ys, free = self._floor
         _, before = self._widest
         flat = free.ravel()
@@ -211,6 +239,7 @@ class Passage:
             if flat[cell] < flat[least]:
                 least = cell
             cell = int(before[cell])
+
         point = np.array([xs[least // len(ys)], ys[least % len(ys)]])
         place = (float(point[0]), float(point[1]))
         nearest = [(piece.body, _nearest(point, piece.corners)) for piece in self.slices]
@@ -218,25 +247,35 @@ class Passage:
         name, first = nearest[0]
         if flat[least] <= 0.0:
             return Gap(place, 0.0, 2 * self.radius, (name,))
+
         across = first - point
         for other, second in nearest[1:]:
-            if (second - point) @ across < -0.5 * np.linalg.norm(across) * np.linalg.norm(second - point):
+            if (second - point) @ across < -0.5 * np.linalg.norm(across) * np.linalg.norm(
+                second - point
+            ):
                 names = tuple(dict.fromkeys((name, other)))
                 return Gap(place, float(np.linalg.norm(second - first)), 2 * self.radius, names)
+
         return Gap(place, 2 * float(flat[least]), 2 * self.radius, (name,))
 
 
 def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
-    """The radius of the largest disc about the base's origin that is in the base, and between which heights."""
+    """Compute the radius of the largest disc about the base's origin that is in the base, and
+    between which heights.
+    """
     parts = robot.links[0].parts
-    if len(parts) != 1 or not isinstance(parts[0].shape, Box) or parts[0].pose.quaternion[:3] != (0.0, 0.0, 0.0):
+    if (
+        len(parts) != 1
+        or not isinstance(parts[0].shape, Box)
+        or parts[0].pose.quaternion[:3] != (0.0, 0.0, 0.0)
+    ):
         return None
     size, (x, y, z) = parts[0].shape.size, parts[0].pose.position
     return min(size[0] / 2 - abs(x), size[1] / 2 - abs(y)), (z - size[2] / 2, z + size[2] / 2)
 
 
 def _nearest(point: Array, corners: Array) -> Array:
-    """The point of a polygon's edge that is nearest to a point (2,)."""
+    """Return the point of a polygon's edge that is nearest to a point (2,)."""
     best, least = corners[0], math.inf
     for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         edge = b - a

@@ -1,7 +1,7 @@
 """Polylines in configuration space: arrays of shape (n, d), one configuration a row.
 
-Between two rows the motion is the straight line of the stored numbers. A periodic coordinate (the base's yaw) is
-therefore stored unwrapped: 3.1 then 3.2, not 3.1 then -3.08.
+Between two rows the motion is the straight line of the stored numbers. A periodic coordinate (the
+base's yaw) is therefore stored unwrapped: 3.1 then 3.2, not 3.1 then -3.08.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ TURN = 2.0 * np.pi
 
 
 def nearest(reference: Array, conf: Array, periodic: Sequence[int] = ()) -> Array:
-    """`conf`, shape (d,), with its periodic coordinates moved by whole turns to within half a turn of `reference`."""
+    """Return `conf`, shape (d,), with its periodic coordinates moved by whole turns to within half
+    a turn of `reference`.
+    """
     moved = np.array(conf, dtype=float)
     for i in periodic:
         turns = round((reference[i] - moved[i]) / TURN)
@@ -26,7 +28,9 @@ def nearest(reference: Array, conf: Array, periodic: Sequence[int] = ()) -> Arra
 
 
 def unwrap(path: Array, periodic: Sequence[int] = ()) -> Array:
-    """The same path, shape (n, d), with no edge turning the longer way round. The first row stays as it is."""
+    """Return the same path, shape (n, d), with no edge turning the longer way round. The first row
+    stays as it is.
+    """
     rows = [np.array(path[0], dtype=float)]
     for conf in path[1:]:
         rows.append(nearest(rows[-1], conf, periodic))
@@ -34,23 +38,27 @@ def unwrap(path: Array, periodic: Sequence[int] = ()) -> Array:
 
 
 def edge_lengths(path: Array, weights: Array | None = None) -> Array:
-    """Euclidean length of each edge, shape (n - 1,), each coordinate scaled by its weight."""
+    """Compute the Euclidean length of each edge, shape (n - 1,), each coordinate scaled by its
+    weight.
+    """
     steps = np.diff(path, axis=0)
     return np.linalg.norm(steps if weights is None else steps * weights, axis=1)
 
 
 def length(path: Array, weights: Array | None = None) -> float:
-    """Length of the whole path, in the weighted unit."""
+    """Compute the length of the whole path, in the weighted unit."""
     return float(edge_lengths(path, weights).sum())
 
 
 def at(path: Array, distances: Array, weights: Array | None = None) -> Array:
-    """The configurations at `distances` (m,) along the path, in the weighted unit; shape (m, d)."""
+    """Interpolate the configurations at `distances` (m,) along the path, in the weighted unit;
+    shape (m, d).
+    """
     stations = np.concatenate([[0.0], np.cumsum(edge_lengths(path, weights))])
     return np.stack([np.interp(distances, stations, column) for column in path.T], axis=-1)
 
 
 def without_repeats(path: Array) -> Array:
-    """The path without rows that equal their predecessor; at least one row stays."""
+    """Return the path without rows that equal their predecessor; at least one row stays."""
     keep = np.concatenate([[True], np.any(np.diff(path, axis=0) != 0.0, axis=1)])
     return path[keep]

@@ -1,4 +1,4 @@
-"""What a motion planner gives back: a path, or why there is none."""
+"""The result of a motion planner: a path, or why there is none."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """RRTConnect, the bidirectional sampling-based planner. The only file that knows OMPL.
 
 Kuffner and LaValle, "RRT-Connect: An efficient approach to single-query path planning", ICRA 2000.
-OMPL's states are read by explicit slices: iterating over one crashes the process, and nothing checks bounds.
+OMPL's states are read by explicit slices: iterating over one crashes the process, and nothing
+checks bounds.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class JointSpace:
     upper: Sequence[float]
 
     def build(self) -> Any:
-        """OMPL's space."""
+        """Build OMPL's space."""
         space = ob.RealVectorStateSpace(len(self.lower))
         bounds = ob.RealVectorBounds(len(self.lower))
         for i, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
@@ -42,7 +43,7 @@ class JointSpace:
         return space
 
     def read(self, state: Any) -> list[float]:
-        """The numbers of a state."""
+        """Return the numbers of a state."""
         return state[0 : len(self.lower)]
 
     def write(self, state: Any, conf: Array) -> None:
@@ -55,8 +56,9 @@ class PlaneSpace:
     """Positions and headings in a rectangle: x and y limits in metres; the yaw wraps.
 
     Attributes:
-        turning_radius: None for a base that moves in any direction; a radius in metres makes the edges Reeds-Shepp
-            curves (Reeds and Shepp, "Optimal paths for a car that goes both forwards and backwards", 1990).
+        turning_radius: None for a base that moves in any direction; a radius in metres makes the
+            edges Reeds-Shepp curves (Reeds and Shepp, "Optimal paths for a car that goes both
+            forwards and backwards", 1990).
     """
 
     x: tuple[float, float]
@@ -64,8 +66,12 @@ class PlaneSpace:
     turning_radius: float | None = None
 
     def build(self) -> Any:
-        """OMPL's space."""
-        space = ob.SE2StateSpace() if self.turning_radius is None else ob.ReedsSheppStateSpace(self.turning_radius)
+        """Build OMPL's space."""
+        space = (
+            ob.SE2StateSpace()
+            if self.turning_radius is None
+            else ob.ReedsSheppStateSpace(self.turning_radius)
+        )
         bounds = ob.RealVectorBounds(2)
         for i, (low, high) in enumerate((self.x, self.y)):
             bounds.setLow(i, float(low))
@@ -74,11 +80,13 @@ class PlaneSpace:
         return space
 
     def read(self, state: Any) -> tuple[float, float, float]:
-        """The numbers of a state."""
+        """Return the numbers of a state."""
         return state.getX(), state.getY(), state.getYaw()
 
     def write(self, state: Any, conf: Array) -> None:
-        """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's bounds."""
+        """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's
+        bounds.
+        """
         state.setXY(float(conf[0]), float(conf[1]))
         yaw = math.atan2(math.sin(conf[2]), math.cos(conf[2]))
         state.setYaw(-math.pi if yaw >= math.pi else yaw)
@@ -87,16 +95,22 @@ class PlaneSpace:
 class _WholeEdges(ob.MotionValidator):
     """Asks for a whole edge in one call, and counts."""
 
-    def __init__(self, information: ob.SpaceInformation, space: JointSpace | PlaneSpace, edge_free: EdgeTest) -> None:
+    def __init__(
+        self, information: ob.SpaceInformation, space: JointSpace | PlaneSpace, edge_free: EdgeTest
+    ) -> None:
         super().__init__(information)
         self.space = space
         self.edge_free = edge_free
         self.checks = 0
 
     def checkMotion(self, start: Any, end: Any) -> bool:
-        """Called back by the planner for every edge that it wants to add; it plans from the goals to the start."""
+        """Check an edge that the planner wants to add, which calls this back; it plans from the
+        goals to the start.
+        """
         self.checks += 1
-        return bool(self.edge_free(np.array(self.space.read(end)), np.array(self.space.read(start))))
+        return bool(
+            self.edge_free(np.array(self.space.read(end)), np.array(self.space.read(start)))
+        )
 
 
 def connect(
@@ -110,10 +124,12 @@ def connect(
     deadline: Deadline,
     reach: float,
 ) -> tuple[Array | None, int]:
-    """Search a path from `start` to any of `goals`, all of which the caller knows to be free and within the limits.
+    """Search a path from `start` to any of `goals`, all of which the caller knows to be free and
+    within the limits.
 
-    The result depends on the arguments alone, as long as the deadline does not cut the search. An exception raised by
-    `edge_free` (or by a signal handler while it runs) ends the search and reaches the caller.
+    The result depends on the arguments alone, as long as the deadline does not cut the search. An
+    exception raised by `edge_free` (or by a signal handler while it runs) ends the search and
+    reaches the caller.
 
     Args:
         space: What the numbers of a configuration mean, and their limits.
@@ -126,30 +142,41 @@ def connect(
         reach: The longest edge of the trees, in the space's unit (radians or metres).
 
     Returns:
-        The vertices of the path (n, d), from exactly `start` to exactly one of `goals` (in a PlaneSpace: yaws in
-        [-pi, pi)), or None; and the number of edges asked for. None at once when the space's bounds leave out the
-        start or all goals: OMPL would wait for others until the time is up.
+        The vertices of the path (n, d), from exactly `start` to exactly one of `goals` (in a
+        PlaneSpace: yaws in [-pi, pi)), or None; and the number of edges asked for. None at once
+        when the space's bounds leave out the start or all goals: OMPL would wait for others until
+        the time is up.
     """
-    ou.setLogLevel(ou.LOG_NONE)  # setSeed logs an error that is none: the generators made below are all seeded by it
+    # setSeed logs an error that is none: the generators made below are all seeded by it.
+    ou.setLogLevel(ou.LOG_NONE)
     ou.RNG.setSeed(seed)
+
     built = space.build()
     information = ob.SpaceInformation(built)
     validator = _WholeEdges(information, space, edge_free)
     information.setMotionValidator(validator)
-    information.setStateValidityChecker(ob.AllValidStateValidityChecker(information))  # an edge's test covers its ends
+    # An edge's test covers its ends.
+    information.setStateValidityChecker(ob.AllValidStateValidityChecker(information))
     information.setup()
     problem = ob.ProblemDefinition(information)
-    # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree of the first has
-    # grown, which it never does where the first is shut in.
-    first, ends = _state(built, space, start), [_state(built, space, goal) for goal in goals if _finite(goal)]
+
+    # Planned backwards: OMPL plants all of its starts at once, but a second goal only when the tree
+    # of the first has grown, which it never does where the first is shut in.
+    first, ends = (
+        _state(built, space, start),
+        [_state(built, space, goal) for goal in goals if _finite(goal)],
+    )
     inside = [state for state in ends if built.satisfiesBounds(state)]
     if not inside or not _finite(start) or not built.satisfiesBounds(first):
         return None, 0
+
     for state in inside:
         problem.addStartState(state)
+
     root = ob.GoalStates(information)
     root.addState(first)
     problem.setGoal(root)
+
     planner = og.RRTConnect(information)
     planner.setRange(reach)
     planner.setProblemDefinition(problem)
@@ -160,20 +187,27 @@ def connect(
     def finished() -> bool:
         nonlocal iterations
         iterations += 1
-        return validator.checks >= checks or iterations >= ITERATIONS_PER_CHECK * checks or deadline.passed
+        return (
+            validator.checks >= checks
+            or iterations >= ITERATIONS_PER_CHECK * checks
+            or deadline.passed
+        )
 
     planner.solve(ob.PlannerTerminationCondition(finished))
     if not problem.hasExactSolution():
         return None, validator.checks
+
     solution: Any = problem.getSolutionPath()
     states = (solution.getState(i) for i in reversed(range(solution.getStateCount())))
     return np.array([space.read(state) for state in states]), validator.checks
 
 
 def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
-    """Samples of the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape (n, 3).
+    """Sample the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape
+    (n, 3).
 
-    The ends are exactly `start` and `end`. Where the car reverses between two samples, the tip of the cusp is cut.
+    The ends are exactly `start` and `end`. Where the car reverses between two samples, the tip of
+    the cusp is cut.
     """
     built = plane.build()
     first, last, between = (_state(built, plane, conf) for conf in (start, end, start))
@@ -186,7 +220,7 @@ def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
 
 
 def _finite(conf: Array) -> bool:
-    """Whether all numbers are: OMPL holds what is none to be within any bounds."""
+    """Check whether all numbers are finite: OMPL holds what is none to be within any bounds."""
     return bool(np.isfinite(conf).all())
 
 

@@ -1,6 +1,7 @@
 """Shorten a path by straight cuts between random points of it.
 
-Geraerts and Overmars, "Creating high-quality paths for motion planning", IJRR 2007, section 4: random shortcuts.
+Geraerts and Overmars, "Creating high-quality paths for motion planning", IJRR 2007, section 4:
+random shortcuts.
 """
 
 from __future__ import annotations
@@ -27,9 +28,11 @@ def shortcut(
     weights: Array | None = None,
     periodic: Sequence[int] = (),
 ) -> tuple[Array, int]:
-    """A shorter path with the same ends, whose edges are free or parts of the given path's edges.
+    """Shorten a path between the same ends by edges that are free or parts of the given path's
+    edges.
 
-    Vertices that can be skipped are skipped first; then cuts join random points, on the edges as well as at vertices.
+    Vertices that can be skipped are skipped first; then cuts join random points, on the edges as
+    well as at vertices.
 
     Args:
         path: Shape (n, d).
@@ -54,34 +57,45 @@ def shortcut(
         i, j = bisect_right(stations, low * total) - 1, bisect_right(stations, high * total) - 1
         if i == j:
             continue
+
         first, second = (
-            path[k] + (share * total - stations[k]) / (stations[k + 1] - stations[k]) * (path[k + 1] - path[k])
+            path[k]
+            + (share * total - stations[k])
+            / (stations[k + 1] - stations[k])
+            * (path[k + 1] - path[k])
             for k, share in ((i, low), (j, high))
         )
+
         landing = nearest(first, second, periodic)
         if (high - low) * total - math.dist(first * scale, landing * scale) < GAIN * total:
             continue
+
         checks += 1
         if not edge_free(first, landing):
             refused += 1
             continue
+
         refused = 0
-        path = without_repeats(np.concatenate([path[: i + 1], [first, landing], path[j + 1 :] + (landing - second)]))
+        path = without_repeats(
+            np.concatenate([path[: i + 1], [first, landing], path[j + 1 :] + (landing - second)])
+        )
         stations = _stations(path, scale)
+
     return path, checks
 
 
 def _stations(path: Array, weights: Array) -> list[float]:
-    """The distance of each vertex from the start, along the path."""
+    """Compute the distance of each vertex from the start, along the path."""
     return [0.0, *np.cumsum(edge_lengths(path, weights)).tolist()]
 
 
 def _skip_vertices(
     path: Array, edge_free: Callable[[Array, Array], bool], periodic: Sequence[int]
 ) -> tuple[Array, int]:
-    """From each kept vertex jump as far ahead as halving steps find a free edge."""
+    """Jump from each kept vertex as far ahead as halving steps find a free edge."""
     kept = [path[0]]
-    shift = np.zeros(path.shape[1])  # whole turns that the cuts so far have taken out of the rest of the path
+    # Whole turns that the cuts so far have taken out of the rest of the path.
+    shift = np.zeros(path.shape[1])
     i, checks = 0, 0
     while i < len(path) - 1:
         jump = len(path) - 1 - i

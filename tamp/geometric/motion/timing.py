@@ -17,7 +17,9 @@ from tamp.geometric.scene.pose import Array
 
 @dataclass(frozen=True, eq=False)
 class Timed:
-    """A trajectory: positions (m, d) at times (m,) in seconds from 0, increasing, and straight lines in between."""
+    """A trajectory: positions (m, d) at times (m,) in seconds from 0, increasing, and straight
+    lines in between.
+    """
 
     times: Array
     positions: Array
@@ -36,22 +38,27 @@ def time_path(
 ) -> Timed:
     """Time a path, from rest to rest, as fast as the limits allow.
 
-    The trajectory runs along the polyline itself and rests at its corners, except where `edge_free` certifies a
-    rounding, whose chords are then part of the result, and where vertices sample a smooth curve closely. Every vertex
-    that is not rounded is a sample. Velocities between samples, and accelerations as differences of those velocities,
-    stay within the limits.
+    The trajectory runs along the polyline itself and rests at its corners, except where `edge_free`
+    certifies a rounding, whose chords are then part of the result, and where vertices sample a
+    smooth curve closely. Every vertex that is not rounded is a sample. Velocities between samples,
+    and accelerations as differences of those velocities, stay within the limits.
 
     Args:
         path: Shape (n, d); angles unwrapped.
         velocity: Limits, shape (d,), in the path's units per second.
         acceleration: Limits, shape (d,), per second squared.
-        edge_free: Whether the straight edge between two rows is free; None: the polyline is kept exactly.
+        edge_free: Whether the straight edge between two rows is free; None: the polyline is kept
+            exactly.
 
     Returns:
-        From the path's first row to its last, both exactly; samples at most about TICK seconds apart on straight parts.
+        From the path's first row to its last, both exactly; samples at most about TICK seconds
+        apart on straight parts.
     """
     path = without_repeats(np.asarray(path, dtype=float))
-    velocity, acceleration = np.asarray(velocity, dtype=float), np.asarray(acceleration, dtype=float)
+    velocity, acceleration = (
+        np.asarray(velocity, dtype=float),
+        np.asarray(acceleration, dtype=float),
+    )
     if len(path) == 1:
         return Timed(np.zeros(1), path)
     passed = corners(path, acceleration, edge_free)
@@ -71,7 +78,7 @@ def prefetch() -> threading.Thread:
 
 
 def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
-    """Through corners that are passed without resting, from rest to rest."""
+    """Time a path through corners that are passed without resting, from rest to rest."""
     if len(passed) > 2:
         from tamp.geometric.motion.parametrization import speeds  # toppra takes 0.75 s to import
 
@@ -84,10 +91,11 @@ def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
 
 
 def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
-    """One edge from rest to rest: full acceleration, full speed, full braking."""
+    """Time one edge from rest to rest: full acceleration, full speed, full braking."""
     step = np.abs(end - start)
     with np.errstate(divide="ignore"):
-        top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))  # in edges per second (squared)
+        # In edges per second (squared).
+        top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))
     top = min(top, push**0.5)  # a short edge brakes before it reaches full speed
     ramp = top / push
     duration = 1.0 / top + ramp
@@ -101,15 +109,19 @@ def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) ->
 
 
 def _joined(pieces: list[Timed]) -> Timed:
-    """One trajectory after the other, each beginning where the last ended."""
+    """Join trajectories one after the other, each beginning where the last ended."""
     starts = np.cumsum([0.0] + [piece.duration for piece in pieces])
     times = [start + piece.times[1:] for start, piece in zip(starts[:-1], pieces, strict=True)]
     positions = [piece.positions[1:] for piece in pieces]
-    return Timed(np.concatenate([np.zeros(1), *times]), np.concatenate([pieces[0].positions[:1], *positions]))
+    return Timed(
+        np.concatenate([np.zeros(1), *times]), np.concatenate([pieces[0].positions[:1], *positions])
+    )
 
 
 def _sampled(rail: Rail, rates: Array) -> Timed:
-    """The nodes at their times, and more samples on the straight parts; the acceleration is constant between nodes."""
+    """Return the nodes at their times, and more samples on the straight parts; the acceleration is
+    constant between nodes.
+    """
     gaps = np.diff(rail.stations)
     spans = 2.0 * gaps / (rates[:-1] + rates[1:])
     counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
@@ -121,15 +133,22 @@ def _sampled(rail: Rail, rates: Array) -> Timed:
     travelled = (rates[i] + 0.5 * (rates[i + 1] - rates[i]) * shares) * elapsed / gaps[i]
     positions = rail.positions[i] + travelled[:, None] * (rail.positions[i + 1] - rail.positions[i])
     positions[ends - 1] = rail.positions[1:]
-    return Timed(np.concatenate([[0.0], starts[i] + elapsed]), np.concatenate([rail.positions[:1], positions]))
+    return Timed(
+        np.concatenate([[0.0], starts[i] + elapsed]),
+        np.concatenate([rail.positions[:1], positions]),
+    )
 
 
 def _slowed(timed: Timed, velocity: Array, acceleration: Array) -> Timed:
-    """The same with all times stretched by the little that differences of the samples may exceed the limits."""
+    """Stretch all times by the little that differences of the samples may exceed the limits."""
     spans = np.diff(timed.times)
     rates = np.diff(timed.positions, axis=0) / spans[:, None]
     rest = np.zeros((1, rates.shape[1]))
     middles = 0.5 * (np.concatenate([[0.0], spans]) + np.concatenate([spans, [0.0]]))
     changes = np.diff(np.concatenate([rest, rates, rest]), axis=0) / middles[:, None]
-    excess = max(1.0, float(np.max(np.abs(rates) / velocity)), float(np.max(np.abs(changes) / acceleration)) ** 0.5)
+    excess = max(
+        1.0,
+        float(np.max(np.abs(rates) / velocity)),
+        float(np.max(np.abs(changes) / acceleration)) ** 0.5,
+    )
     return Timed(timed.times * excess, timed.positions)

@@ -12,10 +12,10 @@ PLOTTING = ("matplotlib", "matplotlib.pyplot")
 
 @contextmanager
 def undrawn() -> Iterator[None]:
-    """Imports in the block that ask for pyplot get an empty module, unless it is there already.
+    """Give imports in the block that ask for pyplot an empty module, unless it is there already.
 
-    toppra imports pyplot for plots that nobody here asks for, and that takes longer than solving a small problem.
-    Afterwards matplotlib can be imported as usual.
+    toppra imports pyplot for plots that nobody here asks for, and that takes longer than solving a
+    small problem. Afterwards matplotlib can be imported as usual.
     """
     if PLOTTING[0] in sys.modules:
         yield

@@ -1,4 +1,6 @@
-"""Which generators serve a relation: a name, and whether it is mixed with the hand-made one or alone."""
+"""The choice of generators for a relation: a name, and whether it is mixed with the hand-made one
+or alone.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ Registry = Mapping[str, Mapping[str, Callable[..., Grounding]]]
 """Relation to sampler name to what makes it, f(); it may raise InputError. See ANY."""
 
 ANY = "*"
-"""The relation under which a registry has suffixes of files for names; what reads such a file is f(relation, file)."""
+"""The relation under which a registry has suffixes of files for names; what reads such a file is
+f(relation, file)."""
 
 GIVEN = "given"
 """The name of an object that was given in the place of a name."""
@@ -53,7 +56,8 @@ HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
 
 
 def parse_choice(relation: str, text: str, known: Registry, folder: Path | None = None) -> Choice:
-    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole path.
+    """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole
+    path.
 
     Args:
         relation: Of any name where a file serves it.
@@ -64,37 +68,53 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     Raises:
         InputError: Unknown relation, name or mode.
     """
-    name, colon, mode = text.rpartition(":") if text.endswith(tuple(f":{mode}" for mode in MODES)) else (text, "", "")
+    name, colon, mode = (
+        text.rpartition(":")
+        if text.endswith(tuple(f":{mode}" for mode in MODES))
+        else (text, "", "")
+    )
     if Path(name).suffix in known.get(ANY, {}):
         return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
+
     name, colon, mode = text.partition(":")
     if relation not in known or relation == ANY:
         choices = [other for other in known if other != ANY]
         remedy = f"Of one's own: {relation}=FILE{next(iter(known[ANY]))}" if known.get(ANY) else ""
-        raise InputError(f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy)
+        raise InputError(
+            f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
+        )
+
     if name not in known[relation]:
-        raise InputError(f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation])
+        raise InputError(
+            f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation]
+        )
+
     if colon and mode not in MODES:
         remedy = f"For example: {relation}={name}:alone"
-        raise InputError(f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy)
+        raise InputError(
+            f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy
+        )
+
     return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
 
 
 def sampler_files(samplers: Iterable[str]) -> list[Path]:
-    """The files that samplers are made from, as far as they are named by files: weights with their card, Python."""
+    """List the files that samplers are made from, as far as they are named by files: weights with
+    their card, Python.
+    """
     names = [Path(text.removesuffix(":alone").removesuffix(":mixed")) for text in samplers]
     return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
 def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:
-    """What makes the chosen sampler; it may raise InputError."""
+    """Return what makes the chosen sampler; it may raise InputError."""
     if choice.name in known.get(relation, {}):
         return known[relation][choice.name]
     return partial(known[ANY][Path(choice.name).suffix], relation, Path(choice.name))
 
 
 def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
-    """The chosen generator, with the relation's hand-made one beside it unless it is to be alone."""
+    """Mix the chosen generator with the relation's hand-made one, unless it is to be alone."""
     trusted = next(iter(SAMPLERS.get(relation, {})), None)
     if choice.alone or trusted is None or choice.name == trusted:
         return Mixture((Path(choice.name).name,), (generator,))
@@ -102,7 +122,7 @@ def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
 
 
 def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
-    """Relation to name, of RELATION=NAME.
+    """Parse RELATION=NAME into a map of relations to names.
 
     Raises:
         InputError: Something else.
@@ -111,6 +131,9 @@ def sampler_choices(pairs: tuple[str, ...]) -> dict[str, str]:
     for pair in pairs:
         relation, equals, name = pair.partition("=")
         if not (relation and equals and name):
-            raise InputError(f"--sampler wants RELATION=NAME, not '{pair}'", remedy="For example: --sampler on=uniform")
+            raise InputError(
+                f"--sampler wants RELATION=NAME, not '{pair}'",
+                remedy="For example: --sampler on=uniform",
+            )
         chosen[relation] = name
     return chosen

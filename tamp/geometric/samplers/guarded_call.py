@@ -1,4 +1,6 @@
-"""Asking a generator that anyone may have written: what comes back are poses, in time, or the reason why not."""
+"""Asking a generator that anyone may have written: what comes back are poses, in time, or the
+reason why not.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,7 @@ def ask(
     deadline: Deadline,
     seconds: float = math.inf,
 ) -> list[Pose]:
-    """At most `count` poses, best first, of finite numbers and with unit quaternions.
+    """Ask for at most `count` poses, best first, of finite numbers and with unit quaternions.
 
     Args:
         generator: Of any behaviour.
@@ -62,7 +64,9 @@ def ask(
         raise Misbehaved(f"it raised {text}") from error
 
 
-def _proposed(generator: Generator, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+def _proposed(
+    generator: Generator, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+) -> list[Pose]:
     return _poses(generator.propose(scene, arguments, count, rng), count, scene.room)
 
 
@@ -90,7 +94,9 @@ def _pose(item: object, room: Room) -> Pose:
     except (TypeError, ValueError):
         raise Misbehaved("it proposes a pose that does not consist of seven numbers") from None
     norm = math.hypot(a, b, c, d)
-    if not (math.isfinite(norm) and norm > 1e-6 and all(math.isfinite(number) for number in (x, y, z))):
+    if not (
+        math.isfinite(norm) and norm > 1e-6 and all(math.isfinite(number) for number in (x, y, z))
+    ):
         raise Misbehaved("it proposes numbers that are not finite, or no rotation")
     beyond = max(room.x[0] - x, x - room.x[1], room.y[0] - y, y - room.y[1], abs(z))
     if beyond > FAR:

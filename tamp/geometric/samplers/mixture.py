@@ -1,4 +1,6 @@
-"""Generators that share the work of one relation: the chosen one, and the hand-made one that it can only help."""
+"""Generators that share the work of one relation: the chosen one, and the hand-made one that it can
+only help.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +13,15 @@ from tamp.geometric.samplers.sampler import Generator
 from tamp.system.deadline import Deadline
 
 VAIN = 20.0
-"""Work, in proposals judged, of a pose that was passed on and asked for anew: grasps, reaches and tests in vain."""
+"""Work, in proposals judged, of a pose that was passed on and asked for anew: grasps, reaches and
+tests in vain."""
 
 PRIOR = 20.0
 """Work with one success that every generator is credited with before its first proposal."""
 
 ENOUGH = 4.0
-"""A generator without a success is sidelined when the other one would have had this many from the same work."""
+"""A generator without a success is sidelined when the other one would have had this many from the
+same work."""
 
 PATIENCE = 0.1
 """Seconds that a generator beside the hand-made one may take in a run whatever comes of it."""
@@ -48,7 +52,8 @@ class Account:
 
     Attributes:
         judged: Proposals that were looked at.
-        kept: Poses passed on and, as far as is known, of use: nobody asked for another one in their place.
+        kept: Poses passed on and, as far as is known, of use: nobody asked for another one in their
+            place.
         work: Proposals judged, and VAIN for each pose that was passed on in vain.
         seconds: Inside the generator; only an outer limit looks at it.
         stale: Batches that repeated what had been proposed.
@@ -67,12 +72,15 @@ class Account:
 
     @property
     def debt(self) -> float:
-        """Work per acceptance: whoever has the least is next, so that work is shared in proportion to acceptance."""
+        """Work per acceptance: whoever has the least is next, so that work is shared in proportion
+        to acceptance.
+        """
         return self.work * (self.work + PRIOR) / (self.kept + 1.0)
 
 
 class Ledger:
-    """The accounts of a mixture in one run. Counted work divides the shares, never the clock: a seed repeats a plan.
+    """The accounts of a mixture in one run. Counted work divides the shares, never the clock: a
+    seed repeats a plan.
 
     Args:
         relation: For messages.
@@ -86,16 +94,18 @@ class Ledger:
 
     @classmethod
     def of(cls, relation: str, mixture: Mixture, memory: dict[str, Any]) -> Ledger:
-        """The run's ledger of a relation."""
+        """Return the run's ledger of a relation."""
         return memory.setdefault(f"{LEDGER}{relation}", cls(relation, mixture))
 
     def order(self) -> list[int]:
-        """Indices of the generators that are still asked, the next one first."""
+        """List indices of the generators that are still asked, the next one first."""
         usable = [index for index, account in enumerate(self.accounts) if account.out is None]
         return sorted(usable, key=lambda index: self.accounts[index].debt)
 
     def asked(self, arguments: tuple[str, ...]) -> None:
-        """A pose is wanted for these arguments: the one that was passed on before has not served."""
+        """Note that a pose is wanted for these arguments: the one that was passed on before has not
+        served.
+        """
         account = self._pending.pop(arguments, None)
         if account is not None:
             account.kept -= 1
@@ -103,19 +113,21 @@ class Ledger:
             account.reasons["led nowhere"] += 1
 
     def passed_on(self, account: Account, arguments: tuple[str, ...]) -> None:
-        """A pose of this generator goes to the planner."""
+        """Note that a pose of this generator goes to the planner."""
         account.kept += 1
         self._pending[arguments] = account
 
     def judged(self, account: Account, reason: str | None) -> None:
-        """A proposal was looked at; `reason` says why it is of no use."""
+        """Note that a proposal was looked at; `reason` says why it is of no use."""
         account.judged += 1
         account.work += 1.0
         if reason is not None:
             account.reasons[reason] += 1
 
     def useless(self) -> Account | None:
-        """A chosen generator that has shown to be useless beside the hand-made one; it is asked no more from now on."""
+        """Find a chosen generator that has shown to be useless beside the hand-made one; it is
+        asked no more from now on.
+        """
         if len(self.accounts) < 2:
             return None
         chosen, trusted = self.accounts[0], self.accounts[-1]
@@ -124,11 +136,15 @@ class Ledger:
         if trusted.kept / trusted.work * chosen.work < ENOUGH:
             return None
         most, count = chosen.reasons.most_common(1)[0]
-        chosen.out = f"none of its {chosen.judged} proposals was of use (most often, {count} times: {most})"
+        chosen.out = (
+            f"none of its {chosen.judged} proposals was of use (most often, {count} times: {most})"
+        )
         return chosen
 
     def allowance(self, account: Account, deadline: Deadline) -> float:
-        """Seconds that a generator beside the trusted one may still take; infinite for the only or the trusted one."""
+        """Return the seconds that a generator beside the trusted one may still take; infinite for
+        the only or the trusted one.
+        """
         if len(self.accounts) < 2 or account is self.accounts[-1]:
             return float("inf")
         return PATIENCE + PORTION * deadline.elapsed() - account.seconds
@@ -139,12 +155,13 @@ class Ledger:
 
 
 def sidelined(relation: str, account: Account, rest: Sequence[str]) -> str:
-    """The sentence for the user."""
-    return (
-        f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}; {', '.join(rest)} goes on without it"
-    )
+    """Return the sentence for the user."""
+    out = f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}"
+    return f"{out}; {', '.join(rest)} goes on without it"
 
 
 def accounts(memory: Mapping[str, object]) -> dict[str, tuple[Account, ...]]:
-    """The accounts of all relations in the memory of a run."""
-    return {item.relation: tuple(item.accounts) for item in memory.values() if isinstance(item, Ledger)}
+    """Return the accounts of all relations in the memory of a run."""
+    return {
+        item.relation: tuple(item.accounts) for item in memory.values() if isinstance(item, Ledger)
+    }

@@ -1,4 +1,6 @@
-"""Hand-made generators of placements: `surface`, the engineer's, and `uniform`, the paper's baseline (section IV-A)."""
+"""Hand-made generators of placements: `surface`, the engineer's, and `uniform`, the paper's
+baseline (section IV-A).
+"""
 
 from __future__ import annotations
 
@@ -17,24 +19,36 @@ KEEP_FACE = 0.85
 """The share of `surface` placements that keep the face that is down at the start, when it fits."""
 
 GROWTH = 0.5
-"""`uniform` samples in the first argument's box grown on each side by this much of its largest half extent."""
+"""`uniform` samples in the first argument's box grown on each side by this much of its largest half
+extent."""
 
 
 class SurfacePlacements:
-    """A stable face down, uniform in yaw and in the positions that keep the whole body above the region.
+    """A stable face down, uniform in yaw and in the positions that keep the whole body above the
+    region.
 
-    Where the body is larger than the region, uniform in the positions of its centre; overhang is judged afterwards.
+    Where the body is larger than the region, uniform in the positions of its centre; overhang is
+    judged afterwards.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """World poses at rest in the region `arguments[1]`; none when no stable face fits under its ceiling."""
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose world poses at rest in the region `arguments[1]`; none when no stable face fits
+        under its ceiling.
+        """
         body, region_name = arguments
         region = scene.surfaces.get(region_name) or scene.cavities[region_name]
         room = region.clearance if isinstance(region, Surface) else region.size[2]
         resting = resting_of(scene.bodies[body])
         faces = [face for face in resting.faces if face.extent + 2 * CONTACT_GAP <= room]
-        if not faces and resting.lying is not None and resting.lying.extent + 2 * CONTACT_GAP <= room:
+        if (
+            not faces
+            and resting.lying is not None
+            and resting.lying.extent + 2 * CONTACT_GAP <= room
+        ):
             faces = [resting.lying]
+
         if not faces:
             return []
         T_world_region = scene.world_pose(region)
@@ -44,14 +58,19 @@ class SurfacePlacements:
             yaw = rng.uniform(-math.pi, math.pi)
             x, y = position_inside(face, yaw, region.size, rng)
             poses.append(T_world_region @ resting_pose(face, yaw, x, y))
+
         return poses
 
 
 class UniformPlacements:
-    """Uniform positions in the grown box of the region's body, uniform rotations (LEARNING.md, section 1)."""
+    """Uniform positions in the grown box of the region's body, uniform rotations (LEARNING.md,
+    section 1).
+    """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """World poses; most of them float, sink or lean."""
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose world poses; most of them float, sink or lean."""
         region = scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
         support = scene.bodies[region.body]
         low, high = bounds(support.parts, support.pose)
@@ -60,13 +79,18 @@ class UniformPlacements:
         quaternions = rng.normal(size=(count, 4))
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
         return [
-            Pose((float(x), float(y), float(z)), (float(q[0]), float(q[1]), float(q[2]), float(q[3])))
+            Pose(
+                (float(x), float(y), float(z)), (float(q[0]), float(q[1]), float(q[2]), float(q[3]))
+            )
             for (x, y, z), q in zip(positions, quaternions, strict=True)
         ]
 
 
-def position_inside(face: Face, yaw: float, size: Sequence[float], rng: Random) -> tuple[float, float]:
-    """A random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at a yaw in radians.
+def position_inside(
+    face: Face, yaw: float, size: Sequence[float], rng: Random
+) -> tuple[float, float]:
+    """Draw a random x, y of the body's frame, metres, in the frame of a rectangle of size x, y, at
+    a yaw in radians.
 
     The outline stays inside; where it cannot, the centre of mass does.
     """

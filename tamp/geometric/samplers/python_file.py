@@ -16,13 +16,16 @@ SUFFIX = ".py"
 def given_by_files(
     samplers: Mapping[str, str], sources: Mapping[str, str] | None = None
 ) -> tuple[dict[str, str], dict[str, Grounding]]:
-    """Part what `--sampler` says into names, for `load_problem(samplers=)`, and objects, for its `groundings`.
+    """Part what `--sampler` says into names, for `load_problem(samplers=)`, and objects, for its
+    `groundings`.
 
-    A file is run, so only a command line may name one: what comes with a problem or a plan does not run.
+    A file is run, so only a command line may name one: what comes with a problem or a plan does not
+    run.
 
     Args:
         samplers: Relation to NAME or FILE.py, or either with a mode.
-        sources: What stands in the files, by name, where that is known already: then they are not read.
+        sources: What stands in the files, by name, where that is known already: then they are not
+            read.
 
     Raises:
         InputError: As for `python_grounding`.
@@ -37,25 +40,32 @@ def given_by_files(
 
 
 def parted(text: str) -> tuple[str, str]:
-    """A sampler's name or file, and its mode with the colon before it, if it has one."""
+    """Split a sampler's name or file from its mode with the colon before it, if it has one."""
     mode = next((f":{mode}" for mode in MODES if text.endswith(f":{mode}")), "")
     return text.removesuffix(mode) if mode else text, mode
 
 
 def python_grounding(path: Path, source: str | None = None) -> Grounding:
-    """The object of name NAME in a Python file, which is run.
+    """Load the object of name NAME from a Python file, which is run.
 
     Args:
         path: The file.
         source: What stands in it, when it was read before; the file need not be here then.
 
     Raises:
-        InputError: There is no such file, it fails, or it has no such object with `propose` or `classify`.
+        InputError: There is no such file, it fails, or it has no such object with `propose` or
+            `classify`.
     """
     found = python_object(path, source)
     if isinstance(found, type) or not isinstance(found, Generator | Classifier):
-        what = f"'{NAME}' has neither propose nor classify" if found is not None else f"it defines no '{NAME}'"
+        what = (
+            f"'{NAME}' has neither propose nor classify"
+            if found is not None
+            else f"it defines no '{NAME}'"
+        )
         what = f"'{NAME}' is a class, not an object" if isinstance(found, type) else what
-        remedy = f"{NAME} = Mine(), an object with the methods of tamp/geometric/samplers/sampler.py"
+        remedy = (
+            f"{NAME} = Mine(), an object with the methods of tamp/geometric/samplers/sampler.py"
+        )
         raise InputError(what, file=path, remedy=remedy)
     return found

@@ -1,4 +1,6 @@
-"""What grounds a relation such as `on`: a generator that proposes poses, and a classifier that judges them."""
+"""The interfaces that ground a relation such as `on`: a generator that proposes poses, and a
+classifier that judges them.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +18,21 @@ from tamp.geometric.scene.scene import Scene
 class Generator(Protocol):
     """Proposes poses of a relation's first argument that may make the relation hold.
 
-    What it proposes is advice: the stream that asks puts each pose to rest and certifies it, or rejects it. One that is
-    not hand-made shares the work with the hand-made one (`mixture`), and is asked no more in a run in
-    which it raises, repeats itself, proposes nothing of use, or takes more than a tenth of the time.
+    What it proposes is advice: the stream that asks puts each pose to rest and certifies it, or
+    rejects it. One that is not hand-made shares the work with the hand-made one (`mixture`), and is
+    asked no more in a run in which it raises, repeats itself, proposes nothing of use, or takes
+    more than a tenth of the time.
     """
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
-        """At most `count` world poses of body `arguments[0]`, the best first; an empty list when there will be none.
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Pose]:
+        """Propose at most `count` world poses of body `arguments[0]`, the best first; an empty list
+        when there will be none.
 
         Args:
-            scene: The scene at that step of the plan: other bodies where they will be, the proposed one, which is in
-                the hand, at its start for its shape's sake.
+            scene: The scene at that step of the plan: other bodies where they will be, the proposed
+                one, which is in the hand, at its start for its shape's sake.
             arguments: The relation's arguments: (body, surface) or (body, cavity).
             count: How many are wanted.
             rng: The only source of randomness.

@@ -18,10 +18,13 @@ Triangles = NDArray[np.int64]
 
 
 def body_hull(body: Body) -> tuple[Array, Triangles]:
-    """Vertices (n, 3) and triangles (m, 3), outward, of the convex hull of all parts. Metres."""
+    """Compute vertices (n, 3) and triangles (m, 3), outward, of the convex hull of all parts.
+    Metres.
+    """
     if len(body.parts) == 1:
         return _placed(body.parts[0])
-    from scipy.spatial import ConvexHull  # half a second to import, and only bodies of several parts need it
+    # Half a second to import, and only bodies of several parts need it.
+    from scipy.spatial import ConvexHull
 
     vertices = np.concatenate([_placed(part)[0] for part in body.parts])
     hull = ConvexHull(vertices)
@@ -34,7 +37,9 @@ def body_hull(body: Body) -> tuple[Array, Triangles]:
 
 
 def centre_of_mass(body: Body) -> Array:
-    """The one that its file gives, or of its parts, all of one density; in the body's frame, shape (3,), metres."""
+    """Return the centre of mass that its file gives, or of its parts, all of one density; in the
+    body's frame, shape (3,), metres.
+    """
     if body.center_of_mass is not None:
         return np.array(body.center_of_mass)
     volumes, centres = zip(*(_mass(*_placed(part)) for part in body.parts), strict=True)
@@ -42,7 +47,9 @@ def centre_of_mass(body: Body) -> Array:
 
 
 def part_mesh(part: Part) -> tuple[Array, Triangles]:
-    """Vertices (n, 3) and triangles (m, 3), outward, of one part in its body's frame; within it where round."""
+    """Return vertices (n, 3) and triangles (m, 3), outward, of one part in its body's frame; within
+    it where round.
+    """
     return _placed(part)
 
 
@@ -59,7 +66,9 @@ def _mesh(shape: Shape) -> tuple[Array, Triangles]:
         return _prism(np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]]) * half[:2], half[2])
     if isinstance(shape, Cylinder):
         angles = np.arange(SIDES) * 2 * math.pi / SIDES
-        return _prism(shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1), shape.height / 2)
+        return _prism(
+            shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1), shape.height / 2
+        )
     return _ball(shape)
 
 
@@ -93,7 +102,7 @@ def _ball(shape: Sphere) -> tuple[Array, Triangles]:
 
 
 def _mass(vertices: Array, triangles: Triangles) -> tuple[float, Array]:
-    """Volume and centroid of a closed surface, by tetrahedra over a point inside."""
+    """Compute volume and centroid of a closed surface, by tetrahedra over a point inside."""
     origin = vertices.mean(axis=0)
     a, b, c = (vertices[triangles[:, i]] - origin for i in range(3))
     volumes = np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))) / 6

@@ -1,4 +1,4 @@
-"""Straight lines through a body: where they enter and leave its convex parts."""
+"""Ray casting, straight lines through a body: where they enter and leave its convex parts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ SEAM = 5e-4
 
 @dataclass(frozen=True)
 class Contact:
-    """Where a line crosses a solid: from `start` to `end` metres along it, with the outward normals (3,) there."""
+    """The crossing of a line with a solid: from `start` to `end` metres along it, with the outward
+    normals (3,) there.
+    """
 
     start: float
     end: float
@@ -28,7 +30,9 @@ class Contact:
 
 
 class Solid:
-    """A body's parts as intersections of half-spaces, and its surface as triangles. All in the body's frame, metres."""
+    """A body's parts as intersections of half-spaces, and its surface as triangles. All in the
+    body's frame, metres.
+    """
 
     def __init__(self, body: Body) -> None:
         normals, offsets, first, corners, areas = [], [], [], [], []
@@ -44,25 +48,31 @@ class Solid:
             offsets.append(np.einsum("ij,ij->i", normal, a[kept]))
             areas.append(area[kept])
             corners.append(np.stack([a, b, c], axis=1)[kept])
+
         self._normals, self._offsets = np.concatenate(normals), np.concatenate(offsets)
         self._first = np.array(first)
         last = np.append(self._first[1:], len(self._normals))
-        # The planes of each part, (p, most), the first one repeated behind the last: one look for all parts.
+        # The planes of each part, (p, most), the first one repeated behind the last: one look for
+        # all parts.
         places = np.arange((last - self._first).max())
         self._planes = np.where(
-            places < (last - self._first)[:, None], self._first[:, None] + places, self._first[:, None]
+            places < (last - self._first)[:, None],
+            self._first[:, None] + places,
+            self._first[:, None],
         )
         self._corners = np.concatenate(corners)
         self._cumulative = np.cumsum(np.concatenate(areas))
         self.centre = centre_of_mass(body)
 
     def extent(self, direction: Array) -> tuple[float, float]:
-        """The least and the largest coordinate of the body along a direction (3,)."""
+        """Compute the least and the largest coordinate of the body along a direction (3,)."""
         along = self._corners.reshape(-1, 3) @ direction
         return float(along.min()), float(along.max())
 
     def surface_points(self, rng: np.random.Generator, count: int) -> tuple[Array, Array]:
-        """Points (count, 3), uniform by area over all parts' surfaces, and their outward normals (count, 3)."""
+        """Draw points (count, 3), uniform by area over all parts' surfaces, and their outward
+        normals (count, 3).
+        """
         index = np.searchsorted(self._cumulative, rng.random(count) * self._cumulative[-1])
         index = np.minimum(index, len(self._cumulative) - 1)
         u, v = np.sqrt(rng.random(count)), rng.random(count)
@@ -70,11 +80,12 @@ class Solid:
         return np.einsum("ij,ijk->ik", weights, self._corners[index]), self._normals[index]
 
     def crossings(self, origins: Array, directions: Array) -> tuple[Array, Array, Planes, Planes]:
-        """Lines from `origins` (k, 3) along `directions` (k, 3), or (3,) for all, through each of the p parts.
+        """Intersect lines from `origins` (k, 3) along `directions` (k, 3), or (3,) for all, with
+        each of the p parts.
 
         Returns:
-            Starts and ends (k, p) in metres along the lines, an end before its start where a line misses the part; and
-            the indices (k, p) of the planes there, for `normals`.
+            Starts and ends (k, p) in metres along the lines, an end before its start where a line
+            misses the part; and the indices (k, p) of the planes there, for `normals`.
         """
         slope = np.atleast_2d(directions) @ self._normals.T
         room = self._offsets - origins @ self._normals.T
@@ -89,19 +100,25 @@ class Solid:
         return enter[rows, start_plane], leave[rows, end_plane], start_plane, end_plane
 
     def normals(self, planes: Planes) -> Array:
-        """Outward normals (..., 3) of planes."""
+        """Return outward normals (..., 3) of planes."""
         return self._normals[planes]
 
     def solid_at(self, origin: Array, direction: Array) -> Contact | None:
-        """The stretch of solid that contains, or begins at, the origin of a line; None where there is none."""
-        starts, ends, start_planes, end_planes = (row[0] for row in self.crossings(origin[None], direction))
+        """Find the stretch of solid that contains, or begins at, the origin of a line; None where
+        there is none.
+        """
+        starts, ends, start_planes, end_planes = (
+            row[0] for row in self.crossings(origin[None], direction)
+        )
         crossed = np.flatnonzero(ends > starts)
         here = crossed[(starts[crossed] <= SEAM) & (ends[crossed] >= -SEAM)]
         if len(here) == 0:
             return None
         first, last = here[np.argmin(starts[here])], here[np.argmax(ends[here])]
         for _ in range(len(crossed)):  # parts that touch the stretch lengthen it, one after another
-            low = crossed[(starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM)]
+            low = crossed[
+                (starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM)
+            ]
             high = crossed[(ends[crossed] > ends[last]) & (starts[crossed] <= ends[last] + SEAM)]
             if len(low) == 0 and len(high) == 0:
                 break

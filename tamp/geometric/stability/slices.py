@@ -10,7 +10,9 @@ from tamp.geometric.stability.hulls import outline
 
 
 def cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array | None:
-    """The polygon in which a convex mesh meets a level plane; None where it does not, or only just."""
+    """Cut a convex mesh with a level plane into a polygon; None where it does not meet it, or only
+    just.
+    """
     above = vertices[:, 2] - height
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     a, b = edges[:, 0], edges[:, 1]
@@ -18,13 +20,15 @@ def cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array |
     if not crossing.any():
         return None
     share = above[a[crossing]] / (above[a[crossing]] - above[b[crossing]])
-    points = vertices[a[crossing]] + share[:, None] * (vertices[b[crossing]] - vertices[a[crossing]])
+    points = vertices[a[crossing]] + share[:, None] * (
+        vertices[b[crossing]] - vertices[a[crossing]]
+    )
     corners = outline(points[:, :2])
     return corners if len(corners) >= 3 else None
 
 
 def distances(points: Array, corners: Array) -> Array:
-    """Of points (n, 2) from a convex polygon; zero inside."""
+    """Compute the distances of points (n, 2) from a convex polygon; zero inside."""
     inside = np.ones(len(points), dtype=bool)
     least = np.full(len(points), np.inf)
     for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):

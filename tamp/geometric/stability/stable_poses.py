@@ -1,4 +1,4 @@
-"""Which ways up a body can rest, and what certifies that it rests somewhere."""
+"""Stable poses: which ways up a body can rest, and what certifies that it rests somewhere."""
 
 from __future__ import annotations
 
@@ -8,22 +8,21 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Cavity, Sphere, Surface
+from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
 from tamp.stream import Rejection
 
 SNAP_HEIGHT = 0.03
-"""A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance for `on`), metres."""
+"""A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
+for `on`), metres."""
 
 SNAP_TILT = math.radians(15.0)
-"""A proposal tilted less than this from a stable face, or than the face withstands, is laid onto that face."""
-
-SAME_FACET = 0.9995
-"""Triangles whose normals' cosine is at least this belong to one facet."""
+"""A proposal tilted less than this from a stable face, or than the face withstands, is laid onto
+that face."""
 
 FLAT = 0.0005
 """Vertices within this height of the lowest one belong to the face that is down, metres."""
@@ -32,11 +31,13 @@ SLACK = 0.002
 """What half a degree can change of a body's width, metres."""
 
 STABLE = math.radians(8.0)
-"""A face is stable when the body must be tilted at least this much before it tips over the face's edge."""
+"""A face is stable when the body must be tilted at least this much before it tips over the face's
+edge."""
 
 
 ROUND = 0.0015
-"""Points this little above the lowest one count as touching where a body lies on a curved side, metres."""
+"""Points this little above the lowest one count as touching where a body lies on a curved side,
+metres."""
 
 LEAN = 0.002
 """By so much a curved side carries beyond its lowest points: meshes have few of them, metres."""
@@ -47,7 +48,7 @@ BALANCE = 0.015
 
 @lru_cache(maxsize=512)
 def resting_of(body: Body) -> Resting:
-    """The ways in which a body can rest, worked out once for each body."""
+    """Return the ways in which a body can rest, worked out once for each body."""
     return Resting(body)
 
 
@@ -85,20 +86,29 @@ class Resting:
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """All ways to rest that withstand a tilt of STABLE, the present one first, then the steadiest."""
+        """All ways to rest that withstand a tilt of STABLE: the present one, then the steadiest."""
         down = -self.body.pose.rotation[2]
         faces = stable_faces(self.body)
-        faces.sort(key=lambda face: (-round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)), -face.angle))
+        faces.sort(
+            key=lambda face: (
+                -round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)),
+                -face.angle,
+            )
+        )
         return tuple(faces)
 
     @cached_property
     def lying(self) -> Face | None:
-        """The curved side that the body lies on at the start; None where that is a stable face, or it is a ball.
+        """The curved side that the body lies on at the start; None where that is a stable face, or
+        it is a ball.
 
-        What lies there can lie so elsewhere, though a touch may roll it: a way to rest where there is no better one.
+        What lies there can lie so elsewhere, though a touch may roll it: a way to rest where there
+        is no better one.
         """
         down = -self.body.pose.rotation[2]
-        if self.body.support is None or all(isinstance(part.shape, Sphere) for part in self.body.parts):
+        if self.body.support is None or all(
+            isinstance(part.shape, Sphere) for part in self.body.parts
+        ):
             return None
         if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT) for face in self.faces):
             return None
@@ -110,7 +120,9 @@ class Resting:
         return self.faces if self.lying is None else (*self.faces, self.lying)
 
     def nearest(self, rotation: Array) -> Face | None:
-        """The stable face onto which the body, let go under this rotation, tips back; None when it may tip over."""
+        """Return the stable face onto which the body, let go under this rotation, tips back; None
+        when it may tip over.
+        """
         down = -rotation[2]
         best = max(self.ways, key=lambda face: float(-face.rotation[2] @ down), default=None)
         if best is None or float(-best.rotation[2] @ down) < math.cos(max(SNAP_TILT, best.angle)):
@@ -118,10 +130,13 @@ class Resting:
         return best
 
 
-def rest(resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_region: Pose) -> Pose | Rejection:
+def rest(
+    resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_region: Pose
+) -> Pose | Rejection:
     """Put a proposed pose to rest in a region, or say why it cannot.
 
-    The result touches the region (up to CONTACT_GAP) with a stable face whose support lies inside the region.
+    The result touches the region (up to CONTACT_GAP) with a stable face whose support lies inside
+    the region.
     """
     face = resting.nearest(proposal.rotation)
     if face is None:
@@ -134,13 +149,17 @@ def rest(resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_reg
     if abs(bottom) > SNAP_HEIGHT:
         return Rejection("too high" if bottom > 0 else "too low")
     yaw = _yaw_between(face.rotation, T_region_body.rotation)
-    return settle(face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region)
+    return settle(
+        face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region
+    )
 
 
 def settle(
     face: Face, yaw: float, x: float, y: float, region: Surface | Cavity, T_world_region: Pose
 ) -> Pose | Rejection:
-    """The pose on `face`, turned by `yaw`, the body's frame above (x, y) of the region; rejected when it overhangs."""
+    """Return the pose on `face`, turned by `yaw`, the body's frame above (x, y) of the region;
+    rejected when it overhangs.
+    """
     c, s = math.cos(yaw), math.sin(yaw)
     turn = np.array([[c, -s], [s, c]])
     half = np.array(region.size[:2]) / 2
@@ -157,7 +176,9 @@ def settle(
 
 
 def resting_pose(face: Face, yaw: float, x: float, y: float) -> Pose:
-    """The body's pose in the region's frame, on `face`, turned by `yaw` radians, its frame above (x, y) metres."""
+    """Compute the body's pose in the region's frame, on `face`, turned by `yaw` radians, its frame
+    above (x, y) metres.
+    """
     c, s = math.cos(yaw), math.sin(yaw)
     matrix = np.eye(4)
     matrix[:3, :3] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ face.rotation
@@ -166,7 +187,7 @@ def resting_pose(face: Face, yaw: float, x: float, y: float) -> Pose:
 
 
 def fits(face: Face, size: Sequence[float]) -> bool:
-    """Whether the body on this face, turned in some way (to half a degree), fits into a rectangle of `size` x, y."""
+    """Check whether the body on this face fits `size` x, y at some turn, to half a degree."""
     angles = np.linspace(0.0, math.pi, 361)
     directions = np.stack([np.cos(angles), np.sin(angles)])
     widths = np.ptp(face.outline @ directions, axis=0)
@@ -175,66 +196,82 @@ def fits(face: Face, size: Sequence[float]) -> bool:
 
 
 def _balanced(base: Array, centre: Array, half: Array) -> bool:
-    """Whether the centre of mass lies well inside both the base and the surface."""
+    """Check whether the centre of mass lies well inside both the base and the surface."""
     if (np.abs(centre) > half - BALANCE).any():
         return False
     edges = np.roll(base, -1, axis=0) - base
     lengths = np.linalg.norm(edges, axis=1)
     offsets = centre - base
-    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(lengths, 1e-12)
+    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(
+        lengths, 1e-12
+    )
     return bool((distances > BALANCE).all())
 
 
 def _yaw_between(reference: Array, rotation: Array) -> float:
-    """The turn about z that brings `reference` nearest to `rotation`."""
+    """Compute the turn about z that brings `reference` nearest to `rotation`."""
     relative = rotation @ reference.T
     return math.atan2(relative[1, 0] - relative[0, 1], relative[0, 0] + relative[1, 1])
 
 
 def stable_faces(body: Body) -> list[Face]:
-    """All ways in which a body rests on a plane and withstands a tilt of STABLE, the largest facets first."""
+    """List the ways in which a body rests and withstands a tilt of STABLE, largest facets first."""
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []
-    for normal in _facet_normals(vertices, triangles):
-        rotation = _rotation_to_down(normal)
+    for normal in facet_normals(vertices, triangles):
+        rotation = rotation_to_down(normal)
         turned = vertices @ rotation.T
         low = float(turned[:, 2].min())
         touching = turned[turned[:, 2] < low + FLAT, :2]
         centre = rotation @ centre_of_mass_
-        # Within the base no edge is farther from the centre of mass than the base's box: most facets end here.
-        room = float(np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min())
+
+        # Within the base no edge is farther from the centre of mass than the base's box: most
+        # facets end here.
+        room = float(
+            np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min()
+        )
         if room < math.tan(STABLE) * max(float(centre[2]) - low, 1e-6) - FLAT:
             continue
+
         base = outline(touching)
         if len(base) < 3:
             continue
-        angle = _tipping_angle(base, centre[:2], float(centre[2]) - low)
+
+        angle = tipping_angle(base, centre[:2], float(centre[2]) - low)
         if angle < STABLE:
             continue
+
         extent = float(np.ptp(turned[:, 2]))
-        faces.append(Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy()))
+        faces.append(
+            Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
+        )
+
     return faces
 
 
 def facets(body: Body, most: int) -> list[Face] | None:
-    """Every side of the hull, however unsteady, as a way to rest; None when there are more than `most`."""
+    """List every side of the hull, even unsteady, as a way to rest; None when more than `most`."""
     vertices, triangles = body_hull(body)
-    normals = _facet_normals(vertices, triangles)
+    normals = facet_normals(vertices, triangles)
     if len(normals) > most:
         return None
     faces: list[Face] = []
     for normal in normals:
-        rotation = _rotation_to_down(normal)
+        rotation = rotation_to_down(normal)
         turned = vertices @ rotation.T
         low = float(turned[:, 2].min())
         seen = outline(turned[:, :2])
-        faces.append(Face(rotation, -low, float(np.ptp(turned[:, 2])), seen, seen, 0.0, seen.mean(axis=0)))
+        faces.append(
+            Face(rotation, -low, float(np.ptp(turned[:, 2])), seen, seen, 0.0, seen.mean(axis=0))
+        )
     return faces
 
 
 def curved_face(body: Body) -> Face | None:
-    """The side that is down in the body's pose, however it is curved; None where its centre of mass is beside it."""
+    """Return the side that is down in the body's pose, however curved; None where its centre of
+    mass is beside it.
+    """
     rotation = body.pose.rotation
     vertices, _ = body_hull(body)
     turned = vertices @ rotation.T
@@ -243,42 +280,10 @@ def curved_face(body: Body) -> Face | None:
     corners = LEAN * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     base = outline((touching[:, None] + corners).reshape(-1, 2))
     centre = rotation @ centre_of_mass(body)
-    angle = _tipping_angle(base, centre[:2], float(centre[2] - low[2]))
+    angle = tipping_angle(base, centre[:2], float(centre[2] - low[2]))
     if angle < 0.0:
         return None
     extent = float(high[2] - low[2])
-    return Face(rotation, -float(low[2]), extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
-
-
-def _facet_normals(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:
-    """Outward normals, those of one flat facet once; largest facets first."""
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    cross = np.cross(b - a, c - a)
-    areas = np.linalg.norm(cross, axis=1)
-    order = np.argsort(-areas, kind="stable")
-    order = order[areas[order] > 1e-9]
-    left = cross[order] / areas[order, None]
-    normals: list[Array] = []
-    while len(left):
-        normals.append(left[0])
-        left = left[left @ left[0] < SAME_FACET]
-    return normals
-
-
-def _rotation_to_down(normal: Array) -> Array:
-    """The smallest rotation that turns a unit vector to -z."""
-    axis = np.array([-normal[1], normal[0], 0.0])  # normal x (-z)
-    sine, cosine = float(np.linalg.norm(axis)), float(-normal[2])
-    if sine < 1e-9:
-        return np.eye(3) if cosine > 0 else np.diag([1.0, -1.0, -1.0])
-    x, y, z = axis / sine
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + sine * cross + (1 - cosine) * cross @ cross
-
-
-def _tipping_angle(base: Array, centre: Array, height: float) -> float:
-    """The tilt, radians, that brings the centre of mass over the nearest edge of the base; negative when outside."""
-    edges = np.roll(base, -1, axis=0) - base
-    offsets = centre - base
-    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.linalg.norm(edges, axis=1)
-    return math.atan2(float(distances.min()), max(height, 1e-6))
+    return Face(
+        rotation, -float(low[2]), extent, outline(turned[:, :2]), base, angle, centre[:2].copy()
+    )

@@ -1,4 +1,6 @@
-"""The tool's straight way to a grasp: whether the hand fits there, before anything is said of arm or base."""
+"""Tests of the tool's straight way to a grasp: whether the hand fits there, before anything is said
+of arm or base.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ RETREAT = 0.10
 """How far the tool draws back along its own axis, metres."""
 
 FLAT = 0.02
-"""Height of a body, metres, below which the fingers may not get deep enough beside it, nor under it."""
+"""Height of a body, metres, below which the fingers may not get deep enough beside it, nor under
+it."""
 
 PROBES = (0.0, 0.5, 1.0)
 """Where on the way the hand is looked at."""
@@ -28,36 +31,52 @@ SLIDES = 9
 """Where on each stretch of the way out a body is looked at that leaves what it touches."""
 
 
-def test_approach(context: Context, body: str, pose: Pose, grasp: Grasp, call: Call) -> bool | Rejection:
-    """Whether the fixed bodies leave the hand its way to a grasp, wherever the base stands: false only when not."""
+def test_approach(
+    context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
+) -> bool | Rejection:
+    """Test whether the fixed bodies leave the hand its way to a grasp, wherever the base stands:
+    false only when not.
+    """
     fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
     hit = approach_hits(context, pose, grasp, fixed)
     if hit is None:
         return True
-    loaded = f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    loaded = (
+        f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
+    )
     return Rejection(f"{loaded or _flat(context, body, pose, hit)}hand hits {hit}")
 
 
 def test_approach_clear(
     context: Context, body: str, pose: Pose, grasp: Grasp, other: str, other_pose: Pose, call: Call
 ) -> bool | Rejection:
-    """Whether another body leaves the hand its way to a grasp: false only when the hand hits it."""
+    """Test whether another body leaves the hand its way to a grasp: false only when the hand hits
+    it.
+    """
     if body == other or approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
         return True
     return Rejection(f"hits {other}", (other,))
 
 
 def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
-    """What to say first of a body so flat that fingers meet what it lies on before they hold it."""
+    """Name first a body so flat that fingers meet what it lies on before they hold it."""
     low, high = bounds(context.scene.bodies[body].parts, pose)
     tall = float(high[2] - low[2])
     below = bounds(context.scene.bodies[hit].parts, context.scene.bodies[hit].pose)
-    carries = (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
-    return f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+    carries = (
+        (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
+    )
+    return (
+        f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+    )
 
 
-def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]) -> str | None:
-    """The first of other bodies that the hand hits on its way to the grasp, or on its way back with the body."""
+def approach_hits(
+    context: Context, pose: Pose, grasp: Grasp, others: Iterable[tuple[str, Pose]]
+) -> str | None:
+    """Return the first of other bodies that the hand hits on its way to the grasp, or on its way
+    back with the body.
+    """
     standing = list(others)
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     back = -RETREAT * T_world_tool[:3, 2]
@@ -68,16 +87,20 @@ def approach_hits(context: Context, pose: Pose, grasp: Grasp, others: Iterable[t
     hit = hand.hits(away, context.robot.opening, None, standing)
     if hit is not None:
         return hit
+
     leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
     if leaving:  # the hand must not touch them, the body in it only while it leaves them
         steps = [_moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, SLIDES)]
-        steps += [_moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]]
+        steps += [
+            _moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]
+        ]
         bodies = [step @ grasp.T_tool_body.matrix for step in steps]
         for name in leaving:
             if not touching.separates(grasp.body, bodies, name):
                 return name
         hit = hand.hits(out, grasp.opening, None, [one for one in standing if one[0] in leaving])
         standing = [one for one in standing if one[0] not in leaving]
+
     return hit or hand.hits(out, grasp.opening, context.attachment(grasp), standing)
 
 

@@ -1,4 +1,6 @@
-"""Tests of movable bodies against each other and against the arm's last stretch; the fixed ones were tested before."""
+"""Tests of movable bodies against each other and against the arm's last stretch; the fixed ones
+were tested before.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ HAIR = 0.0005
 def test_pose_clear(
     context: Context, body: str, pose: Pose, other: str, other_pose: Pose, call: Call
 ) -> bool | Rejection:
-    """Whether two movable bodies at these poses are apart."""
+    """Test whether two movable bodies at these poses are apart."""
     if body == other or not context.collisions.pair(body, pose, other, other_pose, NEIGHBOUR):
         return True
     return Rejection(f"hits {other}", (other,))
@@ -40,18 +42,25 @@ def test_reach_clear(
     other_pose: Pose,
     call: Call,
 ) -> bool | Rejection:
-    """Whether the robot keeps clear of another body while it stands there and reaches, with the hand empty or full."""
+    """Test whether the robot keeps clear of another body while it stands there and reaches, with
+    the hand empty or full.
+    """
     if body == other:
         return True
     if _out_of_the_way(context, body, base, other, other_pose):
         return True
+
     home = context.conf(base.array, context.home)
     place = {other: other_pose}
     empty = context.collisions.arrangement(place, None, fixed=False)
     loaded = context.collisions.arrangement(place, context.attachment(grasp), fixed=False)
-    approach, lift = (np.array([context.conf(base.array, q) for q in path]) for path in (reach.approach, reach.lift))
+    approach, lift = (
+        np.array([context.conf(base.array, q) for q in path])
+        for path in (reach.approach, reach.lift)
+    )
     if not (empty.free(home) and loaded.free(home)):
         return Rejection(f"base hits {other}", (other,))
+
     out = lift[-1]
     aside = np.array([approach[0], out])
     if (
@@ -60,13 +69,18 @@ def test_reach_clear(
         or empty.path_hits(aside, padding=HAIR)
     ):
         return Rejection(f"hits {other}", (other,))
+
     if not (empty.free(out) and loaded.free(out)):
         return Rejection(f"hits {other}", (other,))
     return True
 
 
-def _out_of_the_way(context: Context, body: str, base: BaseConf, other: str, other_pose: Pose) -> bool:
-    """Whether the other body is farther from the base than the arm, stretched out with the body in hand, can be."""
+def _out_of_the_way(
+    context: Context, body: str, base: BaseConf, other: str, other_pose: Pose
+) -> bool:
+    """Check whether the other body is farther from the base than the arm, stretched out with the
+    body in hand, can be.
+    """
     arm = context.robot.T_base_arm.position
     stretched = math.hypot(arm[0], arm[1]) + arm_length(context.robot) + 2 * context.radius(body)
     distance = math.hypot(other_pose.position[0] - base.x, other_pose.position[1] - base.y)

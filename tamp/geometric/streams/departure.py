@@ -1,4 +1,6 @@
-"""Whether a body in the hand hits something while it is lifted off; what it touches at the start it may leave."""
+"""Collision checks of a body in the hand while it is lifted off; what it touches at the start it
+may leave.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +18,11 @@ FINE = 4
 
 
 def lift_hits(
-    context: Context, pose: Pose, grasp: Grasp, lift: Array, others: Mapping[str, Pose] | None = None,
-    padding: float = 0.0,
+    context: Context, pose: Pose, grasp: Grasp, lift: Array,
+    others: Mapping[str, Pose] | None = None, padding: float = 0.0,
 ) -> tuple[str, str] | None:  # fmt: skip
-    """The first pair that collides while a held body is lifted off a pose, as `Arrangement.path_hits` says it.
+    """Return the first pair that collides while a held body is lifted off a pose, as
+    `Arrangement.path_hits` says it.
 
     Args:
         context: The problem's tools.
@@ -30,20 +33,38 @@ def lift_hits(
         padding: Metres that robot and body keep to the others.
     """
     held, body = context.attachment(grasp), grasp.body
-    standing = {name: context.scene.bodies[name].pose for name in context.scene.fixed} if others is None else others
+    standing = (
+        {name: context.scene.bodies[name].pose for name in context.scene.fixed}
+        if others is None
+        else others
+    )
+
     leaving = {
-        name: other for name, other in standing.items() if context.touching.together(body, pose, name, other)
-    }  # fmt: skip
+        name: other
+        for name, other in standing.items()
+        if context.touching.together(body, pose, name, other)
+    }
+
     collisions = context.collisions
     if not leaving:
-        among = context.fixed_only(grasp) if others is None else collisions.arrangement(others, held, fixed=False)
+        among = (
+            context.fixed_only(grasp)
+            if others is None
+            else collisions.arrangement(others, held, fixed=False)
+        )
         return among.path_hits(lift, padding=padding)
-    rest = {} if others is None else {name: other for name, other in others.items() if name not in leaving}
+
+    rest = (
+        {}
+        if others is None
+        else {name: other for name, other in others.items() if name not in leaving}
+    )
     among = collisions.arrangement(rest, held, fixed=others is None, without=leaving)
     hand = collisions.arrangement(leaving, None, opening=grasp.opening, fixed=False)
     hit = among.path_hits(lift, padding=padding) or hand.path_hits(lift, padding=padding)
     if hit is not None:
         return hit
+
     path = np.concatenate([lift[:1], *(np.linspace(a, b, FINE + 1)[1:] for a, b in pairwise(lift))])
     bodies = [context.kinematics.tool(conf) @ grasp.T_tool_body.matrix for conf in path]
     stays = (name for name in leaving if not context.touching.separates(body, bodies, name))

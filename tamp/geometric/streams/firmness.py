@@ -1,8 +1,10 @@
-"""How firmly a grasp holds: the body's weight and its lever arm against the friction and the force of two pads.
+"""The firmness of a grasp: the body's weight and its lever arm against the friction and the force
+of two pads.
 
-After Coulomb's law on a patch under even pressure, as in Howe and Cutkosky, "Practical force-motion models for sliding
-manipulation" (IJRR 1996): the pads resist a force along them, a turn about the closing axis by friction on the patch,
-and turns about the other two by moving the pressure to an edge of the patch and by friction forces that oppose.
+After Coulomb's law on a patch under even pressure, as in Howe and Cutkosky, "Practical force-motion
+models for sliding manipulation" (IJRR 1996): the pads resist a force along them, a turn about the
+closing axis by friction on the patch, and turns about the other two by moving the pressure to an
+edge of the patch and by friction forces that oppose.
 """
 
 from __future__ import annotations
@@ -21,10 +23,12 @@ SHAKE = 0.3
 """Accelerations of the hand while it carries, in any direction, as a share of gravity."""
 
 FIRM = 0.5
-"""The strain up to which a grasp is taken for firm; at 1 the body is about to slip or turn in the hand."""
+"""The strain up to which a grasp is taken for firm; at 1 the body is about to slip or turn in the
+hand."""
 
 FAIR = 0.75
-"""The strain up to which a grasp at the body's middle is not put off for random ones, of which few are firmer."""
+"""The strain up to which a grasp at the body's middle is not put off for random ones, of which few
+are firmer."""
 
 SIDES = np.concatenate([np.eye(3), -np.eye(3)])
 """Directions (6, 3) in which the hand may accelerate."""
@@ -37,10 +41,11 @@ EDGE = 0.002
 
 
 def strain(
-    body: Body, centre: Array, T_body_tool: Array, width: float, patches: Sequence[Array], force: float,
-    ups: Sequence[Array],
+    body: Body, centre: Array, T_body_tool: Array, width: float, patches: Sequence[Array],
+    force: float, ups: Sequence[Array],
 ) -> float:  # fmt: skip
-    """What share of what two pads can hold a body's weight uses up; without a unit, at 1 it slips.
+    """Compute the share that a body's weight uses up of what two pads can hold; without a unit, at
+    1 it slips.
 
     Args:
         body: Its mass and friction are asked for.
@@ -49,15 +54,20 @@ def strain(
         width: Of the body between the pads, metres.
         patches: Where each pad touches, points (k, 3) in the tool's frame, metres.
         force: With which each pad presses, newtons.
-        ups: The directions of up that the tool sees while it holds the body, (3,) each, in the tool's frame.
+        ups: The directions of up that the tool sees while it holds the body, (3,) each, in the
+            tool's frame.
     """
     lever = T_body_tool[:3, :3].T @ (centre - T_body_tool[:3, 3])
     weight = body.mass * GRAVITY
     grip = PAD_FRICTION * body.friction * force
     spread = [patch[:, [0, 2]] - patch[:, [0, 2]].mean(axis=0) for patch in patches]
-    about_closing = sum(grip * (EDGE / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread)
+    about_closing = sum(
+        grip * (EDGE / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread
+    )
     reach = np.min([np.ptp(patch[:, [0, 2]], axis=0) for patch in patches], axis=0) / 2 + EDGE
-    holds = np.array([2 * force * reach[1] + grip * width, about_closing, 2 * force * reach[0] + grip * width])
+    holds = np.array(
+        [2 * force * reach[1] + grip * width, about_closing, 2 * force * reach[0] + grip * width]
+    )
     shaken = np.concatenate([up + SHAKE * SIDES for up in ups])
     turns = np.cross(lever, weight * shaken) / holds
     slip = (1.0 + SHAKE) * weight / (2 * grip)

@@ -1,4 +1,6 @@
-"""Bodies that lie too flat: wide all around, so that a finger would have to get under them, into what they lie on."""
+"""Bodies that lie too flat: wide all around, so that a finger would have to get under them, into
+what they lie on.
+"""
 
 from __future__ import annotations
 
@@ -28,21 +30,25 @@ HALF_MILLIMETRE = 5e-4
 
 
 def too_flat(context: Context, body: str, pose: Pose) -> str | None:
-    """In words that a box or a can that lies flat here has no grasp; None unless that is proven.
+    """Say in words that a box or a can that lies flat here has no grasp; None unless that is
+    proven.
 
-    Its sides are farther apart than the hand opens, so one finger would hold its underside; and all of that, and what
-    is around, lies on one convex part of a fixed body.
+    Its sides are farther apart than the hand opens, so one finger would hold its underside; and all
+    of that, and what is around, lies on one convex part of a fixed body.
     """
     shape = context.scene.bodies[body]
     if len(shape.parts) != 1 or _is_narrow(shape.parts[0].shape, context.robot.opening):
         return None
+
     part = shape.parts[0]
     width = _width(part.shape, pose.rotation[2] @ part.pose.rotation)
     if width is None or width <= context.robot.opening + HALF_MILLIMETRE:
         return None
+
     low, high = bounds(shape.parts, pose)
     if high[2] - low[2] > context.robot.opening:  # there is no grasp of it at all, which others say
         return None
+
     corners = _underside(pose @ part.pose, part.shape)
     least, most, under = corners.min(axis=0), corners.max(axis=0), float(low[2]) - UNDER
     parts, lows, highs = context.fixed_parts
@@ -55,20 +61,25 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
         if below is not None and (distances(corners, below) <= 0.0).all():
             tall = f"{1000 * (high[2] - low[2]):.0f} mm tall, {100 * width:.0f} cm wide"
             return f"too flat to be grasped ({tall}): no finger gets between it and {name}"
+
     return None
 
 
 def _is_narrow(shape: object, opening: float) -> bool:
-    """Whether the hand gets around it whichever side is down; most bodies are so."""
+    """Check whether the hand gets around it whichever side is down; most bodies are so."""
     if isinstance(shape, Box):
         return sum(size <= opening for size in shape.size) >= 2
     return not isinstance(shape, Cylinder) or 2 * shape.radius * math.cos(CONE) <= opening
 
 
 def _width(shape: object, up: Array) -> float | None:
-    """The least distance, metres, of contacts on two sides of a box or can that lies flat; `up` (3,) in its frame."""
+    """Compute the least distance, metres, of contacts on two sides of a box or can that lies flat;
+    `up` (3,) in its frame.
+    """
     if isinstance(shape, Box):
-        level = [size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL]
+        level = [
+            size for size, part in zip(shape.size, up.tolist(), strict=True) if abs(part) < LEVEL
+        ]
         return min(level) if len(level) == 2 else None
     if isinstance(shape, Cylinder) and abs(float(up[2])) >= LEVEL:
         return 2 * shape.radius * math.cos(CONE)
@@ -76,7 +87,7 @@ def _width(shape: object, up: Array) -> float | None:
 
 
 def _underside(placed: Pose, shape: object) -> Array:
-    """Corners (n, 2) of a rectangle around the body as seen from above, grown by BESIDE."""
+    """Return corners (n, 2) of a rectangle around the body as seen from above, grown by BESIDE."""
     size = np.array(shape.size if isinstance(shape, Box) else (0.0, 0.0, 0.0))
     if isinstance(shape, Cylinder):
         size = np.array((2 * shape.radius, 2 * shape.radius, shape.height))

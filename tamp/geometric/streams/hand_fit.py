@@ -1,4 +1,6 @@
-"""Closing the hand on a body: which proposed hand poses are real grasps. Decided by exact collision."""
+"""Closing the hand on a body: which proposed hand poses are real grasps. Decided by exact
+collision.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ CLEARANCE = 0.001
 """Metres that the open hand needs beside what it grasps, on both sides together."""
 
 ROOMY = 0.005
-"""A grasp that leaves the open hand less is weak: where the arm is not exact, a finger may push the body away."""
+"""A grasp that leaves the open hand less is weak: where the arm is not exact, a finger may push the
+body away."""
 
 SLACK = 5e-4
 """Metres by which the opening exceeds the body's width, so that holding is not a collision."""
@@ -37,8 +40,8 @@ PAD = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0,
 
 @dataclass(frozen=True, eq=False)
 class Closed:
-    """A closed hand: T_body_tool (4, 4) centred between the contacts, the opening while holding, metres, and where each
-    pad touches, points (k, 3) in the tool's frame.
+    """A closed hand: T_body_tool (4, 4) centred between the contacts, the opening while holding,
+    metres, and where each pad touches, points (k, 3) in the tool's frame.
     """
 
     T_body_tool: Array
@@ -54,7 +57,11 @@ class HandFit:
         self._body = FclBody(body.parts)
         self._parts = [self._body.place(index, np.eye(4)) for index in range(len(body.parts))]
         hand, left, right = robot.links[-3:]
-        self._hand, self._left, self._right = FclBody(hand.parts), FclBody(left.parts), FclBody(right.parts)
+        self._hand, self._left, self._right = (
+            FclBody(hand.parts),
+            FclBody(left.parts),
+            FclBody(right.parts),
+        )
         self._T_tool_hand = robot.T_hand_tool.inverse().matrix
 
     @property
@@ -65,8 +72,9 @@ class HandFit:
     def close(self, T_body_tool: Array) -> Closed | None:
         """Close the hand at a pose (4, 4).
 
-        None when the open hand hits the body there or while drawing back along its axis, when the fingers meet nothing,
-        or when the contacts do not oppose each other within the friction cone.
+        None when the open hand hits the body there or while drawing back along its axis, when the
+        fingers meet nothing, or when the contacts do not oppose each other within the friction
+        cone.
         """
         widest = self._robot.opening / 2
         if self._hits(T_body_tool, widest):
@@ -88,7 +96,9 @@ class HandFit:
         return Closed(T, opening, patches)
 
     def _hits(self, T_body_tool: Array, finger: float) -> bool:
-        """Whether the hand with both fingers at `finger` metres from the middle touches the body."""
+        """Check whether the hand with both fingers at `finger` metres from the middle touches the
+        body.
+        """
         if self._touches(self._hand, T_body_tool @ self._T_tool_hand):
             return True
         return any(self._finger_touches(T_body_tool, index, finger) for index in (0, 1))
@@ -97,14 +107,18 @@ class HandFit:
         joint = self._robot.fingers[index]
         T_hand_finger = joint.origin.matrix.copy()
         T_hand_finger[:3, 3] += T_hand_finger[:3, :3] @ np.array(joint.axis) * position
-        return self._touches((self._left, self._right)[index], T_body_tool @ self._T_tool_hand @ T_hand_finger)
+        return self._touches(
+            (self._left, self._right)[index], T_body_tool @ self._T_tool_hand @ T_hand_finger
+        )
 
     def _touches(self, link: FclBody, T_body_link: Array) -> bool:
         (item,) = (link.place(index, T_body_link) for index in range(len(link.objects)))
         return any(touch(item, part, 0.0) for part in self._parts)
 
     def _first_contact(self, T_body_tool: Array, index: int) -> float | None:
-        """How far from the middle a closing finger meets the body, to 0.1 mm; None when it does not."""
+        """Find how far from the middle a closing finger meets the body, to 0.1 mm; None when it
+        does not.
+        """
         free, blocked = self._robot.opening / 2, -0.02
         # Walk first: a thin wall could be jumped over.
         for position in np.arange(free, blocked, -0.005):
@@ -123,7 +137,9 @@ class HandFit:
         return free
 
     def _opposed(self, T_body_tool: Array, opening: float) -> tuple[Array, Array] | None:
-        """Where both pads touch the body, opposite each other and squarely enough not to slip; None where not."""
+        """Return where both pads touch the body, opposite each other and squarely enough not to
+        slip; None where not.
+        """
         closing = T_body_tool[:3, 1]
         origins = PAD @ T_body_tool[:3, :3].T + T_body_tool[:3, 3]
         starts, ends, start_planes, end_planes = self._solid.crossings(origins, closing)

@@ -1,4 +1,6 @@
-"""How high the hand gets at a place, measured with the arm itself: a reason that names it has a figure that holds."""
+"""The height that the hand reaches at a place, measured with the arm itself: a reason that names it
+has a figure that holds.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ BEARINGS = 16
 """Directions from which the robot is thought to come."""
 
 PITCHES = np.radians((0.0, 15.0, 30.0, 45.0))
-"""How much the hand is thought to look down: what stands on something is in the way of one that looks up."""
+"""How much the hand is thought to look down: what stands on something is in the way of one that
+looks up."""
 
 PRECISION = 0.005
 """Of the measured height, metres."""
@@ -33,7 +36,7 @@ AROUND = 0.05
 
 
 def too_high(context: Context, point: Array) -> str | None:
-    """In words that a point (3,) is higher than the hand reaches there; None where it is not."""
+    """Say that a point (3,) is higher than the hand reaches there; None where it is not."""
     x, y, z = (float(value) for value in point)
     if z < ABOVE:
         return None
@@ -44,7 +47,8 @@ def too_high(context: Context, point: Array) -> str | None:
 
 
 def highest(context: Context, x: float, y: float) -> float | None:
-    """The height of the tool above a point that the arm gets to from where the robot can stand; None without such.
+    """Return the height of the tool above a point that the arm gets to from where the robot can
+    stand; None without such.
 
     The hand looks level or down by up to 45 degrees, towards the point.
     """
@@ -56,12 +60,16 @@ def highest(context: Context, x: float, y: float) -> float | None:
 
 
 def _nearest_stand(context: Context, x: float, y: float) -> float | None:
-    """How near to the point the arm's foot gets, the robot facing it, the arm at home, among the fixed bodies."""
+    """Find how near to the point the arm's foot gets, the robot facing it, the arm at home, among
+    the fixed bodies.
+    """
     room, foot = context.scene.room, float(np.linalg.norm(context.robot.T_base_arm.position[:2]))
     among = context.fixed_only(None)
     for distance in RINGS:
         for angle in np.arange(BEARINGS) * 2 * math.pi / BEARINGS:
-            base = np.array((x, y, 0.0)) - (distance + foot) * np.array((math.cos(angle), math.sin(angle), 0.0))
+            base = np.array((x, y, 0.0)) - (distance + foot) * np.array(
+                (math.cos(angle), math.sin(angle), 0.0)
+            )
             base[2] = angle
             inside = room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]
             if inside and among.free(context.conf(base, context.home)):
@@ -70,7 +78,9 @@ def _nearest_stand(context: Context, x: float, y: float) -> float | None:
 
 
 def _measured(context: Context, distance: float) -> float | None:
-    """The greatest height of the tool so far in front of the arm's foot that has a solution."""
+    """Measure the greatest height of the tool so far in front of the arm's foot that has a
+    solution.
+    """
     foot = context.robot.T_base_arm.position
     best = None
     for pitch in PITCHES:
@@ -86,7 +96,9 @@ def _measured(context: Context, distance: float) -> float | None:
 
 
 def _top(context: Context, T: Array, least: float) -> float | None:
-    """The height up to which the tool has solutions above `least`, in steps that halve; None where not even there."""
+    """Search the height up to which the tool has solutions above `least`, in steps that halve; None
+    where not even there.
+    """
 
     def reached(height: float) -> bool:
         T[2, 3] = height

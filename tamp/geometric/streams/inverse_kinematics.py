@@ -1,4 +1,4 @@
-"""Where to stand and how to reach: a base pose and the arm's last stretch to a grasp."""
+"""Base placement and inverse kinematics: a base pose and the arm's last stretch to a grasp."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ FINE = 0.0025
 """and near singularities, where the joints move fast."""
 
 TURN = 0.1
-"""The most that a joint may turn from one to the next, radians: in between, the tool strays by less than 1.5 mm."""
+"""The most that a joint may turn from one to the next, radians: in between, the tool strays by less
+than 1.5 mm."""
 
 BATCH = 16
 """Base poses looked at in one try: most stand in some furniture, which is found out quickly."""
@@ -35,8 +36,9 @@ NOOK = 0.05
 """or, so that no place is ruled out for good, with this probability."""
 
 PATIENCE = 12
-"""Tries without a success after which a grasp there is given up. Poses and grasps are drawn without end, so that no
-solution is lost for good, and another of those is the better bet than the thousandth place for the base."""
+"""Tries without a success after which a grasp there is given up. Poses and grasps are drawn without
+end, so that no solution is lost for good, and another of those is the better bet than the
+thousandth place for the base."""
 
 SOLUTIONS = 24
 """Arm solutions looked at from one base pose,"""
@@ -51,10 +53,12 @@ UNREACHED = ("out of reach", "no straight approach")
 def inverse_kinematics(
     context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
 ) -> Iterator[tuple[BaseConf, Reach] | Rejection]:
-    """Base poses and approaches that are free of the fixed bodies, with the hand empty and with the body in it.
+    """Yield base poses and approaches that are free of the fixed bodies, with the hand empty and
+    with the body in it.
 
-    The approach is a straight line along the tool's axis; with the body in hand it is lifted straight up first, so that
-    it does not scrape along its support. Ends after PATIENCE tries without any success.
+    The approach is a straight line along the tool's axis; with the body in hand it is lifted
+    straight up first, so that it does not scrape along its support. Ends after PATIENCE tries
+    without any success.
     """
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     failures = 0.0
@@ -65,6 +69,7 @@ def inverse_kinematics(
             if refused is not None:
                 reason = reason or refused
                 continue
+
             found = _reaching(context, pose, grasp, base, T_world_tool, call)
             if not isinstance(found, Rejection):
                 failures = -math.inf
@@ -72,6 +77,7 @@ def inverse_kinematics(
                 reason = None
                 break
             reason = found
+
         if reason is not None:
             if reason.reason in UNREACHED:
                 high = too_high(context, T_world_tool[:3, 3])
@@ -80,8 +86,12 @@ def inverse_kinematics(
             yield reason if failures < PATIENCE else replace(reason, given_up=True)
 
 
-def _standing(context: Context, body: str, grasp: Grasp, base: Array, call: Call) -> Rejection | None:
-    """Why the robot cannot stand there with the arm at home, with the body or without; cheap, and often the answer."""
+def _standing(
+    context: Context, body: str, grasp: Grasp, base: Array, call: Call
+) -> Rejection | None:
+    """Say why the robot cannot stand there with the arm at home, with the body or without; cheap,
+    and often the answer.
+    """
     room = context.scene.room
     if not (room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]):
         return Rejection("base outside of the room")
@@ -96,7 +106,9 @@ def _standing(context: Context, body: str, grasp: Grasp, base: Array, call: Call
 
 
 def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool:
-    """Whether the robot can slide out of this place, backwards or to a side, with the body in hand."""
+    """Check whether the robot can slide out of this place, backwards or to a side, with the body in
+    hand.
+    """
     loaded = context.fixed_only(grasp)
     for angle in (math.pi, 0.75 * math.pi, -0.75 * math.pi, 0.5 * math.pi, -0.5 * math.pi):
         heading = base[2] + angle
@@ -111,14 +123,23 @@ def _reaching(
     context: Context, pose: Pose, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
 ) -> tuple[BaseConf, Reach] | Rejection:
     empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
-    T_base_tool = np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
+    T_base_tool = (
+        np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
+    )
     solutions = context.ik.solve(T_base_tool)
     if len(solutions) == 0:
         return Rejection("out of reach")
-    # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch possible.
-    order = np.argsort(np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions)))
+
+    # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch
+    # possible.
+    order = np.argsort(
+        np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions))
+    )
     reason = Rejection("no straight approach")
-    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(grasp.body, pose, LIFT)
+    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
+        grasp.body, pose, LIFT
+    )
+
     confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs
@@ -127,10 +148,14 @@ def _reaching(
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
+
         reach = _approach(context, T_base_tool, conf[3:], up)
         if reach is None:
             continue
-        approach, lift = (np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift))
+
+        approach, lift = (
+            np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift)
+        )
         hit = (
             empty.path_hits(approach)
             or lift_hits(context, pose, grasp, lift)
@@ -139,15 +164,20 @@ def _reaching(
         if hit is not None:
             reason = Rejection(f"hits {_other(hit)}")
             continue
+
         if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
             reason = Rejection("no room before the approach")
             continue
+
         return BaseConf(float(base[0]), float(base[1]), float(base[2])), reach
+
     return reason
 
 
 def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Reach | None:
-    """The straight lines away from the grasp: back along the tool's axis; and by `lift` (3,), then back."""
+    """Compute the straight lines away from the grasp: back along the tool's axis; and by `lift`
+    (3,), then back.
+    """
     back = T_base_tool[:3, 2]
     away = follow_line(context, T_base_tool, -RETREAT * back, q)
     if away is None:
@@ -164,7 +194,9 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
 
 
 def follow_line(context: Context, T_base_tool: Array, offset: Array, q: Array) -> Array | None:
-    """Arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the base frame, from q."""
+    """Compute arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the
+    base frame, from q.
+    """
     length = float(np.linalg.norm(offset))
     for step in (STEP, FINE):
         count = max(1, math.ceil(length / step))

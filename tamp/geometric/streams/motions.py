@@ -1,4 +1,6 @@
-"""Motions of whole actions: drive somewhere, pick, place. What they certify holds in the state that they were shown."""
+"""Motions of whole actions: drive somewhere, pick, place. What they certify holds in the state that
+they were shown.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection
 
 HARDEST = 4
-"""The greatest effort of a motion plan; each level allows four times as many edges as the one before."""
+"""The greatest effort of a motion plan; each level allows four times as many edges as the one
+before."""
 
 LOOKS = 33
 """Configurations on the straight way that are looked at to say what is in it."""
@@ -40,7 +43,7 @@ class _Query:
 
 
 def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[Motion | Rejection]:
-    """The base drives, the arm at home, perhaps with a body in hand."""
+    """Plan a drive of the base, the arm at home, perhaps with a body in hand."""
     start = next(value for name, *values in call.fluents for value in values if name == "at-base")
     held = next((values[1] for name, *values in call.fluents if name == "holding"), None)
     poses = {values[0]: values[1] for name, *values in call.fluents if name == "at-pose"}
@@ -49,12 +52,14 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
     def plan(arrangement: Arrangement, effort: int) -> Planned:
         ends = np.array(start.array), np.array(goal.array)
         return plan_base(
-            arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline, effort=effort,
-            steering=context.steering,
+            arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
+            effort=effort, steering=context.steering,
         )  # fmt: skip
 
     stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
-    query = _Query(plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands)
+    query = _Query(
+        plan, lambda path: np.column_stack([path, np.tile(context.home, (len(path), 1))]), stands
+    )
     for planned in _attempts(context, poses, held, query):
         if isinstance(planned, Rejection):
             yield planned
@@ -65,7 +70,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
 def plan_pick(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """From home to the body, close the hand, and back home with it."""
+    """Plan a pick: from home to the body, close the hand, and back home with it."""
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
@@ -84,7 +89,7 @@ def plan_pick(
 def plan_place(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """From home with the body to its place, open the hand, and back home."""
+    """Plan a placement: from home with the body to its place, open the hand, and back home."""
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
@@ -103,7 +108,8 @@ def plan_place(
 def _transits(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[tuple[Array, Array] | Rejection]:
-    """Arm paths from home to before the approach: with the hand empty and the body in place, and with it in hand.
+    """Plan arm paths from home to before the approach: with the hand empty and the body in place,
+    and with it in hand.
 
     One path usually serves both, so the loaded one is planned first; it is the harder.
     """
@@ -112,15 +118,27 @@ def _transits(
     out = reach.lift[-1]
 
     def plan(arrangement: Arrangement, effort: int) -> Planned:
-        return plan_arm(arrangement, stand, context.home, out, context.robot, call.rng, call.deadline, effort=effort)
+        return plan_arm(
+            arrangement,
+            stand,
+            context.home,
+            out,
+            context.robot,
+            call.rng,
+            call.deadline,
+            effort=effort,
+        )
 
     reached = context.conf(stand, context.home), context.conf(stand, out)
-    query = _Query(plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached)
+    query = _Query(
+        plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached
+    )
     with_body = {**others, body: pose}
     for loaded in _attempts(context, others, grasp, query):
         if isinstance(loaded, Rejection):
             yield loaded
             continue
+
         among = context.collisions.arrangement(with_body)
         if _free(among, query.confs(loaded)):
             yield loaded, loaded
@@ -133,7 +151,7 @@ def _transits(
 def _attempts(
     context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query
 ) -> Iterator[Array | Rejection]:
-    """Paths, or why there is none, with growing effort; ends when a failure is final."""
+    """Yield paths, or why there is none, with growing effort; end when a failure is final."""
     attachment = None if held is None else context.attachment(held)
     arrangement = context.collisions.arrangement(poses, attachment)
     for effort in range(HARDEST + 1):
@@ -146,18 +164,25 @@ def _attempts(
             return
 
 
-def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int) -> Rejection:
-    """Name the movable bodies in the way: those that a path among the fixed bodies alone runs into."""
+def _diagnosed(
+    context: Context, poses: dict[str, Pose], held: Grasp | None, query: _Query, effort: int
+) -> Rejection:
+    """Name the movable bodies in the way, which a path among the fixed bodies alone runs into."""
     relaxed = query.plan(context.fixed_only(held), effort)
     if relaxed.path is None:
         failure = relaxed.failure or Failure.EXHAUSTED
         ahead = _straight_ahead(context, held, query)
         where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
         ends = [end[:2] for end in query.ends]
-        gap = context.passage.narrow(ends[1]) if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any() else None
+        gap = (
+            context.passage.narrow(ends[1])
+            if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any()
+            else None
+        )
         if gap is not None:
             return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
         return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
+
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
     blockers = tuple(
@@ -167,14 +192,17 @@ def _diagnosed(context: Context, poses: dict[str, Pose], held: Grasp | None, que
     )
     if not blockers:
         return Rejection("no motion found")
+
     return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
 
 
 def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:
-    """The fixed bodies that the straight way runs into."""
+    """List the fixed bodies that the straight way runs into."""
     start, goal = query.ends
     arrangement = context.fixed_only(held)
-    hits = [arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)]
+    hits = [
+        arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)
+    ]
     return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
 
 

@@ -1,4 +1,6 @@
-"""Poses of a relation one after another: batches proposed, judged in their order, the promising ones first."""
+"""Poses of a relation one after another: batches proposed, judged in their order, the promising
+ones first.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,12 @@ BATCH = 16
 """Poses asked of a generator at once."""
 
 PROBATION = 2 * BATCH
-"""Proposals of which none is of use, after which a generator that is new to the run gives way in this try."""
+"""Proposals of which none is of use, after which a generator that is new to the run gives way in
+this try."""
 
 STALE = 3
-"""Batches without anything new, or misbehaviours of a generator that is alone, after which it is asked no more."""
+"""Batches without anything new, or misbehaviours of a generator that is alone, after which it is
+asked no more."""
 
 Judge = Callable[[Pose], Pose | Rejection]
 """Puts a proposal to rest and certifies it, or says why not."""
@@ -41,10 +45,11 @@ def draw(
     call: Call,
     at: Mapping[str, Pose] = MappingProxyType({}),
 ) -> Iterator[Pose | Rejection]:
-    """Poses of the body `arguments[0]` that the judge accepts; a try is a batch of every generator at most.
+    """Draw poses of the body `arguments[0]` that the judge accepts; a try is a batch of every
+    generator at most.
 
-    Of a batch, poses that are clear of the other bodies where the plan has them come first, in the batch's order. One
-    that is not comes last: its test tells the search what is in the way.
+    Of a batch, poses that are clear of the other bodies where the plan has them come first, in the
+    batch's order. One that is not comes last: its test tells the search what is in the way.
 
     Args:
         context: Of the problem.
@@ -56,13 +61,18 @@ def draw(
         at: Where bodies are wanted in the scene, whatever the plan has.
     """
     ledger = Ledger.of(relation, mixture, call.memory)
-    poses: dict[str, Pose] = {name: pose for _, name, pose in call.fluents if name != arguments[0]} | dict(at)
+    poses: dict[str, Pose] = {
+        name: pose for _, name, pose in call.fluents if name != arguments[0]
+    } | dict(at)
     alone = len(mixture.generators) == 1
     sources: list[_Source] = []
-    for index, (generator, account) in enumerate(zip(mixture.generators, ledger.accounts, strict=True)):
+    for index, (generator, account) in enumerate(
+        zip(mixture.generators, ledger.accounts, strict=True)
+    ):
         # The trusted one draws the numbers that it would draw alone; each has a scene of its own.
         rng = call.rng if index == len(mixture.generators) - 1 else call.rng.spawn(1)[0]
         sources.append(_Source(generator, account, context.scene_at(poses, arguments[0]), rng))
+
     drawer = _Drawer(context, ledger, sources, poses, arguments, judge, call, alone)
     while any(source.account.out is None and not source.ended for source in sources):
         if not call.ahead:
@@ -72,7 +82,11 @@ def draw(
         if result is None:
             break
         yield result
-    unruly = next((source for source in sources if source.account.out is not None or source.strikes >= STALE), None)
+
+    unruly = next(
+        (source for source in sources if source.account.out is not None or source.strikes >= STALE),
+        None,
+    )
     if unruly is not None:
         yield Rejection(f"{unruly.account.name}: {unruly.wrong}", given_up=True)
 
@@ -103,7 +117,7 @@ class _Source:
     wrong: str = ""
 
     def take_clash(self) -> Pose | None:
-        """The pose that is kept for the end of the batch, once."""
+        """Return the pose that is kept for the end of the batch, once."""
         pose, self.clash = self.clash, None
         return pose
 
@@ -120,7 +134,7 @@ class _Drawer:
     alone: bool
 
     def next(self) -> Pose | Rejection | None:
-        """One try; None when no generator has anything more to give."""
+        """Make one try; None when no generator has anything more to give."""
         refused: Counter[Rejection] = Counter()
         for index in self.ledger.order():
             source = self.sources[index]
@@ -152,11 +166,14 @@ class _Drawer:
         self.call.warn(sidelined(self.ledger.relation, account, names))
 
     def _from(self, source: _Source, refused: Counter[Rejection]) -> Pose | None:
-        """The next pose of a generator's batch that is clear; a new batch is asked for when the last one is used up."""
+        """Return the next pose of a generator's batch that is clear; a new batch is asked for when
+        the last one is used up.
+        """
         if source.ended or source.account.out is not None:
             return None
         if not source.batch:
             self._ask(source, refused)
+
         while source.batch:
             proposal = source.batch.popleft()
             pose = self.judge(proposal)
@@ -165,14 +182,17 @@ class _Drawer:
                 self.ledger.judged(source.account, pose.reason)
                 self.call.refused(proposal, pose.reason)
                 continue
+
             hit = next((name for name in self.poses if self._near(pose, name)), None)
             if hit is None:
                 self.ledger.judged(source.account, None)
                 source.clear = True
                 return pose
+
             self.ledger.judged(source.account, f"hits {hit}")
             self.call.refused(pose, f"hits {hit}")
             source.clash = source.clash or pose
+
         return source.take_clash() if source.clear else None
 
     def _near(self, pose: Pose, other: str) -> bool:
@@ -182,25 +202,35 @@ class _Drawer:
     def _ask(self, source: _Source, refused: Counter[Rejection]) -> None:
         account = source.account
         source.clear, source.clash = False, None
+
         allowed = self.ledger.allowance(account, self.call.deadline)
         started = time.perf_counter()
         try:
             if allowed <= 0.0:
                 raise Misbehaved(f"it took {account.seconds:.2f} s to propose poses")
             proposals = ask(
-                source.generator, source.scene, self.arguments, BATCH, source.rng, self.call.deadline, allowed
+                source.generator,
+                source.scene,
+                self.arguments,
+                BATCH,
+                source.rng,
+                self.call.deadline,
+                allowed,
             )
         except Misbehaved as error:
             self._misbehaved(source, str(error), refused)
             return
         finally:
             account.seconds += time.perf_counter() - started
+
         if not proposals:
             source.ended = True
             return
+
         fresh = [pose for pose in proposals if self._is_new(source, pose)]
         source.batch.extend(fresh)
         account.work += len(proposals) - len(fresh)
+
         if len(fresh) <= len(proposals) // 8:
             refused[Rejection("proposed again")] += 1
             account.stale += 1
@@ -208,7 +238,7 @@ class _Drawer:
                 self._misbehaved(source, "it proposes one pose again and again", refused)
 
     def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
-        """Beside the trusted one it is asked no more; alone it has a few more tries."""
+        """Ask a generator beside the trusted one no more; alone it has a few more tries."""
         refused[Rejection(f"{source.account.name}: {what}")] += 1
         source.wrong = what
         if not self.alone:
@@ -221,9 +251,14 @@ class _Drawer:
         source.ended = source.strikes >= STALE
 
     def _is_new(self, source: _Source, pose: Pose) -> bool:
-        """Whether the generator has not proposed this pose, to a tenth of a millimetre, in this call before."""
+        """Check whether the generator has not proposed this pose, to a tenth of a millimetre, in
+        this call before.
+        """
         sign = 1.0 if pose.quaternion[3] >= 0.0 else -1.0
-        key = (*(round(x, 4) for x in pose.position), *(round(sign * q, 3) for q in pose.quaternion))
+        key = (
+            *(round(x, 4) for x in pose.position),
+            *(round(sign * q, 3) for q in pose.quaternion),
+        )
         if key in source.seen:
             return False
         source.seen.add(key)

@@ -1,4 +1,4 @@
-"""What is out of the arm's reach for certain."""
+"""Reachability tests: what is out of the arm's reach for certain."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ PAD = 0.02
 
 
 def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool | Rejection:
-    """Whether any base pose in the room could bring any point of the arm to the body, and a hand around it.
+    """Test whether any base pose in the room could bring any point of the arm to the body, and a
+    hand around it.
 
     False only when the contrary is proven.
     """
@@ -30,10 +31,11 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
 
 
 def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
-    """Whether the arm could touch a box with corners `low` and `high` (3,) from some place in the room.
+    """Check whether the arm could touch a box with corners `low` and `high` (3,) from some place in
+    the room.
 
-    Necessary conditions: the shoulder stays at one height and over the room's rectangle grown by its offset, and the
-    base on the part of the floor to which its way is wide enough.
+    Necessary conditions: the shoulder stays at one height and over the room's rectangle grown by
+    its offset, and the base on the part of the floor to which its way is wide enough.
     """
     robot, room = context.robot, context.scene.room
     shoulder, span = _shoulder(robot), arm_length(robot)
@@ -43,7 +45,10 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
         lowest = np.array((*(low + high)[:2] / 2, low[2]))
         measured = too_high(context, lowest) if side == "high" else None
         most = f"too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m"
-        return Rejection(f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})")
+        return Rejection(
+            f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})"
+        )
+
     offset = math.hypot(shoulder[0], shoulder[1])
     horizontal = math.hypot(
         max(low[0] - room.x[1] - offset, room.x[0] - offset - high[0], 0.0),
@@ -51,16 +56,19 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
     )
     if math.hypot(horizontal, vertical) > span:
         return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
+
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
     return True if gap is None else Rejection(f"out of reach ({gap.text})")
 
 
 def arm_length(robot: Robot) -> float:
-    """From the second joint to the finger tips of the arm stretched out, metres; an upper bound."""
+    """Bound the length from the second joint to the finger tips of the arm stretched out, metres,
+    from above.
+    """
     pieces = [joint.origin for joint in robot.joints[2:]] + [robot.T_flange_hand, robot.T_hand_tool]
     return sum(math.hypot(*piece.position) for piece in pieces) + PAD
 
 
 def _shoulder(robot: Robot) -> Array:
-    """Where the second joint is in the base's frame, (3,)."""
+    """Return the position of the second joint in the base's frame, (3,)."""
     return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)

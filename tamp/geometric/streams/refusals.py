@@ -1,4 +1,5 @@
-"""Why a body cannot be grasped or put somewhere at all; a proof only where every other way was looked at.
+"""Reasons why a body cannot be grasped or put somewhere at all; a proof only where every other way
+was looked at.
 
 What is not proven is said as well, but as given up: a run that ends with it claims nothing.
 """
@@ -12,7 +13,16 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cavity, Cylinder, Part, Sphere, Surface
+from tamp.geometric.scene.scene import (
+    CONTACT_GAP,
+    Body,
+    Box,
+    Cavity,
+    Cylinder,
+    Part,
+    Sphere,
+    Surface,
+)
 from tamp.geometric.stability.hulls import body_hull, part_mesh
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
@@ -27,7 +37,8 @@ HALF_MILLIMETRE = 5e-4
 """What a width must exceed another one by to be called larger, metres."""
 
 MOST_FACETS = 300
-"""Ways up that are looked at for a proof; a body with more is taken for a curved one, of which nothing is proven."""
+"""Ways up that are looked at for a proof; a body with more is taken for a curved one, of which
+nothing is proven."""
 
 FINE = 0.004
 """Spacing of the places that are looked at for a proof that all are taken, metres,"""
@@ -43,23 +54,29 @@ HEADROOM = 2.0
 
 
 def no_grasp(body: Body, opening: float) -> Rejection:
-    """Of a body that gave no grasp, by a hand that opens so wide, metres."""
+    """Say why a body gave no grasp, by a hand that opens so wide, metres."""
     width = narrowest(body)
     if width is None:
         least = _least_width(body)
-        wide = f": no side of {body.name} is under {100 * least:.1f} cm, the hand opens {100 * opening:.0f} cm"
+        wide = (
+            f": no side of {body.name} is under {100 * least:.1f} cm, "
+            f"the hand opens {100 * opening:.0f} cm"
+        )
         return Rejection(f"no grasp was found{wide if least > opening else ''}", given_up=True)
     if width > opening + HALF_MILLIMETRE:
         return Rejection(f"no grasp: every width is over the hand's {opening * 100:.0f} cm")
     return Rejection(
-        f"no grasp was found ({100 * width:.1f} cm wide, the hand opens {100 * opening:.0f} cm)", given_up=True
+        f"no grasp was found ({100 * width:.1f} cm wide, the hand opens {100 * opening:.0f} cm)",
+        given_up=True,
     )
 
 
 def narrowest(body: Body) -> float | None:
-    """The least distance between two contacts that hold a body of one simple shape, metres; None for other bodies.
+    """Compute the least distance between two contacts that hold a body of one simple shape, metres;
+    None for other bodies.
 
-    On a curved side friction holds what is grasped beside its middle, where it is a little narrower.
+    On a curved side friction holds what is grasped beside its middle, where it is a little
+    narrower.
     """
     if len(body.parts) != 1:
         return None
@@ -72,48 +89,65 @@ def narrowest(body: Body) -> float | None:
 
 
 def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
-    """Why a body can be placed nowhere in a region; None where it may."""
+    """Say why a body can be placed nowhere in a region; None where it may."""
     if context.scene.bodies[region.body].movable:
-        what = f"{region.name} is on {region.body}, which may be moved; only fixed bodies can be put things on"
+        what = (
+            f"{region.name} is on {region.body}, which may be moved; "
+            "only fixed bodies can be put things on"
+        )
         return Rejection(what, given_up=True)
+
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
     ways = context.resting(body).ways
     if not ways:
         ball = all(isinstance(part.shape, Sphere) for part in shape.parts)
-        reason = f"a sphere rests on no stable face ({body})" if ball else f"{body} rests on no stable face"
+        reason = (
+            f"a sphere rests on no stable face ({body})"
+            if ball
+            else f"{body} rests on no stable face"
+        )
         return Rejection(reason, given_up=True)
+
     low = [face for face in ways if face.extent + 2 * CONTACT_GAP <= room]
     if not low:
         least = min(face.extent for face in ways)
         what = f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)"
         return Rejection(what, given_up=_could_fit(shape, room, None))
+
     if isinstance(region, Cavity) and not any(fits(face, region.size) for face in low):
-        size, space = (" x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size))
+        size, space = (
+            " x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size)
+        )
         what = f"protrudes ({body} takes {size} m, {region.name} has {space} m)"
         return Rejection(what, given_up=_could_fit(shape, room, region))
+
     return _out_of_reach(context, body, region, room)
 
 
 def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
-    """Why a body of one convex part finds no free place among the fixed bodies in a region; None unless proven.
+    """Say why a body of one convex part finds no free place among the fixed bodies in a region;
+    None unless proven.
 
-    Wherever it rests, its centre of mass is over the region and well inside the side that is down; so a disc around it,
-    just above the region, must be free.
+    Wherever it rests, its centre of mass is over the region and well inside the side that is down;
+    so a disc around it, just above the region, must be free.
     """
     shape, ways = context.scene.bodies[body], context.resting(body).ways
     if len(shape.parts) != 1 or not ways:
         return None
+
     radius = min(_room_around(face) * max(0.0, 1.0 - 4 * JUST_ABOVE / face.extent) for face in ways)
     cell = max(FINE, math.sqrt(region.size[0] * region.size[1] / PLACES))
     if radius <= cell:
         return None
+
     x, y = (np.arange(-side / 2, side / 2 + cell, cell) for side in region.size[:2])
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     T_world_region = context.scene.world_pose(region)
     places = T_world_region.apply(np.column_stack([grid, np.zeros(len(grid))]))
     if np.ptp(places[:, 2]) > HALF_MILLIMETRE:
         return None
+
     least, names = np.full(len(grid), np.inf), list[str]()
     for name in context.scene.fixed:
         other = context.scene.bodies[name]
@@ -125,39 +159,57 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
                 np.minimum(least, distances(places[:, :2], corners), out=least)
         if (least < np.minimum(before, radius)).any():
             names.append(name)
+
     if not (least < radius - cell).all():
         return None
     return Rejection(f"every place there hits {' or '.join(names)}")
 
 
 def _room_around(face: Face) -> float:
-    """How far the centre of mass is from the edges of the side that is down, metres; zero where it is not inside."""
+    """Compute how far the centre of mass is from the edges of the side that is down, metres; zero
+    where it is not inside.
+    """
     edges = np.roll(face.base, -1, axis=0) - face.base
     to = face.centre - face.base
     across = edges[:, 0] * to[:, 1] - edges[:, 1] * to[:, 0]
     return max(0.0, float((across / np.maximum(np.linalg.norm(edges, axis=1), 1e-12)).min()))
 
 
-def _out_of_reach(context: Context, body: str, region: Surface | Cavity, room: float) -> Rejection | None:
-    """Why the arm gets nowhere near the region; the body may stand out over the edge of a surface."""
+def _out_of_reach(
+    context: Context, body: str, region: Surface | Cavity, room: float
+) -> Rejection | None:
+    """Say why the arm gets nowhere near the region; the body may stand out over the edge of a
+    surface.
+    """
     beyond = 2 * context.radius(body) if isinstance(region, Surface) else 0.0
     height = min(room, HEADROOM)
-    box = Part(Box((region.size[0] + beyond, region.size[1] + beyond, height)), Pose((0.0, 0.0, height / 2)))
+    box = Part(
+        Box((region.size[0] + beyond, region.size[1] + beyond, height)),
+        Pose((0.0, 0.0, height / 2)),
+    )
     reachable = within_reach(context, *bounds((box,), context.scene.world_pose(region)))
-    return Rejection(f"{region.name} is {reachable.reason}") if isinstance(reachable, Rejection) else None
+    return (
+        Rejection(f"{region.name} is {reachable.reason}")
+        if isinstance(reachable, Rejection)
+        else None
+    )
 
 
 def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
-    """Whether the body might rest under so low a ceiling after all, on a side that is not steady; or nobody knows."""
+    """Check whether the body might rest under so low a ceiling after all, on a side that is not
+    steady; or nobody knows.
+    """
     sides = facets(body, MOST_FACETS)
     if sides is None:
         return True
     low = [side for side in sides if ROUNDED * side.extent - HALF_MILLIMETRE <= room]
-    return any(cavity is None or fits(side, [length / ROUNDED for length in cavity.size]) for side in low)
+    return any(
+        cavity is None or fits(side, [length / ROUNDED for length in cavity.size]) for side in low
+    )
 
 
 def _least_width(body: Body) -> float:
-    """The least of the body's widths square to a facet, metres."""
+    """Compute the least of the body's widths square to a facet, metres."""
     vertices, triangles = body_hull(body)
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     normals = np.cross(b - a, c - a)

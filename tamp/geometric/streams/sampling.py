@@ -18,11 +18,12 @@ from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection
 
 HOPELESS = 32
-"""Tries without any success after which it is worth asking whether a region is covered altogether."""
+"""Tries without any success after which it is worth asking whether a region is covered altogether.
+"""
 
 
 def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Rejection]:
-    """Grasps with which the robot can carry the body at home without touching it."""
+    """Sample grasps with which the robot can carry the body at home without touching it."""
 
     def refused(grasp: Grasp) -> Rejection | None:
         carried = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
@@ -44,23 +45,32 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
 
 
 def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
-    """Why a body cannot be lifted at all, by the arm's payload or by what the fingers' friction holds."""
+    """Say why a body cannot be lifted at all, by the arm's payload or by what the fingers' friction
+    holds.
+    """
     if body.mass > robot.payload:
-        return Rejection(f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg")
+        return Rejection(
+            f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg"
+        )
     holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY
     if body.mass > holds:
-        what = f"{body.name} weighs {body.mass:g} kg and would slip: with its friction of {body.friction:g} the fingers"
+        what = (
+            f"{body.name} weighs {body.mass:g} kg and would slip: "
+            f"with its friction of {body.friction:g} the fingers"
+        )
         return Rejection(f"{what}, at {robot.force:g} N, hold {holds:.2g} kg", given_up=True)
     return None
 
 
 def sample_on(context: Context, body: str, surface: str, call: Call) -> Iterator[Pose | Rejection]:
-    """Poses at rest on a surface, free of the fixed bodies."""
+    """Sample poses at rest on a surface, free of the fixed bodies."""
     return _placements(context, "on", body, context.scene.surfaces[surface], call)
 
 
-def sample_inside(context: Context, body: str, container: str, call: Call) -> Iterator[Pose | Rejection]:
-    """Poses at rest on a cavity's floor, all of the body within the cavity."""
+def sample_inside(
+    context: Context, body: str, container: str, call: Call
+) -> Iterator[Pose | Rejection]:
+    """Sample poses at rest on a cavity's floor, all of the body within the cavity."""
     return _placements(context, "inside", body, context.scene.cavities[container], call)
 
 
@@ -82,7 +92,9 @@ def _placements(
         return pose if hit is None else Rejection(f"hits {hit}")
 
     failures = 0.0
-    for result in draw(context, relation, context.mixtures[relation], (body, region.name), judge, call):
+    for result in draw(
+        context, relation, context.mixtures[relation], (body, region.name), judge, call
+    ):
         failures = failures + 1 if isinstance(result, Rejection) else -math.inf
         if failures == HOPELESS and (proof := covered(context, body, region)) is not None:
             yield proof

@@ -1,4 +1,6 @@
-"""A user's own relation as streams: sample-<relation> from its generator, test-<relation> from its classifier."""
+"""A user's own relation as streams: sample-<relation> from its generator, test-<relation> from its
+classifier.
+"""
 
 from __future__ import annotations
 
@@ -26,42 +28,66 @@ def sample_relation(
     judge: tuple[Classifier, tuple[int, ...]] | None = None,
     call: Call,
 ) -> Iterator[Pose | Rejection]:
-    """Poses that the generator proposes for the relation's first argument, put to rest on whatever is below them.
+    """Sample poses that the generator proposes for the relation's first argument, put to rest on
+    whatever is below them.
 
-    The generator sees the scene as it will be at that step; a pose among the inputs is that of the body before it. That
-    the body rests there, clear of the fixed bodies, is certified here, everything else by other streams' tests; but
-    where the relation has no test and a classifier, `judge`, that is asked here, with the inputs at these indices.
+    The generator sees the scene as it will be at that step; a pose among the inputs is that of the
+    body before it. That the body rests there, clear of the fixed bodies, is certified here,
+    everything else by other streams' tests; but where the relation has no test and a classifier,
+    `judge`, that is asked here, with the inputs at these indices.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
-    at = {name: pose for name, pose in pairwise((body, *others)) if isinstance(name, str) and isinstance(pose, Pose)}
+    at = {
+        name: pose
+        for name, pose in pairwise((body, *others))
+        if isinstance(name, str) and isinstance(pose, Pose)
+    }
+
     scene = context.scene
-    regions = [place for place in (*scene.surfaces.values(), *scene.cavities.values()) if place.body in scene.fixed]
+    regions = [
+        place
+        for place in (*scene.surfaces.values(), *scene.cavities.values())
+        if place.body in scene.fixed
+    ]
 
     def certified(proposal: Pose) -> Pose | Rejection:
-        rested = [rest(context.resting(body), proposal, region, scene.world_pose(region)) for region in regions]
+        rested = [
+            rest(context.resting(body), proposal, region, scene.world_pose(region))
+            for region in regions
+        ]
         pose = next((pose for pose in rested if isinstance(pose, Pose)), None)
         if pose is None:
             return Rejection("rests nowhere")
+
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
             return Rejection(f"hits {hit}")
         if judge is None:
             return pose
+
         classifier, indices = judge
         names = [(body, *others)[index] for index in indices]
         answer = _answer(_asked(context, classifier, names, {**at, body: pose}, call))
         return answer if isinstance(answer, Rejection) else pose
 
-    yield from draw(context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at)
+    yield from draw(
+        context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
+    )
 
 
-def test_relation(context: Context, *arguments: Any, classifier: Classifier, call: Call) -> Rejection | bool:
-    """Whether the classifier says that the relation holds; a pose among the arguments is that of the body before it."""
+def test_relation(
+    context: Context, *arguments: Any, classifier: Classifier, call: Call
+) -> Rejection | bool:
+    """Test whether the classifier says that the relation holds; a pose among the arguments is that
+    of the body before it.
+    """
     return _answer(_probability(context, arguments, classifier, call))
 
 
-def fails_relation(context: Context, *arguments: Any, classifier: Classifier, call: Call) -> bool | Rejection:
-    """Whether the classifier says that the relation does not hold."""
+def fails_relation(
+    context: Context, *arguments: Any, classifier: Classifier, call: Call
+) -> bool | Rejection:
+    """Test whether the classifier says that the relation does not hold."""
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
         return Rejection("cannot tell")
@@ -74,7 +100,9 @@ def _answer(number: float) -> bool | Rejection:
     return True if number >= LIKELY else Rejection(f"unlikely ({number:.2f})")
 
 
-def _probability(context: Context, arguments: tuple[Any, ...], classifier: Classifier, call: Call) -> float:
+def _probability(
+    context: Context, arguments: tuple[Any, ...], classifier: Classifier, call: Call
+) -> float:
     poses: dict[str, Pose] = {}
     names: list[str] = []
     for argument in arguments:
@@ -85,8 +113,12 @@ def _probability(context: Context, arguments: tuple[Any, ...], classifier: Class
     return _asked(context, classifier, names, poses, call)
 
 
-def _asked(context: Context, classifier: Classifier, names: list[str], poses: dict[str, Pose], call: Call) -> float:
-    """The probability with bodies at poses, and the others where the step has them, or else at their start."""
+def _asked(
+    context: Context, classifier: Classifier, names: list[str], poses: dict[str, Pose], call: Call
+) -> float:
+    """Compute the probability with bodies at poses, and the others where the step has them, or else
+    at their start.
+    """
     bodies = context.scene.bodies
     around: dict[str, Pose] = {name: pose for _, name, pose in call.fluents}
     if not call.fluents:
