@@ -55,7 +55,9 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
     for violation in check_files(plan, files, loaded.meshes):
         raise InputError(violation.message, file=path, remedy="Plan again with tamp-solve")
     if plan.robot != loaded.scene.robot.model:
-        raise InputError(f"its robot is {plan.robot}, the problem's {loaded.scene.robot.model}", file=path)
+        raise InputError(
+            f"its robot is {plan.robot}, the problem's {loaded.scene.robot.model}", file=path
+        )
     return Stored(plan, read_json(path), loaded, robot_of(plan))
 
 

@@ -150,7 +150,11 @@ def _options(options: Field | None) -> dict[str, Any]:
         return {}
     algorithm, samplers = options.get("algorithm"), options.get("samplers")
     chosen = {} if algorithm is None else {"algorithm": algorithm.text()}
-    named = {} if samplers is None else {relation: name.text() for relation, name in samplers.fields().items()}
+    named = (
+        {}
+        if samplers is None
+        else {relation: name.text() for relation, name in samplers.fields().items()}
+    )
     return {**chosen, "samplers": named}
 
 
@@ -244,10 +248,14 @@ def _segment(field: Field) -> Segment:
         if attach:
             hold = Hold(attach["body"].text(), _in_hand(attach["T_tool_body"]), float(opening[-1]))
         positions = np.empty((len(times), 0))
-        return Segment(part, times, positions, opening, None, hold, detach.text() if detach else None)
+        return Segment(
+            part, times, positions, opening, None, hold, detach.text() if detach else None
+        )
     positions = field["positions"].rows(WIDTHS[part])
     if len(positions) != len(times):
-        raise field["positions"].wrong(f"{len(times)} rows are expected, one a time, not {len(positions)}")
+        raise field["positions"].wrong(
+            f"{len(times)} rows are expected, one a time, not {len(positions)}"
+        )
     opening = np.full(len(times), field["opening"].number())
     holding = field.get("holding")
     return Segment(part, times, positions, opening, holding.text() if holding else None)
@@ -257,7 +265,11 @@ def _check_bodies(root: Field, plan: PlanFile) -> None:
     names = tuple(sorted(plan.objects))
     for action, field in zip(plan.actions, root["actions"].items(), strict=True):
         for segment, place in zip(action.segments, field["segments"].items(), strict=True):
-            named = (segment.holding, segment.detach, segment.attach.body if segment.attach else None)
+            named = (
+                segment.holding,
+                segment.detach,
+                segment.attach.body if segment.attach else None,
+            )
             for body in named:
                 if body is not None and body not in plan.objects:
                     raise place.wrong(f"unknown body '{body}'", found=body, choices=names)

@@ -33,7 +33,9 @@ def source_file(plan: PlanFile, role: str, override: Path | None) -> Path:
     for file in (source.path, *beside):
         if is_file(file):
             return file
-    raise InputError(f"the plan's {role} {source.path} is missing", file=plan.file, remedy=f"Give --{role} FILE")
+    raise InputError(
+        f"the plan's {role} {source.path} is missing", file=plan.file, remedy=f"Give --{role} FILE"
+    )
 
 
 def sha256(file: Path) -> str:
@@ -91,7 +93,9 @@ def _may_be_quoted(file: Path, plan: Path | None, hashes: Mapping[Path, str | No
     return False
 
 
-def check_files(plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, ...]) -> Iterator[Violation]:
+def check_files(
+    plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, ...]
+) -> Iterator[Violation]:
     """Whether the files that the plan was made from are what they were."""
     for role, file in files.items():
         source = plan.source(role)
@@ -100,7 +104,11 @@ def check_files(plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, .
     recorded = {source.sha256 for source in plan.sources if source.role == "mesh"}
     hashes = {sha256(file): file for file in meshes}
     for missing in sorted(hashes.keys() - recorded):
-        yield Violation("hash", f"the mesh {hashes[missing]} is not one that the plan was made from")
+        yield Violation(
+            "hash", f"the mesh {hashes[missing]} is not one that the plan was made from"
+        )
     for gone in sorted(recorded - hashes.keys()):
         path = next(source.path for source in plan.sources if source.sha256 == gone)
-        yield Violation("hash", f"the plan was made from a mesh {path.name} that the problem does not have")
+        yield Violation(
+            "hash", f"the plan was made from a mesh {path.name} that the problem does not have"
+        )

@@ -41,7 +41,10 @@ def plan_document(solution: Solution) -> dict[str, Any]:
             "meshes": [_file(path) for path in problem.files["meshes"]],
         },
         "seed": solution.seed,
-        "options": {"algorithm": solution.algorithm, "samplers": dict(sorted(problem.samplers.items()))},
+        "options": {
+            "algorithm": solution.algorithm,
+            "samplers": dict(sorted(problem.samplers.items())),
+        },
         "versions": {
             "tamp": distribution_version(),
             "python": platform.python_version(),
@@ -49,10 +52,14 @@ def plan_document(solution: Solution) -> dict[str, Any]:
         },
         "robot": problem.scene.robot.model,
         "objects": {name: list(types) for name, types in sorted(task.objects.items())},
-        "initial": [list(fact) for fact in sorted(task.initial) if fact[0] not in problem.complements],
+        "initial": [
+            list(fact) for fact in sorted(task.initial) if fact[0] not in problem.complements
+        ],
         "goal": problem.goal,
         "values": {name: _value(value) for name, value in solution.values.items()},
-        "certified": [list(fact) for fact in solution.certified if fact[0] not in problem.complements],
+        "certified": [
+            list(fact) for fact in solution.certified if fact[0] not in problem.complements
+        ],
         "actions": [_action(action) for action in solution.plan],
         "cost": solution.cost,
         "duration": _number(solution.duration),
@@ -165,7 +172,12 @@ def _optimization(solution: Solution) -> dict[str, Any]:
     if not solution.improvements:
         return {}
     steps = [
-        {"seconds": round(i.seconds, 6), "cost": i.cost, "actions": i.actions, "duration": _number(i.duration)}
+        {
+            "seconds": round(i.seconds, 6),
+            "cost": i.cost,
+            "actions": i.actions,
+            "duration": _number(i.duration),
+        }
         for i in solution.improvements
     ]
     return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
@@ -211,7 +223,10 @@ def _segment(segment: Segment) -> dict[str, Any]:
         }
     document: dict[str, Any] = {**shared, "opening": _numbers(segment.positions[:, 0])}
     if segment.attach is not None:
-        document["attach"] = {"body": _body(segment.attach.body), "T_tool_body": _pose(segment.attach.T_tool_body)}
+        document["attach"] = {
+            "body": _body(segment.attach.body),
+            "T_tool_body": _pose(segment.attach.T_tool_body),
+        }
     if segment.detach is not None:
         document["detach"] = _body(segment.detach)
     return document
@@ -223,14 +238,21 @@ def _value(value: object) -> dict[str, Any]:
             return {"type": "pose", **_pose(value)}
         case Grasp():
             opening = _number(value.opening)
-            held = {"body": _body(value.body), "T_tool_body": _pose(value.T_tool_body), "opening": opening}
+            held = {
+                "body": _body(value.body),
+                "T_tool_body": _pose(value.T_tool_body),
+                "opening": opening,
+            }
             return {"type": "grasp", **held}
         case BaseConf():
             return {"type": "base-conf", "base": [_number(number) for number in value.array]}
         case Reach():
             return {"type": "reach", "approach": _rows(value.approach), "lift": _rows(value.lift)}
         case Motion():
-            return {"type": "motion", "segments": [_motion_segment(item) for item in value.segments]}
+            return {
+                "type": "motion",
+                "segments": [_motion_segment(item) for item in value.segments],
+            }
         case _:
             return {"type": "value", "text": repr(value)}
 
@@ -238,7 +260,12 @@ def _value(value: object) -> dict[str, Any]:
 def _motion_segment(item: Polyline | Grip) -> dict[str, Any]:
     if isinstance(item, Polyline):
         points = _rows(item.points)
-        return {"part": item.part, "points": points, "opening": _number(item.opening), "holding": _body(item.holding)}
+        return {
+            "part": item.part,
+            "points": points,
+            "opening": _number(item.opening),
+            "holding": _body(item.holding),
+        }
     attach = None if item.attach is None else _body(item.attach.body)
     return {
         "part": "gripper",
@@ -281,4 +308,6 @@ def _file(path: Path) -> dict[str, str]:
 
 def _compact(text: str) -> str:
     """Rows of numbers on one line each."""
-    return re.sub(r"\[\s+([-\d.,e\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", text)
+    return re.sub(
+        r"\[\s+([-\d.,e\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", text
+    )

@@ -41,8 +41,12 @@ def timed(problem: Problem, result: Result, known: Timed | None = None) -> tuple
     start = 0.0
     moved = trajectories(problem.context, result.actions, result.objects.values, known)
     for action, trajectory in zip(result.actions, moved, strict=True):
-        objects = tuple(str(names[name]) for name in action.arguments if isinstance(names.get(name), str))
-        actions.append(Action(action.name, action.arguments, objects, trajectory, start, action.cost))
+        objects = tuple(
+            str(names[name]) for name in action.arguments if isinstance(names.get(name), str)
+        )
+        actions.append(
+            Action(action.name, action.arguments, objects, trajectory, start, action.cost)
+        )
         start += trajectory.duration
     return tuple(actions)
 
@@ -92,17 +96,30 @@ def assemble(
 
 
 def ended_early(
-    problem: Problem, outcome: Outcome, seed: int, algorithm: str, total: float, recorder: Recorder | None = None
+    problem: Problem,
+    outcome: Outcome,
+    seed: int,
+    algorithm: str,
+    total: float,
+    recorder: Recorder | None = None,
 ) -> Solution:
     """What there is to say when time or user ended it before the first round, or while a bound plan was timed."""
     why = ("it ended before the first plan was tried, or before its motions were timed",)
     record = None if recorder is None else recorder.record(())
-    return Solution(problem, outcome, seed, algorithm, explanation=why, seconds={"total": total}, record=record)
+    return Solution(
+        problem, outcome, seed, algorithm, explanation=why, seconds={"total": total}, record=record
+    )
 
 
 def _used(problem: Problem, result: Result) -> dict[str, object]:
     """The values of the names in the plan, its certified facts and the initial facts."""
     names = {name for action in result.actions for name in action.arguments}
-    names |= {name for fact in (*result.certified, *problem.stream_task.task.initial) for name in fact[1:]}
+    names |= {
+        name for fact in (*result.certified, *problem.stream_task.task.initial) for name in fact[1:]
+    }
     values = result.objects.values
-    return {name: values[name] for name in sorted(names) if name in values and not isinstance(values[name], str)}
+    return {
+        name: values[name]
+        for name in sorted(names)
+        if name in values and not isinstance(values[name], str)
+    }

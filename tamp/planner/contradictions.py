@@ -38,8 +38,13 @@ def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
         relation = problem.relations[name]
         for state in _states(task.domain, task.initial, result):
             last = state.number == len(result.actions)
-            stated = {*result.certified, *(task.initial if last else ())}  # of the others no condition need ask
-            for words in _otherwise(problem, relation, classifier, state, stated, result.objects.values):
+            stated = {
+                *result.certified,
+                *(task.initial if last else ()),
+            }  # of the others no condition need ask
+            for words in _otherwise(
+                problem, relation, classifier, state, stated, result.objects.values
+            ):
                 found[
                     f"after {state.number} actions ({' '.join((name, *words))}) is not what it was when its pose was "
                     f"drawn: the classifier of '{name}' looks at bodies that it is not asked about"
@@ -61,7 +66,11 @@ def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_
 def _after(action: Action, arguments: tuple[str, ...], at: Mapping[str, str]) -> dict[str, str]:
     table = dict(zip((one.name for one in action.parameters), arguments, strict=True))
     after = dict(at)
-    plain = [one for one in action.effects if one.atom.predicate == "at-pose" and one.condition == And(())]
+    plain = [
+        one
+        for one in action.effects
+        if one.atom.predicate == "at-pose" and one.condition == And(())
+    ]
     for effect in sorted(plain, key=lambda one: one.adds):
         body, pose = (table.get(term, term) for term in effect.atom.terms)
         if effect.adds:
@@ -82,9 +91,21 @@ def _otherwise(
     """Arguments of which the classifier says in a state what the plan's facts deny."""
     task, scene = problem.stream_task.task, problem.scene
     words = {name.lower(): name for name in scene.movable}
-    poses = {words[body]: pose for body, name in state.at.items() if isinstance(pose := values[name], Pose)}
+    poses = {
+        words[body]: pose
+        for body, name in state.at.items()
+        if isinstance(pose := values[name], Pose)
+    }
     held = next((name for name in scene.movable if name not in poses), None)
-    seen = observe(relation, classifier, moved(scene, poses, held), task.domain, task.objects, task.initial, state.at)
+    seen = observe(
+        relation,
+        classifier,
+        moved(scene, poses, held),
+        task.domain,
+        task.objects,
+        task.initial,
+        state.at,
+    )
     false = {
         one: next((other for other in problem.complements if other.rstrip("~") == f"not-{one}"), "")
         for one in relation.predicates
@@ -93,4 +114,6 @@ def _otherwise(
     wrong += [fact for fact in seen.holds if (false[fact[0]], *fact[1:]) in stated]
     first = relation.facts[0]
     places = [1 + first.terms.index(variable) for variable in relation.arguments]
-    return sorted({tuple(fact[place] for place in places) for fact in wrong if fact[0] == first.predicate})
+    return sorted(
+        {tuple(fact[place] for place in places) for fact in wrong if fact[0] == first.predicate}
+    )

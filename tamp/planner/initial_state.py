@@ -59,7 +59,10 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
             facts.append(("supported", word, pose, below.lower()))
         if below in scene.cavities:
             facts.append(("contained", word, pose, below.lower()))
-        carriers = (scene.surfaces[below].body if below in scene.surfaces else below, *body.carriers)
+        carriers = (
+            scene.surfaces[below].body if below in scene.surfaces else below,
+            *body.carriers,
+        )
         facts += [
             ("rests-on", word, pose, carrier.lower())
             for carrier in dict.fromkeys(carriers)

@@ -117,7 +117,9 @@ def improves(new: Solution, old: Solution) -> bool:
 
 def _frozen(result: Result) -> Result:
     """The counts as they are now: the run goes on counting."""
-    return replace(result, statistics=copy.deepcopy(result.statistics), effort=replace(result.effort))
+    return replace(
+        result, statistics=copy.deepcopy(result.statistics), effort=replace(result.effort)
+    )
 
 
 def _silent(effort: Effort) -> None:

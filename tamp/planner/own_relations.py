@@ -20,7 +20,14 @@ from tamp.planner.served import Served
 from tamp.relations.observed import Observation, moved, observe, refuse_silent
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.complement import atoms_of_conditions, complement_name, with_complements
-from tamp.symbolic.pddl.relations import POSE, Relation, failing, needed_false, relation_names, relation_of
+from tamp.symbolic.pddl.relations import (
+    POSE,
+    Relation,
+    failing,
+    needed_false,
+    relation_names,
+    relation_of,
+)
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 
 REMEDY = "Give it a classifier: --sampler {0}=FILE.py with classify, or weights of 100 labels, some of them negative"
@@ -96,24 +103,41 @@ def decided(
     asked = {atom.predicate for atom, _ in atoms_of_conditions(domain, goal)}
     relations = {name: one for name, one in relations.items() if one.predicates & asked}
     classifiers = {name: served.classifiers[name] for name in relations}
-    seen = {name: _observed(one, classifiers[name], domain, objects, facts, context) for name, one in relations.items()}
+    seen = {
+        name: _observed(one, classifiers[name], domain, objects, facts, context)
+        for name, one in relations.items()
+    }
     known = frozenset(fact for one in seen.values() for fact in one.holds)
-    warnings = unused + tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
+    warnings = unused + tuple(
+        line for name, one in seen.items() for line in _odd(relations[name], one)
+    )
 
-    negated = {name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)}
+    negated = {
+        name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)
+    }
     if not negated:
-        return Decided(domain, goal, known, classifiers=classifiers, relations=relations, warnings=warnings)
+        return Decided(
+            domain, goal, known, classifiers=classifiers, relations=relations, warnings=warnings
+        )
     for relation in negated.values():
         _check_poses(relation, domain)
-    names = {one: complement_name(one, domain) for relation in negated.values() for one in relation.predicates}
+    names = {
+        one: complement_name(one, domain)
+        for relation in negated.values()
+        for one in relation.predicates
+    }
     false = {(names[fact[0]], *fact[1:]) for name in negated for fact in seen[name].fails}
     streams = tuple(
-        BoundStream(failing(one, domain), partial(fails_relation, context, classifier=classifiers[name]), ())
+        BoundStream(
+            failing(one, domain), partial(fails_relation, context, classifier=classifiers[name]), ()
+        )
         for name, one in negated.items()
     )
     rewritten, wanted = with_complements(domain, goal, names)
     hidden = frozenset(names.values())
-    return Decided(rewritten, wanted, known | false, streams, hidden, classifiers, relations, warnings)
+    return Decided(
+        rewritten, wanted, known | false, streams, hidden, classifiers, relations, warnings
+    )
 
 
 def _observed(
@@ -153,7 +177,9 @@ def _check_poses(relation: Relation, domain: Domain) -> None:
     declared = domain.predicates.get(POSE)
     if relation.poses and (declared is None or len(declared.parameters) != 2):
         what = f"whether '{relation.name}' does not hold is asked of every pose, and the domain has no (pose ?o ?p)"
-        raise InputError(what, file=domain.file, remedy="Declare it, and certify it of what is sampled")
+        raise InputError(
+            what, file=domain.file, remedy="Declare it, and certify it of what is sampled"
+        )
 
 
 def _odd(relation: Relation, seen: Observation) -> list[str]:
@@ -161,8 +187,14 @@ def _odd(relation: Relation, seen: Observation) -> list[str]:
     found: list[str] = []
     for words, why in list(seen.unanswered.items())[:MOST]:
         said = " ".join((relation.name, *words))
-        found.append(f"whether ({said}) holds at the start is not known: asked of it, the classifier failed: {why}")
-    if len(relation.arguments) == 2 and len(relation.bodies) == 1 and relation.arguments[0] in relation.bodies:
+        found.append(
+            f"whether ({said}) holds at the start is not known: asked of it, the classifier failed: {why}"
+        )
+    if (
+        len(relation.arguments) == 2
+        and len(relation.bodies) == 1
+        and relation.arguments[0] in relation.bodies
+    ):
         by_body: dict[str, list[float]] = {}
         for (body, _), answer in seen.answers.items():
             by_body.setdefault(body, []).append(answer)

@@ -58,10 +58,26 @@ def solve_parallel(
         InputError: As for `solve`.
     """
     if jobs == 1 and improved is not None:
-        return optimize(problem, max_time=max_time, seed=seed, progress=progress, improved=improved, record=record)
+        return optimize(
+            problem,
+            max_time=max_time,
+            seed=seed,
+            progress=progress,
+            improved=improved,
+            record=record,
+        )
     if jobs == 1:
-        return solve(problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress, record=record)
-    importlib.import_module("tamp.geometric.motion.parametrization")  # no fork while a thread is importing it
+        return solve(
+            problem,
+            max_time=max_time,
+            seed=seed,
+            algorithm=algorithm,
+            progress=progress,
+            record=record,
+        )
+    importlib.import_module(
+        "tamp.geometric.motion.parametrization"
+    )  # no fork while a thread is importing it
     prepare_loops()
     deadline = Deadline(max_time)
     best: list[Solution] = []
@@ -81,7 +97,9 @@ def solve_parallel(
                 )
                 return {"good": True, "parts": _parts(shared)}
             name = "incremental" if number == 2 else algorithm
-            solution = solve(problem, max_time=left, seed=own, algorithm=name, progress=told, record=record)
+            solution = solve(
+                problem, max_time=left, seed=own, algorithm=name, progress=told, record=record
+            )
             good = accept is None or not solution.solved or accept(solution)
             return {"good": good, "parts": _parts(solution)}
 
@@ -130,4 +148,8 @@ def _seldom(tell: Tell) -> Progress:
 
 def _parts(solution: Solution) -> dict[str, Any]:
     """A solution without its problem, whose streams no pipe can carry and the other side knows."""
-    return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+    return {
+        part.name: getattr(solution, part.name)
+        for part in fields(solution)
+        if part.name != "problem"
+    }

@@ -70,12 +70,18 @@ class Recorder:
 
     def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
         """What was heard, all of the values that the plan uses included."""
-        late = [self._late[value] for value in used if isinstance(value, Pose | Grasp) and value in self._late]
+        late = [
+            self._late[value]
+            for value in used
+            if isinstance(value, Pose | Grasp) and value in self._late
+        ]
         return Record((*self.samples, *late), self.dropped - len(late), attempts)
 
     def _watched(self, stream: BoundStream) -> BoundStream:
         def function(*inputs: Any, call: Call) -> Any:
-            made = stream.function(*inputs, call=replace(call, refused=partial(self._refused, stream.name, inputs)))
+            made = stream.function(
+                *inputs, call=replace(call, refused=partial(self._refused, stream.name, inputs))
+            )
             if stream.is_test:
                 self._heard(stream.name, inputs, made)
                 return made
@@ -94,9 +100,14 @@ class Recorder:
         if isinstance(value, Pose | Grasp):
             self._sample(stream, inputs, value, refused=False)
         elif isinstance(value, Rejection):
-            for kind in (Pose, Grasp):  # the first one is what the stream is about, others are those in its way
+            for kind in (
+                Pose,
+                Grasp,
+            ):  # the first one is what the stream is about, others are those in its way
                 subject = next((part for part in inputs if isinstance(part, kind)), None)
-                sample = None if subject is None else self._known.get(subject) or self._late.get(subject)
+                sample = (
+                    None if subject is None else self._known.get(subject) or self._late.get(subject)
+                )
                 if sample is not None:
                     sample.refusals[stream, value.reason] += 1
 
@@ -106,7 +117,9 @@ class Recorder:
         if sample is not None:
             sample.refusals[stream, reason] += 1
 
-    def _sample(self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool) -> Sample | None:
+    def _sample(
+        self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool
+    ) -> Sample | None:
         if value in self._known:
             return self._known[value]
         names = tuple(part for part in inputs if isinstance(part, str))

@@ -71,7 +71,9 @@ def improvement(solution: Solution) -> str:
     """One line about the latest improvement."""
     latest = solution.improvements[-1]
     count = _count(latest.actions, "action")
-    line = f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    line = (
+        f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    )
     if solution.bound is None or solution.gap is None:
         return line
     return f"{line}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
@@ -85,7 +87,10 @@ def _no_plan(solution: Solution, total: float) -> list[str]:
     if len(solution.explanation) == 1:
         mark = "." if solution.outcome is Outcome.INFEASIBLE else ":"
         return [f"{sentence}{mark} {solution.explanation[0]}"]
-    return [f"{sentence}{':' if solution.explanation else '.'}", *(f"  {line}" for line in solution.explanation)]
+    return [
+        f"{sentence}{':' if solution.explanation else '.'}",
+        *(f"  {line}" for line in solution.explanation),
+    ]
 
 
 def _tried(solution: Solution) -> list[str]:
@@ -100,7 +105,9 @@ def _tried(solution: Solution) -> list[str]:
     for tally in rows:
         worked = f"{tally.successes:,} of {tally.tries:,}"
         reasons = ", ".join(f"{count:,} {reason}" for reason, count in tally.reasons.most_common(3))
-        lines.append(f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}")
+        lines.append(
+            f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}"
+        )
     return lines
 
 
@@ -114,7 +121,10 @@ def _rows(solution: Solution) -> list[str]:
         what = [name for name in action.objects if name not in where.split()]
         rows.append((action.name, " ".join(what), where))
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
-    columns = ["  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)) for row in rows]
+    columns = [
+        "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True))
+        for row in rows
+    ]
     durations = [f"{action.trajectory.duration:5.1f} s" for action in solution.plan]
     return [
         f"  {number:2d}  {row}  {duration}"
@@ -132,14 +142,18 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
         if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
             name = known[fact[3]]
-            places.setdefault((fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}")
+            places.setdefault(
+                (fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}"
+            )
     return places
 
 
 def _manipulated(action: Action, places: dict[tuple[str, str], str]) -> str:
     """Where a body is taken from, or put."""
     names = action.arguments
-    where = next((places[body, pose] for body in names for pose in names if (body, pose) in places), "")
+    where = next(
+        (places[body, pose] for body in names for pose in names if (body, pose) in places), ""
+    )
     taken = any(segment.attach is not None for segment in action.trajectory.segments)
     return f"from {where.partition(' ')[2]}" if where and taken else where
 
@@ -175,7 +189,9 @@ def _effort(solution: Solution, loading: float) -> list[str]:
     samples: list[str] = []
     for name, statistics in solution.statistics.items():
         if statistics.calls:
-            reasons = ", ".join(f"{count} {reason}" for reason, count in statistics.reasons.most_common(3))
+            reasons = ", ".join(
+                f"{count} {reason}" for reason, count in statistics.reasons.most_common(3)
+            )
             kept = _glued(f"{name} {statistics.successes} of {statistics.calls}")
             samples.append(f"{kept}{f' ({reasons})' if reasons else ''}")
     return [

@@ -52,27 +52,43 @@ class Served:
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
                 known.setdefault(relation, {}).update(makers)
-        choices = {relation: Choice(next(iter(makers)), alone=True) for relation, makers in SAMPLERS.items()}
+        choices = {
+            relation: Choice(next(iter(makers)), alone=True)
+            for relation, makers in SAMPLERS.items()
+        }
         for relation, text in loaded.samplers.items():
             try:
                 choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
             except InputError as error:
                 raise error.at(loaded.path, loaded.line_of("samplers", relation)) from None
-        choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
+        choices |= {
+            relation: parse_choice(relation, text, known) for relation, text in samplers.items()
+        }
         for relation, item in groundings.items():
-            if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
+            if (
+                isinstance(item, Generator)
+                and choices.get(relation, Choice("", False)).name != GIVEN
+            ):
                 choices[relation] = Choice(GIVEN, alone=False)
-        made: dict[str, Grounding] = {name: maker(name, choice, known)() for name, choice in choices.items()}
+        made: dict[str, Grounding] = {
+            name: maker(name, choice, known)() for name, choice in choices.items()
+        }
         for relation, item in made.items():
             if not isinstance(item, Generator) and relation in SAMPLERS:
                 what = f"sampler '{choices[relation].name}' for '{relation}' has no method propose"
-                raise InputError(what, remedy="tamp/geometric/samplers/sampler.py says what it is asked")
+                raise InputError(
+                    what, remedy="tamp/geometric/samplers/sampler.py says what it is asked"
+                )
         judging = {**made, **groundings}
         return cls(
             choices,
             {relation: item for relation, item in made.items() if isinstance(item, Generator)},
             {relation: item for relation, item in judging.items() if isinstance(item, Classifier)},
-            {relation: item.cannot_tell for relation, item in judging.items() if isinstance(item, Undecided)},
+            {
+                relation: item.cannot_tell
+                for relation, item in judging.items()
+                if isinstance(item, Undecided)
+            },
         )
 
     def functions(self, declared: StreamFile, domain: Domain) -> dict[str, Callable[..., Any]]:
@@ -86,7 +102,9 @@ class Served:
         for name, generator in self.generators.items():
             if name not in SAMPLERS:
                 judge = None if f"test-{name}" in streams else self._judge(name, declared, domain)
-                functions[f"sample-{name}"] = partial(sample_relation, relation=name, generator=generator, judge=judge)
+                functions[f"sample-{name}"] = partial(
+                    sample_relation, relation=name, generator=generator, judge=judge
+                )
         for name, classifier in self.classifiers.items():
             functions[f"test-{name}"] = partial(test_relation, classifier=classifier)
         for name, why in self.undecided.items():
@@ -98,13 +116,17 @@ class Served:
                 raise InputError(what, file=declared.file, line=line, column=column, remedy=remedy)
         return functions
 
-    def _judge(self, name: str, declared: StreamFile, domain: Domain) -> tuple[Classifier, tuple[int, ...]] | None:
+    def _judge(
+        self, name: str, declared: StreamFile, domain: Domain
+    ) -> tuple[Classifier, tuple[int, ...]] | None:
         """Who judges what a generator proposes where no stream does, and of which of the stream's inputs."""
         relation = relation_of(declared, domain, name)
         if relation is None or name not in self.classifiers:
             return None
         inputs = relation.stream.inputs
-        return self.classifiers[name], tuple(inputs.index(variable) for variable in relation.arguments)
+        return self.classifiers[name], tuple(
+            inputs.index(variable) for variable in relation.arguments
+        )
 
 
 def _same(item: Grounding) -> Grounding:

@@ -84,7 +84,9 @@ class Solution:
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None
-    samplers: Mapping[str, tuple[Account, ...]] = field(default_factory=dict[str, "tuple[Account, ...]"])
+    samplers: Mapping[str, tuple[Account, ...]] = field(
+        default_factory=dict[str, "tuple[Account, ...]"]
+    )
     improvements: tuple[Improvement, ...] = ()
     bound: float | None = None
 

@@ -62,15 +62,31 @@ def solve(
 
     try:
         result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
-    except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
+    except (
+        OutOfTime,
+        KeyboardInterrupt,
+    ) as end:  # before the first round, or while a bound plan was being timed
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
     total = deadline.elapsed()
-    return assemble(problem, result, actions, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
+    return assemble(
+        problem,
+        result,
+        actions,
+        seed,
+        algorithm,
+        {"total": total, "timing": total - planned},
+        recorder,
+    )
 
 
 def _borne_out(
-    problem: Problem, task: StreamTask, seed: int, algorithm: str, deadline: Deadline, progress: Progress
+    problem: Problem,
+    task: StreamTask,
+    seed: int,
+    algorithm: str,
+    deadline: Deadline,
+    progress: Progress,
 ) -> Result:
     """A plan in whose states the classifiers of the user's own relations say what they said of its poses.
 
@@ -84,7 +100,11 @@ def _borne_out(
             break
         result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)
         wrong = contradictions(problem, result)
-    return replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong) if wrong else result
+    return (
+        replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong)
+        if wrong
+        else result
+    )
 
 
 def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:

@@ -58,7 +58,10 @@ Timed = dict[tuple[object, ...], tuple[Path, Segment]]
 
 
 def trajectories(
-    context: Context, actions: Sequence[PlanAction], values: dict[str, object], known: Timed | None = None
+    context: Context,
+    actions: Sequence[PlanAction],
+    values: dict[str, object],
+    known: Timed | None = None,
 ) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 
@@ -99,14 +102,19 @@ class _Replay:
         self._arm: Array = context.home
 
     def timed(self, motion: Motion) -> list[Segment]:
-        return [self._grip(item) if isinstance(item, Grip) else self._path(item) for item in motion.segments]
+        return [
+            self._grip(item) if isinstance(item, Grip) else self._path(item)
+            for item in motion.segments
+        ]
 
     def _grip(self, grip: Grip) -> Segment:
         if grip.attach is not None:
             self._held = grip.attach
             self._poses.pop(grip.attach.body, None)
         elif self._held is not None:
-            tool = Pose.from_matrix(self._context.kinematics.tool(self._context.conf(self._base, self._arm)))
+            tool = Pose.from_matrix(
+                self._context.kinematics.tool(self._context.conf(self._base, self._arm))
+            )
             self._poses[self._held.body] = tool @ self._held.T_tool_body
             self._held = None
         positions = np.array(grip.opening)[:, None]
@@ -135,14 +143,20 @@ class _Replay:
         velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
 
         def conf(point: Array) -> Array:
-            return context.conf(point, self._arm) if path.part == "base" else context.conf(self._base, point)
+            return (
+                context.conf(point, self._arm)
+                if path.part == "base"
+                else context.conf(self._base, point)
+            )
 
         def edge_free(a: Array, b: Array) -> bool:
             return arrangement.edge_free(conf(a), conf(b))
 
         joints = slice(0, 3) if path.part == "base" else slice(3, None)
         points = path.points
-        if path.part == "base":  # whole turns are not lost between one drive and the next: the yaw goes on where it was
+        if (
+            path.part == "base"
+        ):  # whole turns are not lost between one drive and the next: the yaw goes on where it was
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
         timed = time_path(points, velocity[joints], acceleration[joints], edge_free)

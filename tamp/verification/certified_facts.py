@@ -40,8 +40,16 @@ class Certified:
     Facts about surfaces and cavities are not decided here but in the states in which they matter.
     """
 
-    def __init__(self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, domain: Domain) -> None:
-        self._plan, self._world, self._robot, self._sweeper, self._domain = plan, world, robot, sweeper, domain
+    def __init__(
+        self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, domain: Domain
+    ) -> None:
+        self._plan, self._world, self._robot, self._sweeper, self._domain = (
+            plan,
+            world,
+            robot,
+            sweeper,
+            domain,
+        )
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._checks: dict[str, tuple[str, Callable[[list[str]], str | None]]] = {
             "pose": ("op", lambda _: None),
@@ -73,14 +81,19 @@ class Certified:
 
     def check(self, facts: Iterable[Fact], trusted: Counter[str]) -> Iterator[Violation]:
         """Violations of facts; those of unknown predicates are counted in `trusted`."""
-        changed = {effect.atom.predicate for action in self._domain.actions for effect in action.effects}
+        changed = {
+            effect.atom.predicate for action in self._domain.actions for effect in action.effects
+        }
         changed |= self._domain.derived_predicates
         known = self.known
         for fact in sorted(set(facts)):
             predicate, *terms = fact
             text = f"({' '.join(fact)})"
             if predicate in changed:
-                yield Violation("certified", f"{text}: actions and rules decide about {predicate}, streams do not")
+                yield Violation(
+                    "certified",
+                    f"{text}: actions and rules decide about {predicate}, streams do not",
+                )
             elif predicate not in known:
                 trusted[predicate] += 1
             else:
@@ -106,8 +119,13 @@ class Certified:
     def _why_loose(self, body: str) -> str | None:
         """Why the hand as it stands does not touch a body as it should."""
         hand, *fingers = (self._world.links[link.name] for link in self._robot.links[-3:])
-        for name, link, loosest in (("palm", hand, math.inf), *(("finger", finger, LOOSE) for finger in fingers)):
-            distance = min(self._world.distance(link, solid, 0.05) for solid in self._world.solids[body])
+        for name, link, loosest in (
+            ("palm", hand, math.inf),
+            *(("finger", finger, LOOSE) for finger in fingers),
+        ):
+            distance = min(
+                self._world.distance(link, solid, 0.05) for solid in self._world.solids[body]
+            )
             if distance < -PRESSED:
                 return f"the {name} is {-1000 * distance:.1f} mm in it"
             if distance > loosest:
@@ -148,7 +166,9 @@ class Certified:
     def _standing(self, terms: list[str]) -> str | None:
         x, y, _ = self._plan.values[terms[0]].data
         room = self._world.scene.room
-        inside = room.x[0] - 1e-4 <= x <= room.x[1] + 1e-4 and room.y[0] - 1e-4 <= y <= room.y[1] + 1e-4
+        inside = (
+            room.x[0] - 1e-4 <= x <= room.x[1] + 1e-4 and room.y[0] - 1e-4 <= y <= room.y[1] + 1e-4
+        )
         return None if inside else "it is out of the room"
 
     def _kinematics(self, terms: list[str]) -> str | None:
@@ -187,7 +207,10 @@ class Certified:
     def _approach(self, terms: list[str]) -> str | None:
         pose, hold = (self._plan.values[term].data for term in terms[1:3])
         T_world_tool = pose @ np.linalg.inv(hold.T_tool_body)
-        hits = (self._hand_hits(name, T_world_tool, self._robot.opening) for name in self._world.scene.fixed)
+        hits = (
+            self._hand_hits(name, T_world_tool, self._robot.opening)
+            for name in self._world.scene.fixed
+        )
         return next((hit for hit in hits if hit), None)
 
     def _approach_clear(self, terms: list[str]) -> str | None:
@@ -219,7 +242,10 @@ class Certified:
         self._world.place(other, self._plan.values[terms[6]].data)
         findings = Findings()
         held = Held(self._bodies[terms[0]], hold.T_tool_body)
-        for path, opening, carried in ((approach, self._robot.opening, None), (lift, hold.opening, held)):
+        for path, opening, carried in (
+            (approach, self._robot.opening, None),
+            (lift, hold.opening, held),
+        ):
             rows = np.array([[*base, *joints, opening] for joints in path])
             times = np.arange(len(rows), dtype=float)
             self._sweeper.sweep(rows, times, carried, findings, against=frozenset({other}))

@@ -29,10 +29,14 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
             name = name.removesuffix(mode)
         made = _made(relation, Path(name))
         if isinstance(made, Undecided):
-            raise InputError(f"the classifier of '{relation}' cannot tell yet: {made.cannot_tell}", file=name)
+            raise InputError(
+                f"the classifier of '{relation}' cannot tell yet: {made.cannot_tell}", file=name
+            )
         if isinstance(made, type) or not isinstance(made, Classifier):
             what = f"'{relation}' has no classifier here: no object 'grounding' with the method classify"
-            raise InputError(what, file=name, remedy="classify(scene, arguments) returns a probability")
+            raise InputError(
+                what, file=name, remedy="classify(scene, arguments) returns a probability"
+            )
         found[relation.lower()] = made
     return found
 

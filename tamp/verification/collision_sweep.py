@@ -74,12 +74,18 @@ class Findings:
     states: int = 0
     most: float = math.inf
 
-    def met(self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE) -> None:
+    def met(
+        self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE
+    ) -> None:
         """Take note of a contact or near miss."""
         pair = (contact.first, contact.second)
-        if contact.distance < -tolerance and (pair not in self.worst or contact.distance < self.worst[pair].distance):
+        if contact.distance < -tolerance and (
+            pair not in self.worst or contact.distance < self.worst[pair].distance
+        ):
             self.worst[pair] = contact
-        if counts_as_clearance and (self.nearest is None or contact.distance < self.nearest.distance):
+        if counts_as_clearance and (
+            self.nearest is None or contact.distance < self.nearest.distance
+        ):
             self.nearest = contact
 
     @property
@@ -109,7 +115,9 @@ class Sweeper:
         self.together: dict[tuple[str, str], float] = {}
         count = len(self._names)
         pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
-        self._self_pairs = [(i, j) for i, j in pairs if _sorted(self._names[i], self._names[j]) not in robot.allowed]
+        self._self_pairs = [
+            (i, j) for i, j in pairs if _sorted(self._names[i], self._names[j]) not in robot.allowed
+        ]
 
     def tool(self, row: Array) -> Array:
         """T_world_tool in a state, by pybullet's kinematics, shape (4, 4)."""
@@ -146,30 +154,50 @@ class Sweeper:
         rows, times, frames = self._sampler.sampled(rows, times, held)
         findings.states += len(rows)
         moving = np.ones(len(rows), dtype=bool)
-        moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)  # while only the base moves, the robot keeps its shape
+        moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(
+            axis=1
+        )  # while only the base moves, the robot keeps its shape
         for start in range(0, len(rows), BLOCK):
             some = slice(start, start + BLOCK)
-            block = _Block(rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some]))
+            block = _Block(
+                rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some])
+            )
             self._against_bodies(block, held, findings, natural, against)
             if against is None:
                 self._against_itself(block, held, findings, moving[some])
 
     def _against_bodies(
-        self, block: _Block, held: Held | None, findings: Findings, natural: Natural, against: frozenset[str] | None
+        self,
+        block: _Block,
+        held: Held | None,
+        findings: Findings,
+        natural: Natural,
+        against: frozenset[str] | None,
     ) -> None:
         world = self._world
         in_hand = held.body if held else None
-        bodies = [body for body in world.solids if body != in_hand and (against is None or body in against)]
+        bodies = [
+            body
+            for body in world.solids
+            if body != in_hand and (against is None or body in against)
+        ]
         others = [solid for body in bodies for solid in world.solids[body]]
         low, high = block.low, block.high
         movers = list(self._solids)
         if held is not None:
             held_low, held_high = self._held_boxes(block.frames, held)
-            low, high = np.concatenate([low, held_low], axis=1), np.concatenate([high, held_high], axis=1)
+            low, high = (
+                np.concatenate([low, held_low], axis=1),
+                np.concatenate([high, held_high], axis=1),
+            )
             movers += world.solids[held.body]
         at = [world.pose(solid.owner) for solid in others]
-        centres = np.array([T[:3, :3] @ solid.centre + T[:3, 3] for T, solid in zip(at, others, strict=True)])
-        halves = np.array([np.abs(T[:3, :3]) @ solid.half for T, solid in zip(at, others, strict=True)])
+        centres = np.array(
+            [T[:3, :3] @ solid.centre + T[:3, 3] for T, solid in zip(at, others, strict=True)]
+        )
+        halves = np.array(
+            [np.abs(T[:3, :3]) @ solid.half for T, solid in zip(at, others, strict=True)]
+        )
         others.append(world.floor)
         centres = np.concatenate([centres.reshape(-1, 3), world.floor.centre[None]])
         halves = np.concatenate([halves.reshape(-1, 3), world.floor.half[None]])
@@ -197,10 +225,14 @@ class Sweeper:
                     natural.resting if first.owner == in_hand else natural.grasped if by_hand else ()
                 )  # fmt: skip
                 contact = Contact(first.owner, second.owner, distance, float(block.times[state]))
-                tolerance = max(TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER)
+                tolerance = max(
+                    TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
+                )
                 findings.met(contact, not expected, tolerance)
 
-    def _against_itself(self, block: _Block, held: Held | None, findings: Findings, moving: Mask) -> None:
+    def _against_itself(
+        self, block: _Block, held: Held | None, findings: Findings, moving: Mask
+    ) -> None:
         low, high = block.low, block.high
         pairs = [
             (self._solids[i], self._solids[j], low[:, i], high[:, i], low[:, j], high[:, j])
@@ -214,7 +246,9 @@ class Sweeper:
                 for k, solid in enumerate(self._world.solids[held.body])
                 for i in arm
             ]
-        near = np.array([np.all((la <= hb) & (lb <= ha), axis=1) & moving for _, _, la, ha, lb, hb in pairs])
+        near = np.array(
+            [np.all((la <= hb) & (lb <= ha), axis=1) & moving for _, _, la, ha, lb, hb in pairs]
+        )
         current = -1
         for state, pair in np.argwhere(near.T).tolist():
             if state != current:
@@ -223,7 +257,9 @@ class Sweeper:
             first, second = pairs[pair][:2]
             distance = self._world.distance(first, second, 0.0)
             if distance < 0:
-                findings.met(Contact(first.owner, second.owner, distance, float(block.times[state])), False)
+                findings.met(
+                    Contact(first.owner, second.owner, distance, float(block.times[state])), False
+                )
 
     def _boxes(self, solids: list[Solid], frames: Array) -> tuple[Array, Array]:
         """Boxes along the world's axes around solids that have these frames: low and high corners, (n, solids, 3)."""
@@ -235,7 +271,9 @@ class Sweeper:
 
     def _held_boxes(self, frames: Array, held: Held) -> tuple[Array, Array]:
         solids = list(self._world.solids[held.body])
-        return self._boxes(solids, np.repeat(self._sampler.held_frames(frames, held)[:, None], len(solids), axis=1))
+        return self._boxes(
+            solids, np.repeat(self._sampler.held_frames(frames, held)[:, None], len(solids), axis=1)
+        )
 
     def _pose(self, row: Array, frames: Array, held: Held | None) -> None:
         self._world.set_robot(row[:3], row[3:10], row[10])

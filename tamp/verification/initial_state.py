@@ -44,7 +44,9 @@ def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Viol
                 yield Violation("initial", f"'{name}' is not {type_}", bodies=(name,))
     for name, body in bodies.items():
         if body.movable and name not in plan.objects:
-            yield Violation("initial", f"the body '{name}' is missing among the objects", bodies=(name,))
+            yield Violation(
+                "initial", f"the body '{name}' is missing among the objects", bodies=(name,)
+            )
 
 
 def check_initial(
@@ -70,13 +72,19 @@ def check_initial(
         known = predicate in FLUENT_ARITY and meant(domain, predicate)
         if known and len(terms) != FLUENT_ARITY[predicate]:
             yield Violation("initial", f"{text} has a wrong number of arguments")
-        elif fact in given or (not known and predicate in static) or _is_kind(fact, plan, scene, domain):
+        elif (
+            fact in given
+            or (not known and predicate in static)
+            or _is_kind(fact, plan, scene, domain)
+        ):
             continue
         elif known and predicate == "at-pose" and terms[0] in bodies:
             placed.append(terms[0])
             value = plan.values.get(terms[1])
             if value is None or value.type != "pose":
-                yield Violation("initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],))
+                yield Violation(
+                    "initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],)
+                )
             else:
                 moved, turned = apart(value.data, bodies[terms[0]].pose.matrix)
                 if moved > EXACT or turned > 1e-4:
@@ -94,7 +102,11 @@ def check_initial(
     if meant(domain, "at-pose"):
         for name in bodies:
             if placed.count(name) != 1:
-                yield Violation("initial", f"'{name}' has {placed.count(name)} poses at the start", bodies=(name,))
+                yield Violation(
+                    "initial",
+                    f"'{name}' has {placed.count(name)} poses at the start",
+                    bodies=(name,),
+                )
     for predicate in ("hand-empty", "at-base"):
         count = sum(fact[0] == predicate for fact in facts)
         if meant(domain, predicate) and count != 1:
@@ -126,8 +138,13 @@ def apart(T_first: Array, T_second: Array) -> tuple[float, float]:
     """Metres and radians between two poses of shape (4, 4)."""
     cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
     skew = T_first[:3, :3].T @ T_second[:3, :3]
-    sine = np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]]) / 2
-    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(float(sine), float(cosine))
+    sine = (
+        np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
+        / 2
+    )
+    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(
+        float(sine), float(cosine)
+    )
 
 
 def base_apart(first: Array, second: Array) -> float:

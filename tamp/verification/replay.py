@@ -90,7 +90,9 @@ class Replay:
             state = self._relations.observed(state, self.course.in_hand)
         self.log.action = self.log.time = None
         if abs(self._plan.duration - self.course.time) > CLOCK:
-            self.log.add("time", f"the plan lasts {self.course.time:.3f} s, not {self._plan.duration:.3f} s")
+            self.log.add(
+                "time", f"the plan lasts {self.course.time:.3f} s, not {self._plan.duration:.3f} s"
+            )
         cost = sum(action.cost for action in self._plan.actions)
         if abs(self._plan.cost - cost) > 1e-6:
             self.log.add("state", f"the actions cost {cost:g}, not {self._plan.cost:g}")
@@ -105,7 +107,9 @@ class Replay:
                 if -TOGETHER <= depth <= TOLERANCE:
                     self._sweeper.together[min(first, second), max(first, second)] = max(0.0, depth)
                 if depth > TOLERANCE:
-                    message = f"{first} and {second} penetrate by {1000 * depth:.1f} mm at the start"
+                    message = (
+                        f"{first} and {second} penetrate by {1000 * depth:.1f} mm at the start"
+                    )
                     self.log.add("collision", message, first, second, time=0.0, depth=depth)
 
     def _part(self) -> None:
@@ -118,12 +122,18 @@ class Replay:
     def _apply(self, state: State, action: TimedAction) -> State:
         lifted = self._semantics.actions.get(action.name)
         if lifted is None or len(lifted.parameters) != len(action.arguments):
-            wrong = "is unknown to the domain" if lifted is None else f"takes {len(lifted.parameters)} arguments"
+            wrong = (
+                "is unknown to the domain"
+                if lifted is None
+                else f"takes {len(lifted.parameters)} arguments"
+            )
             self.log.add("precondition", f"the action {action.name} {wrong}")
             return state
         for parameter, argument in zip(lifted.parameters, action.arguments, strict=True):
             if not self._semantics.fits(argument, parameter.types):
-                self.log.add("precondition", f"'{argument}' is not a {' or '.join(parameter.types)}")
+                self.log.add(
+                    "precondition", f"'{argument}' is not a {' or '.join(parameter.types)}"
+                )
         for part in self._semantics.unmet(lifted, action.arguments, state):
             bodies = (argument for argument in action.arguments if argument in self._bodies)
             self.log.add("precondition", f"{show(part)} does not hold", *bodies)
@@ -138,21 +148,27 @@ class Replay:
         course.time = self.log.time = action.start
         kept = self._check_limits(action)
         natural = self._natural(action)
-        findings = Findings(nearest=self.findings.nearest, most=self._looks if kept else self._looks_beyond)
+        findings = Findings(
+            nearest=self.findings.nearest, most=self._looks if kept else self._looks_beyond
+        )
         for segment in action.segments:
             self._carry_out(segment, natural, findings)
         for contact in findings.worst.values():
             message = f"{contact.first} and {contact.second} penetrate by {-1000 * contact.distance:.1f} mm"
             pair = (contact.first, contact.second)
             self.log.add("collision", message, *pair, time=contact.time, depth=-contact.distance)
-        self.findings.nearest, self.findings.states = findings.nearest, self.findings.states + findings.states
+        self.findings.nearest, self.findings.states = (
+            findings.nearest,
+            self.findings.states + findings.states,
+        )
         if kept:
             self._looks -= findings.states
         else:
             self._looks_beyond -= findings.states
         if kept and findings.full:
             self.log.add(
-                "unchecked", f"its motions are longer than the judge looks at: {LOOKS} states and {LOOKS_A_ROW} a row"
+                "unchecked",
+                f"its motions are longer than the judge looks at: {LOOKS} states and {LOOKS_A_ROW} a row",
             )
         lasts = course.time - action.start
         if abs(lasts - action.duration) > CLOCK:
@@ -164,7 +180,9 @@ class Replay:
         for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
             segments = list(group)
             for excess in excesses(segments, self._robot, self._world.scene.room):
-                self.log.add(excess.kind, excess.message, time=offset + excess.time, depth=excess.amount)
+                self.log.add(
+                    excess.kind, excess.message, time=offset + excess.time, depth=excess.amount
+                )
                 kept = kept and excess.kind not in BOUNDING
             offset += sum(float(segment.times[-1]) for segment in segments)
         return kept
@@ -183,7 +201,9 @@ class Replay:
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
         if course.held is not None:
-            self._world.place(course.held.body, self._sweeper.tool(course.row) @ course.held.T_tool_body)
+            self._world.place(
+                course.held.body, self._sweeper.tool(course.row) @ course.held.T_tool_body
+            )
         if segment.attach is not None:
             self._attach(segment.attach)
 
@@ -200,15 +220,24 @@ class Replay:
             rows[:, 3:10] = segment.positions
             jump = float(np.abs(rows[0, 3:10] - course.row[3:10]).max())
         if jump > JUMP:
-            self.log.add("continuity", f"the {segment.part} jumps by {jump:.3g} (m, rad)", depth=jump)
+            self.log.add(
+                "continuity", f"the {segment.part} jumps by {jump:.3g} (m, rad)", depth=jump
+            )
         jump = abs(float(rows[0, 10] - course.row[10]))
         if jump > JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
         says = segment.holding if segment.part != "gripper" else held and held.lower()
         if says != (held and held.lower()):
-            message = f"the plan says that the hand holds {says or 'nothing'}, not {held or 'nothing'}"
+            message = (
+                f"the plan says that the hand holds {says or 'nothing'}, not {held or 'nothing'}"
+            )
             self.log.add("continuity", message)
-        if segment.part == "gripper" and held and segment.detach is None and np.ptp(rows[:, 10]) > JUMP:
+        if (
+            segment.part == "gripper"
+            and held
+            and segment.detach is None
+            and np.ptp(rows[:, 10]) > JUMP
+        ):
             self.log.add("grasp", f"the fingers move while they hold {held}", held)
         return rows
 
@@ -253,7 +282,9 @@ class Replay:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
                 resting |= self._standing.stand(body, None).on
-                resting |= {name for pair in self._sweeper.together if body in pair for name in pair}
+                resting |= {
+                    name for pair in self._sweeper.together if body in pair for name in pair
+                }
                 held = Held(body, segment.attach.T_tool_body)
             if segment.detach is not None and held is not None:
                 before = self._world.pose(held.body)

@@ -66,7 +66,9 @@ class Report:
         verdict = "holds" if self.holds else f"does not hold, {_counted(self.violations)}"
         trust = [f"on trust: {', '.join(self.on_trust)}"] if self.on_trust else []
         verdict = ", ".join([verdict, *trust, *self.other_files])
-        lines.append(f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
+        lines.append(
+            f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s"
+        )
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:
@@ -92,4 +94,8 @@ class Report:
 def _counted(violations: tuple[Violation, ...]) -> str:
     counts = Counter(violation.kind for violation in violations)
     plural = "" if len(violations) == 1 else "s"
-    return f"{len(violations)} violation{plural} (" + ", ".join(f"{n} {kind}" for kind, n in counts.items()) + ")"
+    return (
+        f"{len(violations)} violation{plural} ("
+        + ", ".join(f"{n} {kind}" for kind, n in counts.items())
+        + ")"
+    )

@@ -5,7 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from tamp.symbolic.pddl.structs import Action, And, Atom, Derived, Domain, Exists, Fact, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import (
+    Action,
+    And,
+    Atom,
+    Derived,
+    Domain,
+    Exists,
+    Fact,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+)
 from tamp.verification.formulas import Binding, flat, free, ground, predicates, substitute, unify
 
 Types = Mapping[str, tuple[str, ...]]
@@ -60,9 +72,13 @@ class Semantics:
     def fits(self, name: str, types: Sequence[str]) -> bool:
         """Whether an object has one of the types."""
         own = self.objects.get(name, ())
-        return "object" in types or any(self.domain.is_a(one, other) for one in own for other in types)
+        return "object" in types or any(
+            self.domain.is_a(one, other) for one in own for other in types
+        )
 
-    def holds(self, formula: Formula, state: State, binding: Mapping[str, str] | None = None) -> bool:
+    def holds(
+        self, formula: Formula, state: State, binding: Mapping[str, str] | None = None
+    ) -> bool:
         """Whether a formula is true; its free variables are bound."""
         return any(True for _ in self._solutions([formula], state, dict(binding or {}), {}))
 
@@ -88,7 +104,9 @@ class Semantics:
 
     # Solutions of a conjunction, by the atom that binds most
 
-    def _solutions(self, parts: list[Formula], state: State, binding: Binding, types: Types) -> Iterator[Binding]:
+    def _solutions(
+        self, parts: list[Formula], state: State, binding: Binding, types: Types
+    ) -> Iterator[Binding]:
         """Bindings that extend `binding` and make all parts true; `types` are those of variables not yet bound."""
         open_parts: list[Formula] = []
         waiting = parts[::-1]
@@ -107,7 +125,10 @@ class Semantics:
         part, others = open_parts[at], [*open_parts[:at], *open_parts[at + 1 :]]
         if isinstance(part, Atom) and self._burden(part) < 3:
             for found in self._matches(part, state, binding):
-                if all(self.fits(found[name], types.get(name, ("object",))) for name in found.keys() - binding.keys()):
+                if all(
+                    self.fits(found[name], types.get(name, ("object",)))
+                    for name in found.keys() - binding.keys()
+                ):
                     yield from self._solutions(others, state, found, types)
         else:
             name = min(free(part) - binding.keys())
@@ -133,7 +154,9 @@ class Semantics:
             return self._exists(part.parameters, part.body, state, binding)
         return not self._exists(part.parameters, Not(part.body), state, binding)
 
-    def _exists(self, parameters: Sequence[Parameter], body: Formula, state: State, binding: Binding) -> bool:
+    def _exists(
+        self, parameters: Sequence[Parameter], body: Formula, state: State, binding: Binding
+    ) -> bool:
         types = {parameter.name: parameter.types for parameter in parameters}
         outer = {name: value for name, value in binding.items() if name not in types}
         for found in self._solutions([body], state, outer, types):
@@ -167,14 +190,20 @@ class Semantics:
             rows = sorted(self._closure(atom.predicate, state))
         else:
             pattern = [binding.get(term, term) for term in atom.terms]
-            found = {row for rule in self._rules[atom.predicate] for row in self._answers(rule, pattern, state)}
+            found = {
+                row
+                for rule in self._rules[atom.predicate]
+                for row in self._answers(rule, pattern, state)
+            }
             rows = sorted(found | set(state.all(atom.predicate)))
         for row in rows:
             extended = unify(atom.terms, row, binding)
             if extended is not None:
                 yield extended
 
-    def _answers(self, rule: Derived, terms: Sequence[str], state: State) -> Iterator[tuple[str, ...]]:
+    def _answers(
+        self, rule: Derived, terms: Sequence[str], state: State
+    ) -> Iterator[tuple[str, ...]]:
         """The rule's heads that are true and fit `terms`, in which variables are open."""
         types = {parameter.name: parameter.types for parameter in rule.parameters}
         binding: Binding = {}
@@ -184,17 +213,23 @@ class Semantics:
             if not inner.startswith("?"):
                 if inner != outer:
                     return
-            elif binding.setdefault(inner, outer) != outer or not self.fits(outer, types.get(inner, ("object",))):
+            elif binding.setdefault(inner, outer) != outer or not self.fits(
+                outer, types.get(inner, ("object",))
+            ):
                 return
         for found in self._solutions([rule.body], state, binding, types):
-            for full in self._every({name: kind for name, kind in types.items() if name in rule.head.terms}, found):
+            for full in self._every(
+                {name: kind for name, kind in types.items() if name in rule.head.terms}, found
+            ):
                 yield tuple(full.get(term, term) for term in rule.head.terms)
 
     def _closure(self, predicate: str, state: State) -> set[tuple[str, ...]]:
         """All true facts of a recursive predicate: those that rest on each other grow together until nothing is new."""
         if predicate not in state.closed:
             below = self._reached(predicate)
-            group = [name for name in self._rules if name in below and predicate in self._reached(name)]
+            group = [
+                name for name in self._rules if name in below and predicate in self._reached(name)
+            ]
             for name in group:
                 state.closed[name] = set(state.all(name))
             grows = True

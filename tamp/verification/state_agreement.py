@@ -24,7 +24,9 @@ class Agreement:
     def __init__(self, plan: PlanFile, world: World, domain: Domain, log: Log) -> None:
         self._plan, self._world, self._log = plan, world, log
         self._bodies = {name.lower(): name for name in world.scene.bodies}
-        self._meant = {name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)}
+        self._meant = {
+            name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)
+        }
 
     def compare(self, state: State, course: Course) -> None:
         """Log what differs."""
@@ -37,7 +39,10 @@ class Agreement:
             for body, grasp in holds:
                 self._grasp(body, grasp, course)
         if "hand-empty" in self._meant and (("hand-empty",) in state) != (course.held is None):
-            self._log.add("state", f"the hand is {'empty' if course.held is None else 'not empty'}, the facts differ")
+            self._log.add(
+                "state",
+                f"the hand is {'empty' if course.held is None else 'not empty'}, the facts differ",
+            )
         if "at-base" in self._meant:
             places = state.all("at-base")
             if len(places) != 1:
@@ -65,7 +70,11 @@ class Agreement:
                 else:
                     off = float(np.abs(rows[end] - moved[end]).max())
                 if off > CLOSE:
-                    self._log.add("state", f"its segment {at + 1} is {off:.3g} (m, rad) off its motion", depth=off)
+                    self._log.add(
+                        "state",
+                        f"its segment {at + 1} is {off:.3g} (m, rad) off its motion",
+                        depth=off,
+                    )
 
     def _poses(self, state: State, course: Course) -> None:
         facts = state.all("at-pose")
@@ -76,7 +85,9 @@ class Agreement:
         for name in self._world.scene.movable:
             count, free = placed[name.lower()], course.in_hand != name
             if count != int(free):
-                where = "nowhere" if count == 0 else f"in {count} places" if free else "not in the hand"
+                where = (
+                    "nowhere" if count == 0 else f"in {count} places" if free else "not in the hand"
+                )
                 self._log.add("state", f"by the facts {name} is {where}", name)
 
     def _pose(self, body: str, pose: str, course: Course) -> None:
@@ -100,7 +111,9 @@ class Agreement:
         wider = abs(float(course.row[10]) - hold.opening)
         if moved > CLOSE or turned > ALIKE or wider > CLOSE:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg, fingers {1000 * wider:.1f} mm"
-            self._log.add("state", f"{body} is held otherwise than {grasp} says: {off}", body, depth=moved)
+            self._log.add(
+                "state", f"{body} is held otherwise than {grasp} says: {off}", body, depth=moved
+            )
 
     def _value(self, name: str, type_: str) -> Array | Hold | None:
         value = self._plan.values.get(name)

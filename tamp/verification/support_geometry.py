@@ -61,7 +61,10 @@ class Supports:
         bodies = world.scene.bodies
         self._points = {name: body_points(body.parts) for name, body in bodies.items()}
         self._centres = {name: mass_centre(body) for name, body in bodies.items()}
-        self._sizes = {name: float(np.linalg.norm(points, axis=1).max()) for name, points in self._points.items()}
+        self._sizes = {
+            name: float(np.linalg.norm(points, axis=1).max())
+            for name, points in self._points.items()
+        }
         self._stands: dict[tuple[tuple[str, bytes], ...], Stand] = {}
         self._undersides: dict[tuple[str, bytes], Array] = {}
 
@@ -74,7 +77,9 @@ class Supports:
 
     def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
         """What a body's stand depends on: the poses of itself and of the bodies around."""
-        poses = {name: self._world.pose(name) for name in self._points if name != absent or name == body}
+        poses = {
+            name: self._world.pose(name) for name in self._points if name != absent or name == body
+        }
         centre = poses[body][:3, 3]
         near = [
             name for name, T in poses.items()
@@ -99,14 +104,18 @@ class Supports:
             if absent and T_world_absent is not None:
                 self._world.place(absent, T_world_absent)
         length = 2 * SINK + 2 * EVEN + GAP
-        gaps = np.array([fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits])
+        gaps = np.array(
+            [fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits]
+        )
         # What is met higher up is beside the body and not below it: a ray down its flank begins in a neighbour.
         gaps[gaps < -SINK - EVEN] = np.inf
         least = float(gaps.min())
         if least > GAP:
             return Stand(frozenset(), np.inf, np.inf)
         carrying = gaps <= least + EVEN
-        on = frozenset(name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name)
+        on = frozenset(
+            name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name
+        )
         centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
         return Stand(on, least, outside(centre, underside[carrying][:, :2]))
 

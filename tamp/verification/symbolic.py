@@ -24,7 +24,9 @@ TOLERANCE = 1e-6
 """By which a stated cost may differ from the domain's."""
 
 
-def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, domain: Path | None = None) -> Report:
+def verify_symbolic(
+    plan: dict[str, Any] | Path, problem: Path | None = None, domain: Path | None = None
+) -> Report:
     """Run a plan through the domain's actions and compare what it says with what they do.
 
     Args:
@@ -49,7 +51,11 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
         files[role] = _file(Path(source["path"].text()), given, role, file)
         hashes[files[role]] = source["sha256"].text() if given is None else None
         if sha256(files[role]) != source["sha256"].text():
-            violations.append(Violation("hash", f"the {role} {files[role]} is not the one that the plan was made from"))
+            violations.append(
+                Violation(
+                    "hash", f"the {role} {files[role]} is not the one that the plan was made from"
+                )
+            )
     with unquoted(file, hashes):
         parsed = parse_domain(read_pddl(files["domain"]), files["domain"])
         task = parse_task(read_pddl(files["problem"]), parsed, files["problem"])
@@ -76,13 +82,20 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
         name, arguments = field["name"], [item.text() for item in field["arguments"].items()]
         action = semantics.actions.get(name.text())
         if action is None:
-            raise name.wrong(f"unknown action '{name.text()}'", found=name.text(), choices=tuple(semantics.actions))
+            raise name.wrong(
+                f"unknown action '{name.text()}'",
+                found=name.text(),
+                choices=tuple(semantics.actions),
+            )
         _check_arguments(field["arguments"], action, arguments, semantics)
         for parameter, argument in zip(action.parameters, arguments, strict=True):
             if not semantics.fits(argument, parameter.types):
                 what = f"{argument} is no {' or '.join(parameter.types)}"
                 violations.append(Violation("precondition", what, index, action.name))
-        unmet = [f"{show(formula)} does not hold" for formula in semantics.unmet(action, arguments, state)]
+        unmet = [
+            f"{show(formula)} does not hold"
+            for formula in semantics.unmet(action, arguments, state)
+        ]
         violations += [Violation("precondition", what, index, action.name) for what in unmet]
         cost = _cost(task, action, arguments)
         if cost is None:
@@ -99,12 +112,20 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
     return violations
 
 
-def _check_arguments(field: Field, action: Action, arguments: list[str], semantics: Semantics) -> None:
+def _check_arguments(
+    field: Field, action: Action, arguments: list[str], semantics: Semantics
+) -> None:
     if len(arguments) != len(action.parameters):
-        raise field.wrong(f"'{action.name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
+        raise field.wrong(
+            f"'{action.name}' takes {len(action.parameters)} arguments, not {len(arguments)}"
+        )
     for argument in arguments:
         if argument not in semantics.objects:
-            raise field.wrong(f"unknown object '{argument}'", found=argument, choices=tuple(sorted(semantics.objects)))
+            raise field.wrong(
+                f"unknown object '{argument}'",
+                found=argument,
+                choices=tuple(sorted(semantics.objects)),
+            )
 
 
 def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
@@ -123,4 +144,6 @@ def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path
             return file
     if given is not None:
         raise InputError(f"no such file: {given}")
-    raise InputError(f"the plan's {role} {named} is missing", file=plan, remedy=f"Give --{role} FILE")
+    raise InputError(
+        f"the plan's {role} {named} is missing", file=plan, remedy=f"Give --{role} FILE"
+    )

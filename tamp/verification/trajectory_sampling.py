@@ -53,8 +53,18 @@ class Sampler:
         The yaw has no limits: it stays as it is.
         """
         room, robot = self._world.scene.room, limits_of(self._robot)
-        low = np.array([room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0])
-        high = np.array([room.x[1] + 1, room.y[1] + 1, np.inf, *(limit + 1 for limit in robot.upper), robot.opening])
+        low = np.array(
+            [room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0]
+        )
+        high = np.array(
+            [
+                room.x[1] + 1,
+                room.y[1] + 1,
+                np.inf,
+                *(limit + 1 for limit in robot.upper),
+                robot.opening,
+            ]
+        )
         return np.clip(rows, low, high)
 
     def pieces(self, rows: Array, times: Array) -> Iterator[tuple[Array, Array]]:
@@ -72,7 +82,9 @@ class Sampler:
                 first, cost = edge, 0.0
             cost += needs
             if needs > PIECE:
-                yield from _cut(rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE))
+                yield from _cut(
+                    rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE)
+                )
                 first, cost = edge + 1, 0.0
         if first < len(rows) - 1:
             yield rows[first:], times[first:]
@@ -85,7 +97,9 @@ class Sampler:
         frames = self._frames(rows)
         for _ in range(PASSES):
             change = np.abs(np.diff(rows, axis=0))
-            moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(axis=1, initial=0.0)
+            moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(
+                axis=1, initial=0.0
+            )
             parts = np.maximum(moved / STEP, change[:, 2:10].max(axis=1, initial=0.0) / TURN)
             if (parts <= 1 + 1e-6).all():
                 break
@@ -116,7 +130,9 @@ class Sampler:
             T_world_held = self.held_frames(frames, held)
             at += [(T_world_held, solid) for solid in self._world.solids[held.body]]
         corners = [
-            (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3] for T, solid in at
+            (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1)
+            + T[:, None, :3, 3]
+            for T, solid in at
         ]
         return np.concatenate(corners, axis=1)
 
@@ -124,7 +140,9 @@ class Sampler:
 def _divided(rows: Array, times: Array, parts: Array) -> tuple[Array, Array]:
     """The polyline with its i-th edge in parts[i] equal pieces (at least one)."""
     parts = np.maximum(parts, 1).astype(int)
-    positions = np.concatenate([np.linspace(i, i + 1, n, endpoint=False) for i, n in enumerate(parts)] + [[len(parts)]])
+    positions = np.concatenate(
+        [np.linspace(i, i + 1, n, endpoint=False) for i, n in enumerate(parts)] + [[len(parts)]]
+    )
     index = np.arange(len(rows))
     columns = [np.interp(positions, index, column) for column in (times, *rows.T)]
     return np.column_stack(columns[1:]), columns[0]
@@ -139,7 +157,9 @@ def _unwound(rows: Array) -> Array:
     turning = np.diff(rows[:, 2])
     moved = np.linalg.norm(np.diff(rows[:, :2], axis=0), axis=1)
     kept = math.tau * np.maximum(1.0, np.ceil(moved / STEP))
-    turning = np.where(np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning)
+    turning = np.where(
+        np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning
+    )
     rows = rows.copy()
     rows[:, 2] = rows[0, 2] % math.tau + np.concatenate([[0.0], np.cumsum(turning)])
     return rows

@@ -60,7 +60,11 @@ def read_streams(plan: PlanFile, file: Path | None, domain: Domain) -> StreamFil
 
 
 def other_files(
-    plan: PlanFile, loaded: LoadedProblem, domain: Path, streams: Path | None, given: Mapping[str, Path | None]
+    plan: PlanFile,
+    loaded: LoadedProblem,
+    domain: Path,
+    streams: Path | None,
+    given: Mapping[str, Path | None],
 ) -> tuple[str, ...]:
     """The domain and streams by which is judged, where they are not those of the problem, or no longer the plan's.
 
@@ -85,10 +89,16 @@ def other_files(
         if source is not None:
             found.append(f"without the streams {source.path.name}, which are not there")
     elif source is not None and source.sha256 != sha256(streams):
-        found.append(f"by the streams {streams.name}, which are not those that the plan was made with")
+        found.append(
+            f"by the streams {streams.name}, which are not those that the plan was made with"
+        )
     elif beside.is_file() and sha256(beside) != sha256(streams):
         found.append(f"by the streams {streams.name}, not the problem's {beside.name}")
-    elif not beside.is_file() and given["streams"] is None and streams.with_suffix("").stem != domain.stem:
+    elif (
+        not beside.is_file()
+        and given["streams"] is None
+        and streams.with_suffix("").stem != domain.stem
+    ):
         found.append(f"by the streams {streams.name}, as the plan says")
     return tuple(found)
 
@@ -114,9 +124,20 @@ def trusted_relations(
         given: The initial facts that the problem states.
     """
     names = _names(streams, domain)
-    stated = {fact[0] for fact in plan.certified} | {fact[0] for fact in plan.initial if fact not in given}
-    certified = {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
-    settled = {*known, *domain.fluent_predicates, *domain.derived_predicates, *KINDS_OF_OBJECTS, "=", *domain.types}
+    stated = {fact[0] for fact in plan.certified} | {
+        fact[0] for fact in plan.initial if fact not in given
+    }
+    certified = (
+        {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
+    )
+    settled = {
+        *known,
+        *domain.fluent_predicates,
+        *domain.derived_predicates,
+        *KINDS_OF_OBJECTS,
+        "=",
+        *domain.types,
+    }
     found = {
         names.get(predicate, predicate)
         for predicate, sign in _rested_on(plan, domain, goal)
@@ -127,16 +148,30 @@ def trusted_relations(
 
 def certifiable(plan: PlanFile, domain: Domain, streams: StreamFile | None) -> frozenset[str]:
     """The static predicates that streams certify; where the plan's are not there, all; where it names none, its own."""
-    static = domain.predicates.keys() - domain.fluent_predicates - domain.derived_predicates - KINDS_OF_OBJECTS
+    static = (
+        domain.predicates.keys()
+        - domain.fluent_predicates
+        - domain.derived_predicates
+        - KINDS_OF_OBJECTS
+    )
     if streams is None:
         named = plan.source("streams") is not None
         return frozenset(static if named else static & {fact[0] for fact in plan.certified})
-    return frozenset(atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified) & static
+    return (
+        frozenset(
+            atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified
+        )
+        & static
+    )
 
 
 def domain_note(loaded: LoadedProblem, domain: Path, given: bool) -> tuple[str, ...]:
     """That nobody but the plan says by which domain a problem is meant, unless that is one that ships."""
-    if loaded.domain is not None or given or domain.parent.resolve() == shipped("domains").resolve():
+    if (
+        loaded.domain is not None
+        or given
+        or domain.parent.resolve() == shipped("domains").resolve()
+    ):
         return ()
     return (f"the problem names no domain; judged by {domain.name}, as the plan says",)
 
@@ -167,7 +202,11 @@ def _rested_on(plan: PlanFile, domain: Domain, goal: Formula) -> Iterator[tuple[
     for action in (one for one in domain.actions if one.name in used):
         stack += signed_atoms(action.precondition)
         for effect in action.effects:
-            stack += [(atom, sign) for atom, one in signed_atoms(effect.condition) for sign in (one, not one)]
+            stack += [
+                (atom, sign)
+                for atom, one in signed_atoms(effect.condition)
+                for sign in (one, not one)
+            ]
     seen: set[tuple[str, bool]] = set()
     while stack:
         atom, sign = stack.pop()

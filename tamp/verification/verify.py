@@ -32,7 +32,14 @@ from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics
 from tamp.verification.support_relations import RELATIONS
 from tamp.verification.symbolic import verify_symbolic
-from tamp.verification.trust import certifiable, domain_note, other_files, read_streams, streams_file, trusted_relations
+from tamp.verification.trust import (
+    certifiable,
+    domain_note,
+    other_files,
+    read_streams,
+    streams_file,
+    trusted_relations,
+)
 from tamp.verification.violation_log import Log
 
 NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
@@ -73,7 +80,9 @@ def verify(
     problem_file = source_file(read, "problem", None if problem is None else Path(problem))
     domain_file = source_file(read, "domain", None if domain is None else Path(domain))
     named = plan_hashes(
-        read, problem=None if problem is None else problem_file, domain=None if domain is None else domain_file
+        read,
+        problem=None if problem is None else problem_file,
+        domain=None if domain is None else domain_file,
     )
     with unquoted(read.file, named):
         loaded = load_scene(problem_file)
@@ -94,7 +103,11 @@ def verify(
         *check_objects(read, loaded.scene, parsed),
     ]
     if read.robot != loaded.scene.robot.model:
-        violations.append(Violation("initial", f"the problem's robot is {loaded.scene.robot.model}, not {read.robot}"))
+        violations.append(
+            Violation(
+                "initial", f"the problem's robot is {loaded.scene.robot.model}, not {read.robot}"
+            )
+        )
     own_goal = parse_goal(read.goal, parsed, objects, read.file)
     if substitute(own_goal, {}) != substitute(goal, {}):
         violations.append(Violation("goal", "the plan's goal is not the problem's"))
@@ -115,8 +128,13 @@ def verify(
         replay.run(goal)
         violations += log.violations
         settled = certified.known | decided
-        on_trust = {*trusted_relations(read, parsed, goal, declared, settled, given), *relations.silent}
-        unsaid = [f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())]
+        on_trust = {
+            *trusted_relations(read, parsed, goal, declared, settled, given),
+            *relations.silent,
+        }
+        unsaid = [
+            f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())
+        ]
         others = {"domain": domain, "streams": streams}
         given_files = {role: None if file is None else Path(file) for role, file in others.items()}
         return Report(
@@ -147,17 +165,28 @@ def _asked(
     for name, classifier in classifiers.items():
         if streams is None:
             remedy = "Give them: --streams FILE"
-            raise InputError(f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy)
+            raise InputError(
+                f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy
+            )
         names = relation_names(streams)
         if name not in names:
-            raise InputError(f"the streams have no relation '{name}'", file=streams.file, found=name, choices=names)
+            raise InputError(
+                f"the streams have no relation '{name}'",
+                file=streams.file,
+                found=name,
+                choices=names,
+            )
         relation = relation_of(streams, domain, name)
         if relation is not None and relation.predicates & RELATIONS:
             raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
         if relation is None:
-            what = f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
+            what = (
+                f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
+            )
             raise InputError(
-                what, file=streams.file, remedy="docs/adding-a-predicate.md says what its streams are like"
+                what,
+                file=streams.file,
+                remedy="docs/adding-a-predicate.md says what its streams are like",
             )
         found[name] = relation, classifier
     return found
@@ -169,18 +198,38 @@ def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
     Raises:
         InputError: A fact or an action names one that the plan does not have.
     """
-    values = {name: (value.type,) for name, value in plan.values.items() if value.type in domain.types}
-    objects = {**domain.constants, **{name: ("object",) for name in plan.values}, **values, **plan.objects}
-    facts = [(fact, "initial") for fact in plan.initial] + [(fact, "certified") for fact in plan.certified]
+    values = {
+        name: (value.type,) for name, value in plan.values.items() if value.type in domain.types
+    }
+    objects = {
+        **domain.constants,
+        **{name: ("object",) for name in plan.values},
+        **values,
+        **plan.objects,
+    }
+    facts = [(fact, "initial") for fact in plan.initial] + [
+        (fact, "certified") for fact in plan.certified
+    ]
     terms = [(term, where) for fact, where in facts for term in fact[1:]]
-    terms += [(term, f"actions[{at}].arguments") for at, action in enumerate(plan.actions) for term in action.arguments]
+    terms += [
+        (term, f"actions[{at}].arguments")
+        for at, action in enumerate(plan.actions)
+        for term in action.arguments
+    ]
     for term, where in terms:
         if term not in objects:
-            raise InputError(f"{where}: unknown object '{term}'", file=plan.file, found=term, choices=sorted(objects))
+            raise InputError(
+                f"{where}: unknown object '{term}'",
+                file=plan.file,
+                found=term,
+                choices=sorted(objects),
+            )
     return objects
 
 
-def _given(loaded: LoadedProblem, domain: Domain, objects: dict[str, tuple[str, ...]]) -> frozenset[Fact]:
+def _given(
+    loaded: LoadedProblem, domain: Domain, objects: dict[str, tuple[str, ...]]
+) -> frozenset[Fact]:
     facts: set[Fact] = set()
     for passage in loaded.init:
         facts |= parse_facts(

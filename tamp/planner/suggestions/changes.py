@@ -14,7 +14,11 @@ from tamp.geometric.scene.scene import Body, Box, Cavity, Part, Scene, Surface
 from tamp.planner.problem import Problem
 from tamp.symbolic.pddl.structs import And, Atom, Formula, Or
 
-SMALLER = ((0.75, "a quarter smaller", 2), (0.5, "half its size", 3), (0.3, "a third of its size", 4))
+SMALLER = (
+    (0.75, "a quarter smaller", 2),
+    (0.5, "half its size", 3),
+    (0.3, "a third of its size", 4),
+)
 """Factors by which a body is scaled, in words, and how large a change that is."""
 
 LARGER = 1.5
@@ -53,17 +57,23 @@ def changes(problem: Problem) -> Iterator[Change]:
     """All changes that are thought of, in no order that matters."""
     scene = problem.scene
     words = {word for atom in _atoms(problem.stream_task.task.goal) for word in atom.terms}
-    wanted = {name for name in (*scene.bodies, *scene.surfaces, *scene.cavities) if name.lower() in words}
+    wanted = {
+        name for name in (*scene.bodies, *scene.surfaces, *scene.cavities) if name.lower() in words
+    }
     places = [*scene.surfaces.values(), *scene.cavities.values()]
     wanted |= {place.body for place in places if place.name in wanted}
     for name, body in scene.bodies.items():
         idle = name not in wanted and not _on(scene, body)
         if idle:
             rest = {other: kept for other, kept in scene.bodies.items() if other != name}
-            yield Change(f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=rest))
+            yield Change(
+                f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=rest)
+            )
         if body.movable and (name in wanted or not idle):
             for factor, how, size in SMALLER:
-                yield Change(f"if {name} were {how}", (name,), size, _with(scene, _scaled(body, factor)))
+                yield Change(
+                    f"if {name} were {how}", (name,), size, _with(scene, _scaled(body, factor))
+                )
         if not body.movable and _small(body) and not body.cavities and not _on(scene, body):
             loose = replace(body, movable=True, surfaces=(), support=_below(scene, body))
             yield Change(f"if {name} could be moved", (name,), 1, _with(scene, loose))
@@ -73,7 +83,9 @@ def changes(problem: Problem) -> Iterator[Change]:
             larger = _larger(body, place)
             if larger is not None and not (isinstance(place, Cavity) and _on(scene, body)):
                 about = (place.name, body.name)
-                yield Change(f"if {place.name} were half as large again", about, 3, _with(scene, larger))
+                yield Change(
+                    f"if {place.name} were half as large again", about, 3, _with(scene, larger)
+                )
     for body in scene.bodies.values():
         yield from _brought(scene, body)
     goal = problem.stream_task.task.goal
@@ -94,8 +106,16 @@ def _brought(scene: Scene, body: Body) -> Iterator[Change]:
     x, y, z = body.pose.position
     if max(heights) < HANDY[0] or min(heights) > HANDY[1]:
         lifted = replace(body.pose, position=(x, y, z + MIDDLE - sum(heights) / len(heights)))
-        yield Change(f"if {body.name} were {MIDDLE} m high", _around(scene, body), 2, _moved(scene, body, lifted))
-    inside = [min(max(v, low), high) for v, (low, high) in zip((x, y), (scene.room.x, scene.room.y), strict=True)]
+        yield Change(
+            f"if {body.name} were {MIDDLE} m high",
+            _around(scene, body),
+            2,
+            _moved(scene, body, lifted),
+        )
+    inside = [
+        min(max(v, low), high)
+        for v, (low, high) in zip((x, y), (scene.room.x, scene.room.y), strict=True)
+    ]
     if inside != [x, y]:
         nearer = replace(body.pose, position=(*inside, z))
         text = f"if {body.name} stood at ({inside[0]:.1f}, {inside[1]:.1f}), in the room"
@@ -113,7 +133,9 @@ def _moved(scene: Scene, body: Body, pose: Pose) -> Scene:
     bodies = dict(scene.bodies)
     for name in (body.name, *_on(scene, body)):
         x, y, z = np.add(bodies[name].pose.position, shift)
-        bodies[name] = replace(bodies[name], pose=replace(bodies[name].pose, position=(float(x), float(y), float(z))))
+        bodies[name] = replace(
+            bodies[name], pose=replace(bodies[name].pose, position=(float(x), float(y), float(z)))
+        )
     return replace(scene, bodies=bodies)
 
 
@@ -135,8 +157,12 @@ def _below(scene: Scene, body: Body) -> str | None:
     for place in (*scene.surfaces.values(), *scene.cavities.values()):
         if place.body == body.name:
             continue
-        inside = scene.world_pose(place).inverse() @ Pose((float(middle[0]), float(middle[1]), float(low[2])))
-        if abs(inside.position[2]) < 0.01 and all(abs(inside.position[i]) < place.size[i] / 2 for i in range(2)):
+        inside = scene.world_pose(place).inverse() @ Pose(
+            (float(middle[0]), float(middle[1]), float(low[2]))
+        )
+        if abs(inside.position[2]) < 0.01 and all(
+            abs(inside.position[i]) < place.size[i] / 2 for i in range(2)
+        ):
             return place.name
     return None
 
@@ -156,7 +182,11 @@ def _scaled(body: Body, factor: float) -> Body:
     sunk = float(bounds(body.parts, body.pose)[0][2] - bounds(parts, body.pose)[0][2])
     x, y, z = body.pose.position
     surfaces = tuple(
-        replace(one, pose=scale_pose(one.pose, factor), size=(one.size[0] * factor, one.size[1] * factor))
+        replace(
+            one,
+            pose=scale_pose(one.pose, factor),
+            size=(one.size[0] * factor, one.size[1] * factor),
+        )
         for one in body.surfaces
     )
     return replace(
@@ -168,7 +198,10 @@ def _scaled(body: Body, factor: float) -> Body:
 
 def _larger(body: Body, place: Surface | Cavity) -> Body | None:
     """A body of boxes with wider places, and higher ones where the place is a cavity; None for other bodies."""
-    if not all(isinstance(part.shape, Box) and part.pose.quaternion == Pose().quaternion for part in body.parts):
+    if not all(
+        isinstance(part.shape, Box) and part.pose.quaternion == Pose().quaternion
+        for part in body.parts
+    ):
         return None
     factors = np.array((LARGER, LARGER, LARGER if isinstance(place, Cavity) else 1.0))
 

@@ -76,14 +76,21 @@ class Why:
 
     def text(self) -> str:
         """A few lines."""
-        lines = [f"  With --seed {seed} a plan is found as it is: no change is needed" for seed in self.unchanged]
+        lines = [
+            f"  With --seed {seed} a plan is found as it is: no change is needed"
+            for seed in self.unchanged
+        ]
         for one in self.relaxations:
             plan = f"a plan of {one.actions} actions, found in {one.seconds:.1f} s"
-            lines.append(f"  It would be solvable {one.text} ({plan}; with all of {SEEDS} seeds, and without it none)")
+            lines.append(
+                f"  It would be solvable {one.text} ({plan}; with all of {SEEDS} seeds, and without it none)"
+            )
         if not lines:
             what = f"none of {self.tried} changes that were tried (of {self.known}) makes it solvable by itself"
             lines.append(f"  {what}, with {SEEDS} seeds and {self.budget:.1f} s for each")
-        lines += self._others("tried as well, and did not help", [_failed(*one) for one in self.failed])
+        lines += self._others(
+            "tried as well, and did not help", [_failed(*one) for one in self.failed]
+        )
         return "\n".join(lines + self._others("not tried", list(self.untried)))
 
     @staticmethod
@@ -93,7 +100,10 @@ class Why:
 
     def json(self) -> dict[str, object]:
         """For programs."""
-        found = [{"change": r.text, "actions": r.actions, "seconds": round(r.seconds, 3)} for r in self.relaxations]
+        found = [
+            {"change": r.text, "actions": r.actions, "seconds": round(r.seconds, 3)}
+            for r in self.relaxations
+        ]
         return {
             "relaxations": found,
             "tried": self.tried,
@@ -140,12 +150,20 @@ class _Trial:
         progress: Progress | None,
         trying: Callable[[str], None],
     ) -> None:
-        self._solution, self._reload, self._progress, self._trying = solution, reload, progress, trying
+        self._solution, self._reload, self._progress, self._trying = (
+            solution,
+            reload,
+            progress,
+            trying,
+        )
         self._deadline = Deadline(max_time)
         self._budget = min(SLICE, max_time / SHARE)
         self._seeds = [solution.seed + STEP * number for number in range(SEEDS)]
         # What failed with more time fails with less; what was proven once holds for all seeds.
-        enough = solution.outcome is Outcome.EXHAUSTED or solution.seconds.get("total", 0.0) >= self._budget
+        enough = (
+            solution.outcome is Outcome.EXHAUSTED
+            or solution.seconds.get("total", 0.0) >= self._budget
+        )
         proven = solution.outcome in PROVEN
         self._unsolved = set(self._seeds if proven else self._seeds[:1] if enough else ())
         self._unchanged: list[int] = []
@@ -221,7 +239,9 @@ def _silent(text: str) -> None:
     pass
 
 
-def _changed(problem: Problem, change: Change, reload: Callable[[Scene], Problem]) -> Problem | None:
+def _changed(
+    problem: Problem, change: Change, reload: Callable[[Scene], Problem]
+) -> Problem | None:
     """The problem with a change, or None where it makes no sense, such as a goal about what is gone."""
     if change.goal is not None:
         task = replace(problem.stream_task.task, goal=change.goal)
