@@ -1,8 +1,9 @@
-"""Relations of the user's own in a problem: what their classifiers say at the start, and wherever they must not hold.
+"""Relations of the user's own in a problem: asked of classifiers at the start and where negated.
 
-A classifier decides wherever the relation is asked for: its facts of the initial state are among the initial facts, and
-where a condition needs the relation to be false, that is certified by a stream of its own, for poses of any origin. A
-relation without a classifier is unknown until a stream certifies it.
+A classifier decides wherever the relation is asked for: its facts of the initial state are among
+the initial facts, and where a condition needs the relation to be false, that is certified by a
+stream of its own, for poses of any origin. A relation without a classifier is unknown until a
+stream certifies it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ from tamp.symbolic.pddl.relations import (
 )
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 
-REMEDY = "Give it a classifier: --sampler {0}=FILE.py with classify, or weights of 100 labels, some of them negative"
+REMEDY = (
+    "Give it a classifier: --sampler {0}=FILE.py with classify, "
+    "or weights of 100 labels, some of them negative"
+)
 
 MOST = 3
 """Arguments that a warning about a classifier names."""
@@ -82,8 +86,8 @@ def decided(
         context: Of the scene.
 
     Raises:
-        InputError: A condition needs to know that a relation does not hold, and nothing says so; or a classifier
-            answers nothing.
+        InputError: A condition needs to know that a relation does not hold, and nothing says so; or
+            a classifier answers nothing.
     """
     relations: dict[str, Relation] = {}
     own = [name for name in relation_names(declared) if name not in SAMPLERS]
@@ -96,12 +100,14 @@ def decided(
                 _refuse_unknown(relation, domain, goal, served.undecided.get(name))
 
     unused = tuple(
-        f"no stream is named 'sample-{name}' or 'test-{name}': the grounding of '{name}' is not used"
+        f"no stream is named 'sample-{name}' or 'test-{name}': "
+        f"the grounding of '{name}' is not used"
         for name in dict.fromkeys((*served.generators, *served.classifiers))
         if name not in own and name not in SAMPLERS
     )
     asked = {atom.predicate for atom, _ in atoms_of_conditions(domain, goal)}
     relations = {name: one for name, one in relations.items() if one.predicates & asked}
+
     classifiers = {name: served.classifiers[name] for name in relations}
     seen = {
         name: _observed(one, classifiers[name], domain, objects, facts, context)
@@ -121,6 +127,7 @@ def decided(
         )
     for relation in negated.values():
         _check_poses(relation, domain)
+
     names = {
         one: complement_name(one, domain)
         for relation in negated.values()
@@ -133,6 +140,7 @@ def decided(
         )
         for name, one in negated.items()
     )
+
     rewritten, wanted = with_complements(domain, goal, names)
     hidden = frozenset(names.values())
     return Decided(
@@ -164,7 +172,8 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
     said = f"({' '.join((atom.predicate, *atom.terms))})"
     reason = f"its classifier cannot tell yet: {why}" if why else "it has no classifier"
     raise InputError(
-        f"whether {said} does not hold has to be known here, and '{name}' is unknown until a plan makes it true: "
+        f"whether {said} does not hold has to be known here, "
+        f"and '{name}' is unknown until a plan makes it true: "
         f"{reason}",
         file=place.file if place else None,
         line=place.line if place else None,
@@ -176,20 +185,25 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
 def _check_poses(relation: Relation, domain: Domain) -> None:
     declared = domain.predicates.get(POSE)
     if relation.poses and (declared is None or len(declared.parameters) != 2):
-        what = f"whether '{relation.name}' does not hold is asked of every pose, and the domain has no (pose ?o ?p)"
+        what = (
+            f"whether '{relation.name}' does not hold is asked of every pose, "
+            "and the domain has no (pose ?o ?p)"
+        )
         raise InputError(
             what, file=domain.file, remedy="Declare it, and certify it of what is sampled"
         )
 
 
 def _odd(relation: Relation, seen: Observation) -> list[str]:
-    """That a classifier failed, or that it does not look at the place that it is asked about."""
+    """Warn of a classifier that failed, or that ignores the place that it is asked about."""
     found: list[str] = []
     for words, why in list(seen.unanswered.items())[:MOST]:
         said = " ".join((relation.name, *words))
         found.append(
-            f"whether ({said}) holds at the start is not known: asked of it, the classifier failed: {why}"
+            f"whether ({said}) holds at the start is not known: "
+            f"asked of it, the classifier failed: {why}"
         )
+
     if (
         len(relation.arguments) == 2
         and len(relation.bodies) == 1
@@ -201,7 +215,9 @@ def _odd(relation: Relation, seen: Observation) -> list[str]:
         same = [body for body, answers in by_body.items() if answers[1:] and min(answers) >= LIKELY]
         if same:
             found.append(
-                f"'{relation.name}' holds of {same[0]} at the start whatever its second argument is: its classifier "
+                f"'{relation.name}' holds of {same[0]} at the start "
+                "whatever its second argument is: its classifier "
                 "should look at that, too, if it matters where the body is"
             )
+
     return found

@@ -1,4 +1,4 @@
-"""From files to a problem: the scene, the task in symbols, and the streams tied to their functions."""
+"""Load a problem from files: the scene, the symbolic task, the streams tied to their functions."""
 
 from __future__ import annotations
 
@@ -84,18 +84,23 @@ def load_problem(
 
     Args:
         problem: A YAML file, or the name of a shipped problem.
-        domain: A PDDL file or the name of a shipped domain; by default the one that the problem names.
+        domain: A PDDL file or the name of a shipped domain; by default the one that the problem
+            names.
         streams: The streams file; by default `<domain>.streams.pddl` beside the domain.
-        samplers: Relation to the sampler that serves it, over those that the problem names: NAME, NAME:mixed or
-            NAME:alone. Hand-made ones are alone by themselves, others are mixed with the first hand-made one.
-        groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
-            samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
-            served to the streams sample-<relation> and test-<relation>.
-        registry: Further samplers: relation to name to what makes the object; also of files (`samplers.choice`).
-        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
-            f(context, *inputs).
+        samplers: Relation to the sampler that serves it, over those that the problem names: NAME,
+            NAME:mixed or NAME:alone. Hand-made ones are alone by themselves, others are mixed with
+            the first hand-made one.
+        groundings: Relation to an object with `propose`, and `classify` where the domain asks for
+            it, over all named samplers; its name is "given" (samplers={"on": "given:alone"} has it
+            alone). A relation of the user's own is served to the streams sample-<relation> and
+            test-<relation>.
+        registry: Further samplers: relation to name to what makes the object; also of files
+            (`samplers.choice`).
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that
+            compute costs, f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
-        scene: Where things are by now, instead of where the file has them; and what is in the hand by now, `holding`.
+        scene: Where things are by now, instead of where the file has them; and what is in the hand
+            by now, `holding`.
 
     Raises:
         InputError: Anything wrong with the files or the names, with its place.
@@ -217,7 +222,8 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
     if loaded.domain is None:
         raise loaded.error(
             "no domain",
-            remedy="Name one in the file (domain: cupboard) or on the command line, before the problem",
+            remedy="Name one in the file (domain: cupboard) or on the command line, "
+            "before the problem",
         )
     try:
         return find_domain(loaded.domain, loaded.path.parent)

@@ -1,4 +1,4 @@
-"""What the streams of a run drew and refused, for those who want to see it. Planning is the same with it or without."""
+"""Record what streams drew and refused, for those who want to see it; planning stays the same."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ LIMIT = 2000
 """Samples that are kept of a run, beside those of the plan,"""
 
 EACH = 200
-"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves room for others."""
+"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves
+room for others.
+"""
 
 
 @dataclass(eq=False)
@@ -65,11 +67,11 @@ class Recorder:
         self._counts: Counter[tuple[str, str, bool]] = Counter()
 
     def watched(self, task: StreamTask) -> StreamTask:
-        """The same task with streams that are listened to."""
+        """Return the same task with streams that are listened to."""
         return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
 
     def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
-        """What was heard, all of the values that the plan uses included."""
+        """Return what was heard, all of the values that the plan uses included."""
         late = [
             self._late[value]
             for value in used
@@ -112,7 +114,7 @@ class Recorder:
                     sample.refusals[stream, value.reason] += 1
 
     def _refused(self, stream: str, inputs: tuple[Any, ...], pose: Pose, reason: str) -> None:
-        """A generator's own proposal that its stream did not take."""
+        """Note a generator's own proposal that its stream did not take."""
         sample = self._sample(stream, inputs, pose, refused=True)
         if sample is not None:
             sample.refusals[stream, reason] += 1

@@ -1,4 +1,4 @@
-"""Who serves the relations of a problem: the samplers that are named, the objects that are given."""
+"""Samplers and classifiers that serve a problem's relations: those named, the objects given."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Served:
         groundings: Mapping[str, Grounding],
         registry: Registry,
     ) -> Served:
-        """What the problem names, and over that `samplers` by name and `groundings` as objects.
+        """Take what the problem names, over it `samplers` by name and `groundings` as objects.
 
         Raises:
             InputError: An unknown relation or sampler; one of `on` or `inside` that cannot propose.
@@ -52,6 +52,7 @@ class Served:
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
                 known.setdefault(relation, {}).update(makers)
+
         choices = {
             relation: Choice(next(iter(makers)), alone=True)
             for relation, makers in SAMPLERS.items()
@@ -61,6 +62,7 @@ class Served:
                 choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
             except InputError as error:
                 raise error.at(loaded.path, loaded.line_of("samplers", relation)) from None
+
         choices |= {
             relation: parse_choice(relation, text, known) for relation, text in samplers.items()
         }
@@ -70,6 +72,7 @@ class Served:
                 and choices.get(relation, Choice("", False)).name != GIVEN
             ):
                 choices[relation] = Choice(GIVEN, alone=False)
+
         made: dict[str, Grounding] = {
             name: maker(name, choice, known)() for name, choice in choices.items()
         }
@@ -79,6 +82,7 @@ class Served:
                 raise InputError(
                     what, remedy="tamp/geometric/samplers/sampler.py says what it is asked"
                 )
+
         judging = {**made, **groundings}
         return cls(
             choices,
@@ -92,10 +96,11 @@ class Served:
         )
 
     def functions(self, declared: StreamFile, domain: Domain) -> dict[str, Callable[..., Any]]:
-        """The functions of the streams sample-R and test-R.
+        """Return the functions of the streams sample-R and test-R.
 
         Raises:
-            InputError: There is a stream test-R, and the object for R cannot tell yet whether R holds.
+            InputError: There is a stream test-R, and the object for R cannot tell yet whether R
+                holds.
         """
         streams = {stream.name: stream for stream in declared.streams}
         functions: dict[str, Callable[..., Any]] = {}
@@ -111,15 +116,21 @@ class Served:
             test = streams.get(f"test-{name}")
             if test is not None and test.name not in functions:
                 line, column = (test.place.line, test.place.column) if test.place else (None, None)
-                what = f"stream '{test.name}' needs a classifier, and that of '{name}' cannot tell yet: {why}"
-                remedy = f"Leave {test.name} out of the streams, give it more labels, or write its classify in Python"
+                what = (
+                    f"stream '{test.name}' needs a classifier, "
+                    f"and that of '{name}' cannot tell yet: {why}"
+                )
+                remedy = (
+                    f"Leave {test.name} out of the streams, give it more labels, "
+                    "or write its classify in Python"
+                )
                 raise InputError(what, file=declared.file, line=line, column=column, remedy=remedy)
         return functions
 
     def _judge(
         self, name: str, declared: StreamFile, domain: Domain
     ) -> tuple[Classifier, tuple[int, ...]] | None:
-        """Who judges what a generator proposes where no stream does, and of which of the stream's inputs."""
+        """Find the judge of a generator's proposals where no stream is, and its inputs."""
         relation = relation_of(declared, domain, name)
         if relation is None or name not in self.classifiers:
             return None

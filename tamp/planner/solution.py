@@ -59,7 +59,8 @@ class Solution:
     Attributes:
         outcome: How planning ended.
         plan: The actions in order, empty unless solved.
-        values: The value of every name in the plan: poses, grasps, base configurations, reaches, motions.
+        values: The value of every name in the plan: poses, grasps, base configurations, reaches,
+            motions.
         certified: The facts that streams certified and the plan rests on.
         explanation: Why there is no plan, a line a cause.
         tallies: What was tried for which action, where there is no plan.

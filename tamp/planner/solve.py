@@ -51,6 +51,7 @@ def solve(
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
+
     deadline = Deadline(max_time)
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
@@ -62,12 +63,11 @@ def solve(
 
     try:
         result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
-    except (
-        OutOfTime,
-        KeyboardInterrupt,
-    ) as end:  # before the first round, or while a bound plan was being timed
+    except (OutOfTime, KeyboardInterrupt) as end:
+        # Before the first round, or while a bound plan was being timed.
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
+
     total = deadline.elapsed()
     return assemble(
         problem,
@@ -88,9 +88,10 @@ def _borne_out(
     deadline: Deadline,
     progress: Progress,
 ) -> Result:
-    """A plan in whose states the classifiers of the user's own relations say what they said of its poses.
+    """Find a plan in whose states the user's classifiers say what they said of its poses.
 
-    Only those that look at more than their arguments can make the first plan another one than that of the seed.
+    Only those that look at more than their arguments can make the first plan another one than that
+    of the seed.
     """
     make_rng = random_streams(seed)
     result = ALGORITHMS[algorithm](task, make_rng, deadline, progress)

@@ -1,4 +1,4 @@
-"""What streams did in earlier runs with a domain, kept in a file that the user names."""
+"""Statistics of streams in earlier runs with a domain, kept in a file that the user names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REMEDY = "Name another file, or delete this one to begin anew"
 
 
 def read_statistics(path: Path, domain: str) -> dict[str, Posterior]:
-    """Stream to what is known of it; nothing when there is no such file yet.
+    """Read stream to what is known of it; nothing when there is no such file yet.
 
     Raises:
         InputError: The file cannot be read, is none of ours, or is about another domain.

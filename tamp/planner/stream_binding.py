@@ -80,5 +80,6 @@ def _refuse_decided(declared: StreamFile) -> None:
             file=declared.file,
             line=place.line if place else None,
             column=place.column if place else None,
-            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+            remedy="A stream without outputs tests a relation; "
+            "tamp.pddlstream takes :predicate too",
         )

@@ -1,4 +1,4 @@
-"""From the motions of a bound plan to timed trajectories, action by action."""
+"""Time parametrization of a bound plan's motions: trajectories, action by action."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Segment:
     Attributes:
         part: "base", "arm" or "gripper".
         times: Seconds from the segment's start, shape (n,), increasing from 0.
-        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in between.
+        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in
+            between.
         opening: Of the fingers, metres, while base or arm move.
         holding: The body in the hand meanwhile.
         attach: The grasp that a gripper segment ends with.
@@ -54,7 +55,9 @@ class Trajectory:
 
 
 Timed = dict[tuple[object, ...], tuple[Path, Segment]]
-"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the bodies are."""
+"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the
+bodies are.
+"""
 
 
 def trajectories(
@@ -65,7 +68,8 @@ def trajectories(
 ) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 
-    Corners are rounded only where the rounding is free of collision among the bodies as they stand at that moment.
+    Corners are rounded only where the rounding is free of collision among the bodies as they stand
+    at that moment.
 
     Args:
         context: Of the problem.
@@ -123,7 +127,7 @@ class _Replay:
         return Segment("gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach)
 
     def _path(self, path: Path) -> Segment:
-        """The path timed, or what it was timed to before in the same circumstances."""
+        """Time the path, or return what it was timed to before in the same circumstances."""
         held = None if self._held is None else (self._held.body, self._held.T_tool_body.position)
         bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
         key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
@@ -154,10 +158,10 @@ class _Replay:
 
         joints = slice(0, 3) if path.part == "base" else slice(3, None)
         points = path.points
-        if (
-            path.part == "base"
-        ):  # whole turns are not lost between one drive and the next: the yaw goes on where it was
+        if path.part == "base":
+            # Whole turns are not lost between drives: the yaw goes on where it was.
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
+
         timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
         return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

@@ -1,4 +1,4 @@
-"""What streams certified, worked out again from the geometry."""
+"""Certified facts of streams, worked out again from the geometry."""
 
 from __future__ import annotations
 
@@ -50,6 +50,7 @@ class Certified:
             sweeper,
             domain,
         )
+
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._checks: dict[str, tuple[str, Callable[[list[str]], str | None]]] = {
             "pose": ("op", lambda _: None),
@@ -80,11 +81,12 @@ class Certified:
         }  # fmt: skip
 
     def check(self, facts: Iterable[Fact], trusted: Counter[str]) -> Iterator[Violation]:
-        """Violations of facts; those of unknown predicates are counted in `trusted`."""
+        """Yield violations of facts; those of unknown predicates are counted in `trusted`."""
         changed = {
             effect.atom.predicate for action in self._domain.actions for effect in action.effects
         }
         changed |= self._domain.derived_predicates
+
         known = self.known
         for fact in sorted(set(facts)):
             predicate, *terms = fact
@@ -104,7 +106,7 @@ class Certified:
                     yield Violation("certified", f"{text} does not hold: {why}", bodies=bodies)
 
     def why_not_held(self, body: str, T_tool_body: Array, opening: float) -> str | None:
-        """Why fingers at an opening do not hold a body that stands so in the tool frame; None when they do."""
+        """Say why fingers at an opening do not hold a body at T_tool_body; None when they do."""
         world, robot = self._world, self._robot
         if not 0.0 <= opening <= robot.opening + 1e-6:
             return f"the fingers cannot open to {1000 * opening:.1f} mm"
@@ -117,7 +119,7 @@ class Certified:
             world.place(body, T_before)
 
     def _why_loose(self, body: str) -> str | None:
-        """Why the hand as it stands does not touch a body as it should."""
+        """Say why the hand as it stands does not touch a body as it should; None when it does."""
         hand, *fingers = (self._world.links[link.name] for link in self._robot.links[-3:])
         for name, link, loosest in (
             ("palm", hand, math.inf),
@@ -134,7 +136,7 @@ class Certified:
         return None
 
     def _why_beside(self, body: str, T_world_tool: Array, opening: float) -> str | None:
-        """A body is between the pads when a line from pad to pad meets it."""
+        """Say why a body is not between the pads; it is when a line from pad to pad meets it."""
         reach = max(opening / 2 - 2e-4, 1e-4)
         at = [(x, z) for x in np.linspace(-PAD, PAD, 5) for z in np.linspace(-PAD, PAD, 5)]
         ends = []
@@ -179,11 +181,12 @@ class Certified:
             T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
             moved, turned = apart(T_world_tool @ hold.T_tool_body, pose)
             if moved > CLOSE or turned > ALIKE:
-                return f"the hand would hold it {1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg from there"
+                off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+                return f"the hand would hold it {off} from there"
         return None
 
     def _beyond(self, *paths: Array) -> bool:
-        """Whether joint angles (n, 7) are out of the limits."""
+        """Check whether joint angles (n, 7) are out of the limits."""
         limits = limits_of(self._robot)
         lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
@@ -222,7 +225,7 @@ class Certified:
         return self._hand_hits(other, pose @ np.linalg.inv(hold.T_tool_body), self._robot.opening)
 
     def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
-        """How deep the hand at a tool pose is in a body, which is brought to the hand of a robot that stands aside."""
+        """Measure how deep the hand at a tool pose is in a body, brought to a robot aside."""
         world = self._world
         T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
         T_before = world.pose(other)

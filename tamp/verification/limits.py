@@ -1,4 +1,4 @@
-"""Whether one part's motion keeps the robot's limits and follows a clock."""
+"""Check the robot's limits of range, velocity and acceleration in a part's motion."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ROUNDING = 2e-6
 
 @dataclass(frozen=True)
 class Excess:
-    """A limit that is exceeded: the violation's kind, seconds from the first segment's start, what, by how much."""
+    """A limit exceeded: the violation's kind, seconds from the segments' start, what, how much."""
 
     kind: str
     time: float
@@ -36,25 +36,30 @@ class Excess:
 
 
 def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[Excess]:
-    """The worst excess of each limit in consecutive segments of one part, which starts and ends at rest."""
+    """Yield each limit's worst excess in segments of a part that starts and ends at rest."""
     part = segments[0].part
     times, rows = _joined(segments)
+
     steps = np.diff(times)
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0))
         yield Excess("time", float(times[at]), f"times of the {part} do not increase", 0.0)
         return
+
     names, lower, upper, velocity, acceleration = _limits(part, robot, room)
     beyond = np.maximum(lower - rows, rows - upper)
     yield from _worst("limit", beyond - SLACK, beyond, times, names, rows, "out of range")
     if len(rows) < 2:
         return
+
     speed = np.abs(np.diff(rows, axis=0)) / steps[:, None]
     allowed = SPEED * velocity + ROUNDING / steps[:, None]
     yield from _worst(
         "velocity", speed - allowed, speed - velocity, times, names, speed, "too fast"
     )
-    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time between their middles.
+
+    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time
+    # between their middles.
     still = np.zeros((1, rows.shape[1]))
     speeds = np.concatenate([still, np.diff(rows, axis=0) / steps[:, None], still])
     apart = np.concatenate([[steps[0] / 2], (steps[:-1] + steps[1:]) / 2, [steps[-1] / 2]])[:, None]
@@ -87,7 +92,7 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
 
 
 def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
-    """Times and rows of segments one after the other; the gripper's row is its opening."""
+    """Join times and rows of segments one after the other; the gripper's row is its opening."""
     times, rows = [], []
     offset = 0.0
     for segment in segments:

@@ -60,7 +60,7 @@ class Relations:
         self.silent: dict[str, str] = {}
 
     def observed(self, state: State, in_hand: str | None) -> State:
-        """The state with what the classifiers say of bodies where they are now, and would say of the plan's poses."""
+        """Add to a state what classifiers say of bodies now, and would say of the plan's poses."""
         if not self._asked:
             return state
         facts: set[Fact] = {(name, *row) for name, rows in state.facts.items() for row in rows}
@@ -81,12 +81,13 @@ class Relations:
     def _said(
         self, relation: Relation, classifier: Classifier, at: Mapping[str, str], in_hand: str | None
     ) -> Iterator[tuple[Fact, bool | None]]:
-        """Facts of a relation, and whether they hold; None where the classifier cannot tell."""
+        """Yield facts of a relation, and whether they hold; None if the classifier cannot tell."""
         world = self._world
         seen = {name: Pose.from_matrix(world.pose(name)) for name in world.scene.bodies}
         scene = moved(world.scene, seen, in_hand)
         names = scene_names(world.scene)
         poses = self._poses(at)
+
         for bound in instances(
             relation, self._domain, self._plan.objects, self._static, poses, names
         ):
@@ -110,11 +111,12 @@ class Relations:
                 yield from ((fact, answer) for fact in facts)
 
     def _poses(self, at: Mapping[str, str]) -> dict[str, list[str]]:
-        """The poses that the plan has of each body."""
+        """List the poses that the plan has of each body."""
         found: dict[str, dict[str, None]] = {body: {pose: None} for body, pose in at.items()}
         for fact in (*self._static, *(("at-pose", *row) for row in at.items())):
             if fact[0] in ("pose", "at-pose") and len(fact) == 3:
                 found.setdefault(fact[1], {})[fact[2]] = None
+
         for relation, _ in self._asked.values():
             for atom in relation.facts:
                 places = [
@@ -129,6 +131,7 @@ class Relations:
                     for i, j in places
                 ):
                     found.setdefault(body, {})[pose] = None
+
         names = scene_names(self._world.scene)
         return {
             body: known

@@ -1,4 +1,4 @@
-"""What the judge found, for people and for programs."""
+"""The judge's report, for people and for programs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Report:
         trusted: How many facts of each predicate could only be taken on trust.
         notes: Oddities that are not the plan's fault.
         seconds: That the verification took.
-        on_trust: Relations on which the verdict rests, and of which nobody but the plan says where they hold.
+        on_trust: Relations on which the verdict rests, and of which nobody but the plan says where
+            they hold.
         other_files: Domain and streams by which was judged, where they are not the problem's.
         asked: How many answers each relation's classifier gave.
     """
@@ -54,7 +55,7 @@ class Report:
         return not self.on_trust and not self.other_files
 
     def text(self) -> str:
-        """For people: a line a violation and a summary."""
+        """Report to people: a line a violation and a summary."""
         lines = [f"  {violation}" for violation in self.violations]
         lines += [f"  note: {one_line(note)}" for note in self.notes]
         moving = [f"{self.duration:.1f} s"] if self.duration else []
@@ -72,7 +73,7 @@ class Report:
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:
-        """For programs."""
+        """Report to programs."""
         return {
             "plan": self.name,
             "holds": self.holds,

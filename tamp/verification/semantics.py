@@ -1,4 +1,4 @@
-"""What PDDL means, in the plainest way: lifted formulas are asked of a set of facts. Shares nothing with the search."""
+"""PDDL's semantics: lifted formulas are asked of a set of facts. Shares nothing with the search."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ class State:
 
     @classmethod
     def of(cls, facts: Iterable[Fact]) -> State:
-        """A state of these facts."""
+        """Make a state of these facts."""
         by_predicate: dict[str, set[tuple[str, ...]]] = {}
         for predicate, *terms in facts:
             by_predicate.setdefault(predicate, set()).add(tuple(terms))
         return cls(by_predicate)
 
     def all(self, predicate: str) -> list[tuple[str, ...]]:
-        """The stored facts of a predicate, sorted."""
+        """List the stored facts of a predicate, sorted."""
         return sorted(self.facts.get(predicate, ()))
 
     def __contains__(self, fact: Fact) -> bool:
@@ -65,12 +65,12 @@ class Semantics:
         self._recursive = {name for name in self._rules if name in self._reached(name)}
 
     def without(self, predicates: Collection[str]) -> Semantics:
-        """The same domain in which facts alone, and no rules, decide about some predicates."""
+        """Return the same domain, in which facts alone, no rules, decide about some predicates."""
         rules = tuple(rule for rule in self.domain.derived if rule.head.predicate not in predicates)
         return Semantics(replace(self.domain, derived=rules), self.objects)
 
     def fits(self, name: str, types: Sequence[str]) -> bool:
-        """Whether an object has one of the types."""
+        """Tell whether an object has one of the types."""
         own = self.objects.get(name, ())
         return "object" in types or any(
             self.domain.is_a(one, other) for one in own for other in types
@@ -79,17 +79,17 @@ class Semantics:
     def holds(
         self, formula: Formula, state: State, binding: Mapping[str, str] | None = None
     ) -> bool:
-        """Whether a formula is true; its free variables are bound."""
+        """Tell whether a formula is true; its free variables are bound."""
         return any(True for _ in self._solutions([formula], state, dict(binding or {}), {}))
 
     def unmet(self, action: Action, arguments: Sequence[str], state: State) -> list[Formula]:
-        """The parts of an action's precondition that do not hold, with the arguments in the place of variables."""
+        """List the parts of an action's precondition that do not hold, arguments substituted."""
         binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
         parts = flat(action.precondition)
         return [substitute(part, binding) for part in parts if not self.holds(part, state, binding)]
 
     def apply(self, action: Action, arguments: Sequence[str], state: State) -> State:
-        """The state after an action: conditions are asked of the state before; adding wins over deleting."""
+        """Apply an action: conditions are asked of the state before; adding wins over deleting."""
         binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
         added: set[Fact] = set()
         deleted: set[Fact] = set()
@@ -107,7 +107,7 @@ class Semantics:
     def _solutions(
         self, parts: list[Formula], state: State, binding: Binding, types: Types
     ) -> Iterator[Binding]:
-        """Bindings that extend `binding` and make all parts true; `types` are those of variables not yet bound."""
+        """Yield extensions of `binding` that make all parts true; `types` are of open variables."""
         open_parts: list[Formula] = []
         waiting = parts[::-1]
         while waiting:  # and no call for each: a goal may have thousands of parts
@@ -118,9 +118,11 @@ class Semantics:
                 open_parts.append(part)
             elif not self._true(part, state, binding):
                 return
+
         if not open_parts:
             yield binding
             return
+
         at = min(range(len(open_parts)), key=lambda i: self._burden(open_parts[i]))
         part, others = open_parts[at], [*open_parts[:at], *open_parts[at + 1 :]]
         if isinstance(part, Atom) and self._burden(part) < 3:
@@ -136,7 +138,7 @@ class Semantics:
                 yield from self._solutions(open_parts, state, {**binding, name: value}, types)
 
     def _burden(self, part: Formula) -> int:
-        """Of a part with free variables: 1 is a lookup, 2 asks rules, 3 needs a variable to be enumerated."""
+        """Rank a part with free variables: 1 is a lookup, 2 asks rules, 3 enumerates a variable."""
         if isinstance(part, Atom) and part.predicate != "=" and not self._is_type(part.predicate):
             return 2 if part.predicate in self._rules else 1
         return 3
@@ -183,7 +185,7 @@ class Semantics:
         return predicate not in self.domain.predicates and predicate in self.domain.types
 
     def _matches(self, atom: Atom, state: State, binding: Binding) -> Iterator[Binding]:
-        """Bindings under which an atom with free variables is true."""
+        """Yield bindings under which an atom with free variables is true."""
         if atom.predicate not in self._rules:
             rows: Collection[tuple[str, ...]] = state.all(atom.predicate)
         elif atom.predicate in self._recursive:
@@ -204,7 +206,7 @@ class Semantics:
     def _answers(
         self, rule: Derived, terms: Sequence[str], state: State
     ) -> Iterator[tuple[str, ...]]:
-        """The rule's heads that are true and fit `terms`, in which variables are open."""
+        """Yield the rule's heads that are true and fit `terms`, in which variables are open."""
         types = {parameter.name: parameter.types for parameter in rule.parameters}
         binding: Binding = {}
         for inner, outer in zip(rule.head.terms, terms, strict=True):
@@ -224,7 +226,7 @@ class Semantics:
                 yield tuple(full.get(term, term) for term in rule.head.terms)
 
     def _closure(self, predicate: str, state: State) -> set[tuple[str, ...]]:
-        """All true facts of a recursive predicate: those that rest on each other grow together until nothing is new."""
+        """Compute a recursive predicate's fixpoint: facts that rest on each other grow together."""
         if predicate not in state.closed:
             below = self._reached(predicate)
             group = [
@@ -256,7 +258,7 @@ class Semantics:
         return [name for name in self.objects if self.fits(name, types)]
 
     def _reached(self, predicate: str) -> set[str]:
-        """Derived predicates that a derived predicate's rules lead to."""
+        """Return derived predicates that a derived predicate's rules lead to."""
         reached: set[str] = set()
         front = [predicate]
         while front:

@@ -1,4 +1,4 @@
-"""What bodies stand on, compared with what the plan, its certified facts and the goal say."""
+"""Support relations, compared with what the plan, its certified facts and the goal say."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tamp.verification.support_geometry import Stand, Supports
 from tamp.verification.violation_log import Log
 
 RELATIONS = frozenset({"supported", "contained", "rests-on"})
-"""Certified predicates of a body, a pose and a place that are decided in the states in which the body is there."""
+"""Certified predicates of a body, a pose and a place, decided in states with the body there."""
 
 
 class Standing:
@@ -32,12 +32,14 @@ class Standing:
             "supported": {name.lower(): surface for name, surface in world.scene.surfaces.items()},
             "contained": {name.lower(): cavity for name, cavity in world.scene.cavities.items()},
         }
+
         facts = sorted({*plan.certified, *plan.initial})
         self._relations = [
             fact for fact in facts if fact[0] in RELATIONS & known and len(fact) == 4
         ]
         self._checked: set[Fact] = set()
-        # A problem may let a body float; it is not the plan's fault as long as the robot leaves it alone.
+
+        # A problem may let a body float; it is not the plan's fault while the robot leaves it be.
         self._floating = {
             name: world.pose(name).tobytes()
             for name in world.scene.movable
@@ -48,11 +50,11 @@ class Standing:
         ]
 
     def stand(self, body: str, in_hand: str | None) -> Stand:
-        """How a body stands while another one is in the hand."""
+        """Find how a body stands while another one is in the hand."""
         return self._supports.stand(body, absent=in_hand if in_hand != body else None)
 
     def check(self, in_hand: str | None) -> None:
-        """Every body that is not held stands still."""
+        """Check that every body that is not held stands still."""
         for name in self._world.scene.movable:
             if name == in_hand or self._floating.get(name) == self._world.pose(name).tobytes():
                 continue
@@ -61,7 +63,7 @@ class Standing:
                 self._log.add("support", f"{name} does not stand: {why}", name)
 
     def check_relations(self, state: State, in_hand: str | None) -> None:
-        """Certified relations of bodies with places, in the first state in which the body is there."""
+        """Check certified relations of bodies with places, in the first state with it there."""
         there = set(state.all("at-pose")) if meant(self._semantics.domain, "at-pose") else set()
         for fact in self._relations:
             if fact not in self._checked and (fact[1], fact[2]) in there:
@@ -69,7 +71,7 @@ class Standing:
                 self._check_relation(fact, in_hand)
 
     def check_unused(self, in_hand: str | None) -> None:
-        """The same about poses at which the body never was: as if it were there now."""
+        """Check the same about poses at which the body never was: as if it were there now."""
         for fact in self._relations:
             pose, name = self._plan.values.get(fact[2]), self._bodies.get(fact[1])
             if (
@@ -84,9 +86,10 @@ class Standing:
                 self._world.place(name, before)
 
     def check_goal(self, goal: Formula, state: State, in_hand: str | None) -> None:
-        """The goal holds by the facts, and again when the bodies themselves say what is on and inside what."""
+        """Check the goal by the facts, and again by what the bodies say is on and inside what."""
         if not self._semantics.holds(goal, state):
             self._log.add("goal", f"{show(goal)} does not follow from the facts at the end")
+
         felt: set[Fact] = set()
         reasons: dict[str, str] = {}
         for name in self._world.scene.movable:
@@ -103,6 +106,7 @@ class Standing:
                         felt.add(fact)
                     else:
                         reasons[f"({' '.join(fact)})"] = why
+
         facts = {(name, *row) for name, rows in state.facts.items() for row in rows}
         if not self._semantics.without(("on", "inside")).holds(goal, State.of(facts | felt)):
             asked = "; ".join(

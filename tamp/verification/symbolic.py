@@ -35,7 +35,8 @@ def verify_symbolic(
         domain: The domain's file, instead of the one that the plan names.
 
     Raises:
-        InputError: The plan file is malformed, or a file that it was made from is missing or malformed.
+        InputError: The plan file is malformed, or a file that it was made from is missing or
+            malformed.
     """
     began = time.monotonic()
     file = None if isinstance(plan, dict) else plan
@@ -43,6 +44,7 @@ def verify_symbolic(
     if root["version"].value != VERSION:
         version = clipped(str(root["version"].value))
         raise root["version"].wrong(f"version {version} is not known, only {VERSION}")
+
     violations: list[Violation] = []
     files: dict[str, Path] = {}
     hashes: dict[Path, str | None] = {}
@@ -56,11 +58,13 @@ def verify_symbolic(
                     "hash", f"the {role} {files[role]} is not the one that the plan was made from"
                 )
             )
+
     with unquoted(file, hashes):
         parsed = parse_domain(read_pddl(files["domain"]), files["domain"])
         task = parse_task(read_pddl(files["problem"]), parsed, files["problem"])
     actions = root["actions"].items()
     violations += _run(task, actions, root["cost"].number())
+
     return Report(
         name=file.name if file else "the plan",
         violations=tuple(violations),
@@ -78,6 +82,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
     semantics = Semantics(task.domain, {**task.domain.constants, **task.objects})
     state, total = State.of(task.initial), 0.0
     violations: list[Violation] = []
+
     for index, field in enumerate(actions):
         name, arguments = field["name"], [item.text() for item in field["arguments"].items()]
         action = semantics.actions.get(name.text())
@@ -88,6 +93,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
                 choices=tuple(semantics.actions),
             )
         _check_arguments(field["arguments"], action, arguments, semantics)
+
         for parameter, argument in zip(action.parameters, arguments, strict=True):
             if not semantics.fits(argument, parameter.types):
                 what = f"{argument} is no {' or '.join(parameter.types)}"
@@ -97,14 +103,17 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
             for formula in semantics.unmet(action, arguments, state)
         ]
         violations += [Violation("precondition", what, index, action.name) for what in unmet]
+
         cost = _cost(task, action, arguments)
         if cost is None:
             violations.append(Violation("cost", "its cost is not known", index, action.name))
         elif abs(cost - field["cost"].number()) > TOLERANCE:
             what = f"it costs {cost:g}, not {field['cost'].number():g}"
             violations.append(Violation("cost", what, index, action.name))
+
         total += cost or 0.0
         state = semantics.apply(action, arguments, state)
+
     missing = [part for part in flat(task.goal) if not semantics.holds(part, state)]
     violations += [Violation("goal", f"{show(part)} does not hold") for part in missing]
     if abs(total - stated) > TOLERANCE:
@@ -137,7 +146,7 @@ def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
 
 
 def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path:
-    """The problem's or domain's file: what the user says, else where the plan says, else of that name beside it."""
+    """Find the problem's or domain's file: the user's, else where the plan says, else beside it."""
     beside = [plan.parent / named.name] if plan else []
     for file in (named, *beside) if given is None else (given,):
         if is_file(file):

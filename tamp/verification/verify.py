@@ -60,22 +60,24 @@ def verify(
         problem: The problem's file, instead of the one that the plan names.
         domain: The domain's file, instead of the one that the plan names.
         streams: The streams' file, instead of the one that the plan names.
-        classifiers: What says whether a relation of the user's own holds, by the relation; without it the plan's word
-            is taken, and the report says so.
+        classifiers: What says whether a relation of the user's own holds, by the relation; without
+            it the plan's word is taken, and the report says so.
 
     Raises:
-        InputError: The plan file is malformed, or a file that it was made from is missing or malformed; a classifier of
-            a relation that there is not.
+        InputError: The plan file is malformed, or a file that it was made from is missing or
+            malformed; a classifier of a relation that there is not.
     """
     began = time.monotonic()
     document = plan if isinstance(plan, dict) else Path(plan)
     if is_symbolic(document):
         if classifiers or streams is not None:
             raise InputError(
-                "a plan of a problem in PDDL alone has no streams, and no relation of a scene to ask about"
+                "a plan of a problem in PDDL alone has no streams, "
+                "and no relation of a scene to ask about"
             )
         given = [None if file is None else Path(file) for file in (problem, domain)]
         return verify_symbolic(document, *given)
+
     read = read_plan(document)
     problem_file = source_file(read, "problem", None if problem is None else Path(problem))
     domain_file = source_file(read, "domain", None if domain is None else Path(domain))
@@ -84,6 +86,7 @@ def verify(
         problem=None if problem is None else problem_file,
         domain=None if domain is None else domain_file,
     )
+
     with unquoted(read.file, named):
         loaded = load_scene(problem_file)
         parsed = parse_domain(read_pddl(domain_file), domain_file)
@@ -93,33 +96,40 @@ def verify(
         loaded.goal.text, parsed, objects, loaded.path,
         line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
     )  # fmt: skip
+
     own_streams = streams_file(read, None if streams is None else Path(streams), domain_file)
     declared = read_streams(read, own_streams, parsed)
     asked = _asked(classifiers, declared, parsed)
     robot = ROBOTS[loaded.scene.robot.model]()
     semantics = Semantics(parsed, objects)
+
     violations = [
         *check_files(read, {"problem": problem_file, "domain": domain_file}, loaded.meshes),
         *check_objects(read, loaded.scene, parsed),
     ]
+
     if read.robot != loaded.scene.robot.model:
         violations.append(
             Violation(
                 "initial", f"the problem's robot is {loaded.scene.robot.model}, not {read.robot}"
             )
         )
+
     own_goal = parse_goal(read.goal, parsed, objects, read.file)
     if substitute(own_goal, {}) != substitute(goal, {}):
         violations.append(Violation("goal", "the plan's goal is not the problem's"))
+
     trusted: Counter[str] = Counter()
     with World(loaded.scene, robot) as world:
         sweeper = Sweeper(world, robot)
         certified = Certified(read, world, robot, sweeper, parsed)
         decided = {name for relation, _ in asked.values() for name in relation.predicates}
         stated = certified.known | decided | certifiable(read, parsed, declared)
+
         violations += check_initial(read, loaded.scene, parsed, given, stated)
         static = [fact for fact in read.initial if fact[0] in stated and fact not in given]
         violations += certified.check([*read.certified, *static], trusted)
+
         for body in loaded.scene.bodies.values():
             world.place(body.name, body.pose.matrix)
         log = Log()
@@ -127,6 +137,7 @@ def verify(
         replay = Replay(read, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(goal)
         violations += log.violations
+
         settled = certified.known | decided
         on_trust = {
             *trusted_relations(read, parsed, goal, declared, settled, given),
@@ -135,6 +146,7 @@ def verify(
         unsaid = [
             f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())
         ]
+
         others = {"domain": domain, "streams": streams}
         given_files = {role: None if file is None else Path(file) for role, file in others.items()}
         return Report(
@@ -156,7 +168,7 @@ def verify(
 def _asked(
     classifiers: Mapping[str, Classifier], streams: StreamFile | None, domain: Domain
 ) -> dict[str, tuple[Relation, Classifier]]:
-    """The relations of the classifiers.
+    """Find the relations of the classifiers.
 
     Raises:
         InputError: There is no such relation, or its facts do not say of what it is to be asked.
@@ -168,6 +180,7 @@ def _asked(
             raise InputError(
                 f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy
             )
+
         names = relation_names(streams)
         if name not in names:
             raise InputError(
@@ -176,6 +189,7 @@ def _asked(
                 found=name,
                 choices=names,
             )
+
         relation = relation_of(streams, domain, name)
         if relation is not None and relation.predicates & RELATIONS:
             raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
@@ -193,7 +207,7 @@ def _asked(
 
 
 def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
-    """All objects with their types.
+    """Return all objects with their types.
 
     Raises:
         InputError: A fact or an action names one that the plan does not have.
@@ -201,12 +215,14 @@ def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
     values = {
         name: (value.type,) for name, value in plan.values.items() if value.type in domain.types
     }
+
     objects = {
         **domain.constants,
         **{name: ("object",) for name in plan.values},
         **values,
         **plan.objects,
     }
+
     facts = [(fact, "initial") for fact in plan.initial] + [
         (fact, "certified") for fact in plan.certified
     ]
@@ -216,6 +232,7 @@ def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
         for at, action in enumerate(plan.actions)
         for term in action.arguments
     ]
+
     for term, where in terms:
         if term not in objects:
             raise InputError(
@@ -224,6 +241,7 @@ def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
                 found=term,
                 choices=sorted(objects),
             )
+
     return objects
 
 
