@@ -110,8 +110,10 @@ class Served:
                 functions[f"sample-{name}"] = partial(
                     sample_relation, relation=name, generator=generator, judge=judge
                 )
+
         for name, classifier in self.classifiers.items():
             functions[f"test-{name}"] = partial(test_relation, classifier=classifier)
+
         for name, why in self.undecided.items():
             test = streams.get(f"test-{name}")
             if test is not None and test.name not in functions:

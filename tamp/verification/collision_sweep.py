@@ -19,7 +19,7 @@ Mask = NDArray[np.bool_]
 TOLERANCE = 0.001
 """Metres of penetration that are not yet a collision."""
 DEEPER = 0.0003
-"""Metres that bodies in each other at the start may get deeper: the arm's way is not straight."""
+"""Metres that bodies in each other at the start may get deeper: an arm's way is not straight."""
 REACH = 0.02
 """Metres up to which clearance is measured."""
 BLOCK = 512

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -13,6 +13,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.robot.robot import ROBOTS
 from tamp.geometric.scene.classifier import Classifier
+from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile, read_plan
 from tamp.plan.sources import check_files, plan_hashes, source_file, unquoted
 from tamp.plan.symbolic import is_symbolic
@@ -21,7 +22,7 @@ from tamp.simulation.physics import World
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal
 from tamp.symbolic.pddl.relations import Relation, relation_names, relation_of
-from tamp.symbolic.pddl.structs import Domain, Fact, StreamFile
+from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.verification.certified_facts import Certified
 from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.formulas import substitute
@@ -105,20 +106,8 @@ def verify(
 
     violations = [
         *check_files(read, {"problem": problem_file, "domain": domain_file}, loaded.meshes),
-        *check_objects(read, loaded.scene, parsed),
+        *_check_header(read, loaded.scene, parsed, objects, goal),
     ]
-
-    if read.robot != loaded.scene.robot.model:
-        violations.append(
-            Violation(
-                "initial", f"the problem's robot is {loaded.scene.robot.model}, not {read.robot}"
-            )
-        )
-
-    own_goal = parse_goal(read.goal, parsed, objects, read.file)
-    if substitute(own_goal, {}) != substitute(goal, {}):
-        violations.append(Violation("goal", "the plan's goal is not the problem's"))
-
     trusted: Counter[str] = Counter()
     with World(loaded.scene, robot) as world:
         sweeper = Sweeper(world, robot)
@@ -163,6 +152,24 @@ def verify(
             asked=dict(sorted(relations.answers.items())),
             seconds=time.monotonic() - began,
         )
+
+
+def _check_header(
+    plan: PlanFile,
+    scene: Scene,
+    domain: Domain,
+    objects: dict[str, tuple[str, ...]],
+    goal: Formula,
+) -> Iterator[Violation]:
+    """Check that the plan's objects, robot and goal are the problem's."""
+    yield from check_objects(plan, scene, domain)
+    if plan.robot != scene.robot.model:
+        message = f"the problem's robot is {scene.robot.model}, not {plan.robot}"
+        yield Violation("initial", message)
+
+    own_goal = parse_goal(plan.goal, domain, objects, plan.file)
+    if substitute(own_goal, {}) != substitute(goal, {}):
+        yield Violation("goal", "the plan's goal is not the problem's")
 
 
 def _asked(

@@ -81,6 +81,7 @@ class Why:
             f"  With --seed {seed} a plan is found as it is: no change is needed"
             for seed in self.unchanged
         ]
+
         for one in self.relaxations:
             plan = f"a plan of {one.actions} actions, found in {one.seconds:.1f} s"
             lines.append(
@@ -93,6 +94,7 @@ class Why:
                 "makes it solvable by itself"
             )
             lines.append(f"  {what}, with {SEEDS} seeds and {self.budget:.1f} s for each")
+
         lines += self._others(
             "tried as well, and did not help", [_failed(*one) for one in self.failed]
         )
