@@ -225,7 +225,7 @@ class Certified:
         return self._hand_hits(other, pose @ np.linalg.inv(hold.T_tool_body), self._robot.opening)
 
     def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
-        """Measure how deep the hand at a tool pose is in a body, brought to a robot aside."""
+        """Say how deep the hand at a tool pose is in a body, which is brought to a robot aside."""
         world = self._world
         T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
         T_before = world.pose(other)

@@ -22,7 +22,7 @@ def substitute(formula: Formula, binding: Mapping[str, str]) -> Formula:
     return type(formula)(
         formula.parameters,
         substitute(formula.body, {k: v for k, v in binding.items() if k not in inner}),
-    )  # fmt: skip
+    )
 
 
 def show(formula: Formula) -> str:

@@ -258,7 +258,7 @@ class Semantics:
         return [name for name in self.objects if self.fits(name, types)]
 
     def _reached(self, predicate: str) -> set[str]:
-        """Return derived predicates that a derived predicate's rules lead to."""
+        """Return the derived predicates that a derived predicate's rules lead to."""
         reached: set[str] = set()
         front = [predicate]
         while front:
