@@ -65,7 +65,7 @@ class Segment:
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """What an object that a stream made stands for.
+    """The value that an object of a stream stands for.
 
     `data` is T_world_body (4, 4) of a pose, a Hold of a grasp, x, y, yaw (3,) of a base-conf, the
     rows (n, 7) of a reach's approach and lift, for each segment of a motion its part and rows (None

@@ -150,7 +150,7 @@ def load_problem(
 
 @dataclass(frozen=True)
 class _Files:
-    """What the files of a problem say, as far as each can be understood by itself."""
+    """The contents of a problem's files, as far as each can be understood by itself."""
 
     loaded: LoadedProblem
     domain: Domain

@@ -42,7 +42,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Record:
-    """What was tried in a run.
+    """A record of what was tried in a run.
 
     Attributes:
         samples: In the order in which they were drawn.

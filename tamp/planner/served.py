@@ -20,7 +20,7 @@ from tamp.symbolic.pddl.structs import Domain, StreamFile
 
 @dataclass(frozen=True)
 class Served:
-    """What serves the relations of a problem, by relation.
+    """The samplers and classifiers that serve a problem, by relation.
 
     Attributes:
         choices: The samplers by name.

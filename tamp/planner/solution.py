@@ -54,7 +54,7 @@ class Improvement:
 
 @dataclass(frozen=True)
 class Solution:
-    """What `solve` returns, with a plan or without one.
+    """The solution that `solve` returns, with a plan or without one.
 
     Attributes:
         outcome: How planning ended.

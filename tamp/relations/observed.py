@@ -21,7 +21,7 @@ from tamp.symbolic.pddl.structs import Domain, Fact
 
 @dataclass(frozen=True)
 class Observation:
-    """What a classifier says of a relation.
+    """The answers of a classifier about a relation.
 
     Attributes:
         holds: Facts that hold.

@@ -66,7 +66,7 @@ class _Block:
 
 @dataclass
 class Findings:
-    """What a sweep met: each pair's deepest penetration, the nearest miss, the number of states.
+    """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
 
     It ends, somewhere in the motion, when they are more than `most`.
     """

@@ -26,7 +26,7 @@ ELSEWHERE = 300.0
 
 @dataclass(frozen=True, eq=False)
 class Stand:
-    """How a body stands.
+    """The stand of a body on what carries it.
 
     Attributes:
         on: Names of the bodies that carry it, "floor" included; empty when nothing is within GAP
