@@ -127,6 +127,8 @@ def write_plan(solution: Solution, path: str | Path) -> Path:
 
 def summary_document(solution: Solution) -> dict[str, Any]:
     """Return what `--json` prints: the outcome, and the plan without its trajectories."""
+    timing = {name: round(seconds, 6) for name, seconds in solution.seconds.items()}
+
     return {
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
@@ -159,7 +161,7 @@ def summary_document(solution: Solution) -> dict[str, Any]:
         **_optimization(solution),
         "statistics": _statistics(solution),
         "warnings": list(solution.warnings),
-        "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
+        "timing": timing,
     }
 
 

@@ -73,6 +73,7 @@ def assemble(
     """
     used = _used(problem, result)
     by_stream = {name: statistics.seconds for name, statistics in result.statistics.items()}
+
     return Solution(
         problem=problem,
         outcome=result.outcome,

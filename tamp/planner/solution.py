@@ -93,22 +93,22 @@ class Solution:
 
     @property
     def solved(self) -> bool:
-        """Whether there is a plan."""
+        """Tell whether there is a plan."""
         return self.outcome is Outcome.SOLVED
 
     @property
     def cost(self) -> float:
-        """The sum of the actions' costs."""
+        """Return the sum of the actions' costs."""
         return sum(action.cost for action in self.plan)
 
     @property
     def gap(self) -> float | None:
-        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        """Return the part of the cost that the bound leaves open: 0 when no plan is cheaper."""
         if self.bound is None or not self.plan:
             return None
         return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
     @property
     def duration(self) -> float:
-        """Seconds of motion."""
+        """Return seconds of motion."""
         return sum(action.trajectory.duration for action in self.plan)

@@ -50,7 +50,7 @@ class Trajectory:
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Return seconds."""
         return float(sum(segment.times[-1] for segment in self.segments))
 
 

@@ -73,7 +73,7 @@ class Certified:
 
     @property
     def known(self) -> set[str]:
-        """Predicates that can be checked in this domain."""
+        """Return the predicates that can be checked in this domain."""
         declared = self._domain.predicates
         return {
             name for name, (kinds, _) in self._checks.items()

@@ -92,12 +92,12 @@ class Findings:
 
     @property
     def full(self) -> bool:
-        """Whether as many states as wanted were looked at."""
+        """Tell whether as many states as wanted were looked at."""
         return self.states > self.most
 
     @property
     def margin(self) -> float:
-        """Metres beyond which a pair is of no interest."""
+        """Return metres beyond which a pair is of no interest."""
         return REACH if self.nearest is None else max(0.0, self.nearest.distance)
 
 

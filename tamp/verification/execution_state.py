@@ -25,5 +25,5 @@ class Course:
 
     @property
     def in_hand(self) -> str | None:
-        """The held body's name."""
+        """Return the held body's name."""
         return None if self.held is None else self.held.body

@@ -70,7 +70,7 @@ class Replay:
 
     @property
     def notes(self) -> list[str]:
-        """Oddities that are not the plan's fault."""
+        """Return oddities that are not the plan's fault."""
         return self._standing.notes
 
     def run(self, goal: Formula) -> None:

@@ -46,12 +46,12 @@ class Report:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing is wrong."""
+        """Tell whether nothing is wrong."""
         return not self.violations
 
     @property
     def checked(self) -> bool:
-        """Whether the verdict rests on nothing that could not be checked."""
+        """Tell whether the verdict rests on nothing that could not be checked."""
         return not self.on_trust and not self.other_files
 
     def text(self) -> str:

@@ -41,12 +41,12 @@ class Stand:
 
     @property
     def stable(self) -> bool:
-        """Whether it stays where it is."""
+        """Tell whether it stays where it is."""
         return self.why is None
 
     @property
     def why(self) -> str | None:
-        """Why it does not; None when it does."""
+        """Say why it does not; None when it does."""
         if not self.on:
             return f"nothing is within {1000 * GAP:.0f} mm below it"
         if self.lean > LEAN:
