@@ -1,4 +1,4 @@
-"""A plan file with the scene that it was made for, opened for whoever shows it or carries it out."""
+"""Open a plan file with the scene that it was made for, to show it or to carry it out."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class Stored:
 
     Attributes:
         plan: The plan, read.
-        document: The file's content, for what only a person reads: statistics, timing, the record of what was tried.
+        document: The file's content, for what only a person reads: statistics, timing, the record
+            of what was tried.
         loaded: The problem that it was made for.
         robot: Its robot.
     """
@@ -40,8 +41,8 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
         problem: The problem's file, instead of the one that the plan names.
 
     Raises:
-        InputError: The plan is malformed, of another version or without a scene, or its problem, a mesh or its domain
-            is missing or not what it was when the plan was made.
+        InputError: The plan is malformed, of another version or without a scene, or its problem, a
+            mesh or its domain is missing or not what it was when the plan was made.
     """
     path = Path(file)
     plan = _read(path)
@@ -55,17 +56,21 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
     for violation in check_files(plan, files, loaded.meshes):
         raise InputError(violation.message, file=path, remedy="Plan again with tamp-solve")
     if plan.robot != loaded.scene.robot.model:
-        raise InputError(f"its robot is {plan.robot}, the problem's {loaded.scene.robot.model}", file=path)
+        raise InputError(
+            f"its robot is {plan.robot}, the problem's {loaded.scene.robot.model}", file=path
+        )
     return Stored(plan, read_json(path), loaded, robot_of(plan))
 
 
 def read_motions(file: str | Path) -> PlanFile:
-    """A plan file alone, for those that need no scene.
+    """Read a plan file alone, for those that need no scene.
 
-    A file that it was made from may be missing, but where it is still there, it must be what it was.
+    A file that it was made from may be missing, but where it is still there, it must be what it
+    was.
 
     Raises:
-        InputError: The plan is malformed, of another version, without motions, or a source of it has changed.
+        InputError: The plan is malformed, of another version, without motions, or a source of it
+            has changed.
     """
     path = Path(file)
     plan = _read(path)
@@ -77,7 +82,7 @@ def read_motions(file: str | Path) -> PlanFile:
 
 
 def robot_of(plan: PlanFile) -> Robot:
-    """The robot that a plan is for.
+    """Return the robot that a plan is for.
 
     Raises:
         InputError: Nobody knows it.

@@ -24,7 +24,7 @@ PARTS = ("base", "arm", "gripper")
 
 @dataclass(frozen=True)
 class Source:
-    """A file that the plan was made from: its role ("problem", "domain", "mesh"), place and contents' hash."""
+    """A file that the plan was made from: role ("problem", "domain", "mesh"), place and SHA-256."""
 
     role: str
     path: Path
@@ -47,7 +47,7 @@ class Segment:
     Attributes:
         part: "base", "arm" or "gripper".
         times: Seconds from the segment's start, shape (n,).
-        positions: Rows x, y, yaw or seven joint angles, shape (n, 3 or 7); no columns for the gripper.
+        positions: Rows x, y, yaw or joint angles, shape (n, 3 or 7); no columns for the gripper.
         opening: The fingers' opening at each time, shape (n,), metres.
         holding: The body in the hand on the way.
         attach: The grasp that begins when the fingers have closed.
@@ -65,11 +65,11 @@ class Segment:
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """What an object that a stream made stands for.
+    """The value that an object of a stream stands for.
 
-    `data` is T_world_body (4, 4) of a pose, a Hold of a grasp, x, y, yaw (3,) of a base-conf, the rows (n, 7) of
-    a reach's approach and lift, for each segment of a motion its part and rows (None when they are not given), and None
-    of every type that we do not know.
+    `data` is T_world_body (4, 4) of a pose, a Hold of a grasp, x, y, yaw (3,) of a base-conf, the
+    rows (n, 7) of a reach's approach and lift, for each segment of a motion its part and rows (None
+    when they are not given), and None of every type that we do not know.
     """
 
     type: str
@@ -90,7 +90,7 @@ class TimedAction:
 
 @dataclass(frozen=True, eq=False)
 class PlanFile:
-    """A whole plan. `certified` are the static facts that it rests on; what made it are `algorithm` and `samplers`."""
+    """A plan. It rests on the static facts `certified`; `algorithm` and `samplers` made it."""
 
     file: Path | None
     sources: tuple[Source, ...]
@@ -107,23 +107,25 @@ class PlanFile:
     samplers: Mapping[str, str] = dataclasses.field(default_factory=dict[str, str])
 
     def source(self, role: str) -> Source | None:
-        """The file of that role."""
+        """Return the file of that role."""
         return next((source for source in self.sources if source.role == role), None)
 
 
 def read_plan(plan: dict[str, Any] | Path) -> PlanFile:
-    """A plan from its file, or from the document already read.
+    """Read a plan from its file, or from the document already read.
 
     Raises:
         InputError: It is not such a file, with the place of what is wrong in it.
     """
     file = plan if isinstance(plan, Path) else None
     root = Field(read_json(plan) if isinstance(plan, Path) else plan, "", file)
+
     if "format" not in root or root["format"].value != FORMAT:
         raise root.wrong('not a plan file: it does not say "format": "tamp-plan"')
     version = root["version"].value
     if version != VERSION:
         raise root["version"].wrong(f"version {clipped(str(version))} is not known, only {VERSION}")
+
     objects = {name: _names(field) for name, field in root["objects"].fields().items()}
     values = {name: _value(field) for name, field in root["values"].fields().items()}
     result = PlanFile(
@@ -145,12 +147,16 @@ def read_plan(plan: dict[str, Any] | Path) -> PlanFile:
 
 
 def _options(options: Field | None) -> dict[str, Any]:
-    """With what it was planned, as far as it says so."""
+    """Read the options with which it was planned, as far as it says so."""
     if options is None:
         return {}
     algorithm, samplers = options.get("algorithm"), options.get("samplers")
     chosen = {} if algorithm is None else {"algorithm": algorithm.text()}
-    named = {} if samplers is None else {relation: name.text() for relation, name in samplers.fields().items()}
+    named = (
+        {}
+        if samplers is None
+        else {relation: name.text() for relation, name in samplers.fields().items()}
+    )
     return {**chosen, "samplers": named}
 
 
@@ -201,7 +207,7 @@ def _value(field: Field) -> Value:
 
 
 def _stretch(field: Field) -> tuple[str, Array]:
-    """A part and the rows that it goes through, without times; the gripper's are its openings."""
+    """Read a part and the rows that it goes through, without times; of a gripper its openings."""
     part = field["part"].text(PARTS)
     if part == "gripper":
         return part, field["opening"].numbers()[:, None]
@@ -213,7 +219,7 @@ def _hold(field: Field) -> Hold:
 
 
 def _in_hand(field: Field) -> Array:
-    """A body's pose in the tool frame."""
+    """Read a body's pose in the tool frame."""
     T_tool_body = read_pose(field)
     if np.abs(T_tool_body[:3, 3]).max() > ARMS_LENGTH:
         raise field["position"].wrong("farther from the hand than anything that it could hold")
@@ -237,6 +243,7 @@ def _segment(field: Field) -> Segment:
     times = field["times"].numbers()
     if len(times) == 0:
         raise field["times"].wrong("at least one time is expected")
+
     if part == "gripper":
         opening = field["opening"].numbers(len(times))
         attach, detach = field.get("attach"), field.get("detach")
@@ -244,10 +251,15 @@ def _segment(field: Field) -> Segment:
         if attach:
             hold = Hold(attach["body"].text(), _in_hand(attach["T_tool_body"]), float(opening[-1]))
         positions = np.empty((len(times), 0))
-        return Segment(part, times, positions, opening, None, hold, detach.text() if detach else None)
+        return Segment(
+            part, times, positions, opening, None, hold, detach.text() if detach else None
+        )
+
     positions = field["positions"].rows(WIDTHS[part])
     if len(positions) != len(times):
-        raise field["positions"].wrong(f"{len(times)} rows are expected, one a time, not {len(positions)}")
+        raise field["positions"].wrong(
+            f"{len(times)} rows are expected, one a time, not {len(positions)}"
+        )
     opening = np.full(len(times), field["opening"].number())
     holding = field.get("holding")
     return Segment(part, times, positions, opening, holding.text() if holding else None)
@@ -257,7 +269,11 @@ def _check_bodies(root: Field, plan: PlanFile) -> None:
     names = tuple(sorted(plan.objects))
     for action, field in zip(plan.actions, root["actions"].items(), strict=True):
         for segment, place in zip(action.segments, field["segments"].items(), strict=True):
-            named = (segment.holding, segment.detach, segment.attach.body if segment.attach else None)
+            named = (
+                segment.holding,
+                segment.detach,
+                segment.attach.body if segment.attach else None,
+            )
             for body in named:
                 if body is not None and body not in plan.objects:
                     raise place.wrong(f"unknown body '{body}'", found=body, choices=names)

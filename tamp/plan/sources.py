@@ -1,4 +1,4 @@
-"""Finding the files that a plan was made from."""
+"""Find the files that a plan was made from."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_HASHED = 1_000_000_000
 
 
 def source_file(plan: PlanFile, role: str, override: Path | None) -> Path:
-    """The problem's or domain's file: what the user says, else where the plan says, else of that name beside the plan.
+    """Find the problem's or domain's file: the user's, else where the plan says, else beside it.
 
     Raises:
         InputError: There is none.
@@ -33,11 +33,13 @@ def source_file(plan: PlanFile, role: str, override: Path | None) -> Path:
     for file in (source.path, *beside):
         if is_file(file):
             return file
-    raise InputError(f"the plan's {role} {source.path} is missing", file=plan.file, remedy=f"Give --{role} FILE")
+    raise InputError(
+        f"the plan's {role} {source.path} is missing", file=plan.file, remedy=f"Give --{role} FILE"
+    )
 
 
 def sha256(file: Path) -> str:
-    """The hash of a file's contents, hexadecimal; of one that is too large to be any of ours it is none.
+    """Compute the SHA-256 of a file's contents, hexadecimal; a file too large to be ours has none.
 
     Raises:
         InputError: It cannot be read.
@@ -52,7 +54,7 @@ def sha256(file: Path) -> str:
 
 
 def plan_hashes(plan: PlanFile, **given: Path | None) -> dict[Path, str | None]:
-    """What the plan says of its files, by place, for `unquoted`; None of those that the user has named."""
+    """Return the plan's hashes of its files, by place, for `unquoted`; None of the user's own."""
     hashes: dict[Path, str | None] = {}
     for source in plan.sources:
         beside = [plan.file.parent / source.path.name] if plan.file else []
@@ -62,9 +64,10 @@ def plan_hashes(plan: PlanFile, **given: Path | None) -> dict[Path, str | None]:
 
 @contextmanager
 def unquoted(plan: Path | None, hashes: Mapping[Path, str | None]) -> Iterator[None]:
-    """Keep what stands in a file out of errors, when only a plan has named it: it may name any, also a secret one.
+    """Keep a file's text out of errors when only a plan names it: that may be a secret file.
 
-    Of a file with the contents that the plan tells the hash of, and of one that the user has named, errors say all.
+    Of a file with the contents that the plan tells the hash of, and of one that the user has named,
+    errors say all.
 
     Args:
         plan: The plan's file.
@@ -78,7 +81,10 @@ def unquoted(plan: Path | None, hashes: Mapping[Path, str | None]) -> Iterator[N
     except InputError as error:
         if error.file is None or _may_be_quoted(Path(error.file), plan, hashes):
             raise
-        what = "the plan names this file, but was made from another one, and it cannot be read in its place"
+        what = (
+            "the plan names this file, but was made from another one, "
+            "and it cannot be read in its place"
+        )
         raise InputError(what, file=error.file, line=error.line) from None
 
 
@@ -91,8 +97,10 @@ def _may_be_quoted(file: Path, plan: Path | None, hashes: Mapping[Path, str | No
     return False
 
 
-def check_files(plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, ...]) -> Iterator[Violation]:
-    """Whether the files that the plan was made from are what they were."""
+def check_files(
+    plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, ...]
+) -> Iterator[Violation]:
+    """Check that the files that the plan was made from are what they were."""
     for role, file in files.items():
         source = plan.source(role)
         if source is not None and sha256(file) != source.sha256:
@@ -100,7 +108,11 @@ def check_files(plan: PlanFile, files: Mapping[str, Path], meshes: tuple[Path, .
     recorded = {source.sha256 for source in plan.sources if source.role == "mesh"}
     hashes = {sha256(file): file for file in meshes}
     for missing in sorted(hashes.keys() - recorded):
-        yield Violation("hash", f"the mesh {hashes[missing]} is not one that the plan was made from")
+        yield Violation(
+            "hash", f"the mesh {hashes[missing]} is not one that the plan was made from"
+        )
     for gone in sorted(recorded - hashes.keys()):
         path = next(source.path for source in plan.sources if source.sha256 == gone)
-        yield Violation("hash", f"the plan was made from a mesh {path.name} that the problem does not have")
+        yield Violation(
+            "hash", f"the plan was made from a mesh {path.name} that the problem does not have"
+        )

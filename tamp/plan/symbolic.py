@@ -12,6 +12,6 @@ FORMAT, VERSION = "tamp-symbolic-plan", 1
 
 
 def is_symbolic(plan: dict[str, Any] | Path) -> bool:
-    """Whether a plan file, or its content, is one without scene and robot."""
+    """Tell whether a plan file, or its content, is one without scene and robot."""
     content = plan if isinstance(plan, dict) else read_json(plan)
     return isinstance(content, dict) and content.get("format") == FORMAT

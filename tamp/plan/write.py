@@ -1,4 +1,4 @@
-"""A solution as a plan file: JSON with all that `tamp-verify` needs; its schema is plan.schema.json."""
+"""Write a solution as a plan file: JSON with all that `tamp-verify` needs (plan.schema.json)."""
 
 from __future__ import annotations
 
@@ -27,10 +27,12 @@ DIGITS = 9
 
 
 def plan_document(solution: Solution) -> dict[str, Any]:
-    """The plan file's content. Only what stands under "timing" differs between two runs with one seed."""
+    """Return the plan file's content; only "timing" differs between two runs with one seed."""
     problem = solution.problem
     task = problem.stream_task.task
+    hidden, samplers = problem.complements, dict(sorted(problem.samplers.items()))
     record = record_document(solution)
+
     return {
         "format": "tamp-plan",
         "version": 1,
@@ -41,7 +43,7 @@ def plan_document(solution: Solution) -> dict[str, Any]:
             "meshes": [_file(path) for path in problem.files["meshes"]],
         },
         "seed": solution.seed,
-        "options": {"algorithm": solution.algorithm, "samplers": dict(sorted(problem.samplers.items()))},
+        "options": {"algorithm": solution.algorithm, "samplers": samplers},
         "versions": {
             "tamp": distribution_version(),
             "python": platform.python_version(),
@@ -49,10 +51,10 @@ def plan_document(solution: Solution) -> dict[str, Any]:
         },
         "robot": problem.scene.robot.model,
         "objects": {name: list(types) for name, types in sorted(task.objects.items())},
-        "initial": [list(fact) for fact in sorted(task.initial) if fact[0] not in problem.complements],
+        "initial": [list(fact) for fact in sorted(task.initial) if fact[0] not in hidden],
         "goal": problem.goal,
         "values": {name: _value(value) for name, value in solution.values.items()},
-        "certified": [list(fact) for fact in solution.certified if fact[0] not in problem.complements],
+        "certified": [list(fact) for fact in solution.certified if fact[0] not in hidden],
         "actions": [_action(action) for action in solution.plan],
         "cost": solution.cost,
         "duration": _number(solution.duration),
@@ -63,7 +65,7 @@ def plan_document(solution: Solution) -> dict[str, Any]:
 
 
 def record_document(solution: Solution) -> dict[str, Any] | None:
-    """What was tried: samples, the skeletons; None when it was not recorded."""
+    """Return what was tried, samples and skeletons; None when it was not recorded."""
     record = solution.record
     if record is None:
         return None
@@ -97,7 +99,7 @@ def _sample(sample: Sample, used: bool) -> dict[str, Any]:
 
 
 def plan_text(solution: Solution) -> str:
-    """The plan file of a solved problem, as it is written.
+    """Return the plan file of a solved problem, as it is written.
 
     Raises:
         InputError: The solution has no plan, or a file that it was made from is gone.
@@ -124,7 +126,9 @@ def write_plan(solution: Solution, path: str | Path) -> Path:
 
 
 def summary_document(solution: Solution) -> dict[str, Any]:
-    """What `--json` prints: the outcome, and the plan without its trajectories."""
+    """Return what `--json` prints: the outcome, and the plan without its trajectories."""
+    timing = {name: round(seconds, 6) for name, seconds in solution.seconds.items()}
+
     return {
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
@@ -157,7 +161,7 @@ def summary_document(solution: Solution) -> dict[str, Any]:
         **_optimization(solution),
         "statistics": _statistics(solution),
         "warnings": list(solution.warnings),
-        "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
+        "timing": timing,
     }
 
 
@@ -165,7 +169,12 @@ def _optimization(solution: Solution) -> dict[str, Any]:
     if not solution.improvements:
         return {}
     steps = [
-        {"seconds": round(i.seconds, 6), "cost": i.cost, "actions": i.actions, "duration": _number(i.duration)}
+        {
+            "seconds": round(i.seconds, 6),
+            "cost": i.cost,
+            "actions": i.actions,
+            "duration": _number(i.duration),
+        }
         for i in solution.improvements
     ]
     return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
@@ -211,7 +220,8 @@ def _segment(segment: Segment) -> dict[str, Any]:
         }
     document: dict[str, Any] = {**shared, "opening": _numbers(segment.positions[:, 0])}
     if segment.attach is not None:
-        document["attach"] = {"body": _body(segment.attach.body), "T_tool_body": _pose(segment.attach.T_tool_body)}
+        frame = _pose(segment.attach.T_tool_body)
+        document["attach"] = {"body": _body(segment.attach.body), "T_tool_body": frame}
     if segment.detach is not None:
         document["detach"] = _body(segment.detach)
     return document
@@ -222,15 +232,16 @@ def _value(value: object) -> dict[str, Any]:
         case Pose():
             return {"type": "pose", **_pose(value)}
         case Grasp():
-            opening = _number(value.opening)
-            held = {"body": _body(value.body), "T_tool_body": _pose(value.T_tool_body), "opening": opening}
+            frame, opening = _pose(value.T_tool_body), _number(value.opening)
+            held = {"body": _body(value.body), "T_tool_body": frame, "opening": opening}
             return {"type": "grasp", **held}
         case BaseConf():
             return {"type": "base-conf", "base": [_number(number) for number in value.array]}
         case Reach():
             return {"type": "reach", "approach": _rows(value.approach), "lift": _rows(value.lift)}
         case Motion():
-            return {"type": "motion", "segments": [_motion_segment(item) for item in value.segments]}
+            segments = [_motion_segment(item) for item in value.segments]
+            return {"type": "motion", "segments": segments}
         case _:
             return {"type": "value", "text": repr(value)}
 
@@ -238,7 +249,8 @@ def _value(value: object) -> dict[str, Any]:
 def _motion_segment(item: Polyline | Grip) -> dict[str, Any]:
     if isinstance(item, Polyline):
         points = _rows(item.points)
-        return {"part": item.part, "points": points, "opening": _number(item.opening), "holding": _body(item.holding)}
+        opening, holding = _number(item.opening), _body(item.holding)
+        return {"part": item.part, "points": points, "opening": opening, "holding": holding}
     attach = None if item.attach is None else _body(item.attach.body)
     return {
         "part": "gripper",
@@ -249,7 +261,7 @@ def _motion_segment(item: Polyline | Grip) -> dict[str, Any]:
 
 
 def _body(name: str | None) -> str | None:
-    """A body as the plan's objects have it: PDDL's names are lower case."""
+    """Name a body as the plan's objects do: PDDL's names are lower case."""
     return None if name is None else name.lower()
 
 
@@ -280,5 +292,7 @@ def _file(path: Path) -> dict[str, str]:
 
 
 def _compact(text: str) -> str:
-    """Rows of numbers on one line each."""
-    return re.sub(r"\[\s+([-\d.,e\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", text)
+    """Put rows of numbers on one line each."""
+    return re.sub(
+        r"\[\s+([-\d.,e\s]+?)\s+\]", lambda match: "[" + " ".join(match[1].split()) + "]", text
+    )

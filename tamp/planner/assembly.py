@@ -1,4 +1,4 @@
-"""From what an algorithm found to a solution: timed motions, the values in use, the clock's account."""
+"""Assemble a solution from an algorithm's result: timed motions, values in use, time spent."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tamp.symbolic.algorithms.result import Outcome, Result
 
 
 def random_streams(seed: int) -> Callable[[str], np.random.Generator]:
-    """A random generator from a string and the seed, so that no draw depends on what was drawn elsewhere."""
+    """Seed a random generator by a string and the seed: no draw depends on draws elsewhere."""
 
     def make_rng(key: str) -> np.random.Generator:
         digest = hashlib.blake2b(key.encode(), digest_size=8, key=str(seed).encode()).digest()
@@ -27,7 +27,7 @@ def random_streams(seed: int) -> Callable[[str], np.random.Generator]:
 
 
 def timed(problem: Problem, result: Result, known: Timed | None = None) -> tuple[Action, ...]:
-    """The plan's actions with their trajectories; none where there is no plan.
+    """Return the plan's actions with their trajectories; none where there is no plan.
 
     Args:
         problem: The problem.
@@ -41,8 +41,12 @@ def timed(problem: Problem, result: Result, known: Timed | None = None) -> tuple
     start = 0.0
     moved = trajectories(problem.context, result.actions, result.objects.values, known)
     for action, trajectory in zip(result.actions, moved, strict=True):
-        objects = tuple(str(names[name]) for name in action.arguments if isinstance(names.get(name), str))
-        actions.append(Action(action.name, action.arguments, objects, trajectory, start, action.cost))
+        objects = tuple(
+            str(names[name]) for name in action.arguments if isinstance(names.get(name), str)
+        )
+        actions.append(
+            Action(action.name, action.arguments, objects, trajectory, start, action.cost)
+        )
         start += trajectory.duration
     return tuple(actions)
 
@@ -56,7 +60,7 @@ def assemble(
     seconds: Mapping[str, float],
     recorder: Recorder | None = None,
 ) -> Solution:
-    """The solution that a result amounts to.
+    """Assemble the solution that a result amounts to.
 
     Args:
         problem: The problem.
@@ -69,6 +73,7 @@ def assemble(
     """
     used = _used(problem, result)
     by_stream = {name: statistics.seconds for name, statistics in result.statistics.items()}
+
     return Solution(
         problem=problem,
         outcome=result.outcome,
@@ -83,26 +88,43 @@ def assemble(
         tallies=result.tallies,
         warnings=(*problem.warnings, *result.warnings, *contradictions(problem, result)),
         seconds={
-            "total": seconds["total"], "search": result.effort.search_seconds, "timing": seconds["timing"],
-            "explaining": result.effort.explaining_seconds, "other tries": result.effort.apart_seconds, **by_stream
+            "total": seconds["total"],
+            "search": result.effort.search_seconds,
+            "timing": seconds["timing"],
+            "explaining": result.effort.explaining_seconds,
+            "other tries": result.effort.apart_seconds,
+            **by_stream,
         },
         record=None if recorder is None else recorder.record(result.attempts(), used.values()),
         samplers=accounts(result.memory),
-    )  # fmt: skip
+    )
 
 
 def ended_early(
-    problem: Problem, outcome: Outcome, seed: int, algorithm: str, total: float, recorder: Recorder | None = None
+    problem: Problem,
+    outcome: Outcome,
+    seed: int,
+    algorithm: str,
+    total: float,
+    recorder: Recorder | None = None,
 ) -> Solution:
-    """What there is to say when time or user ended it before the first round, or while a bound plan was timed."""
+    """Make the solution when time or user end it before the first round or in a plan's timing."""
     why = ("it ended before the first plan was tried, or before its motions were timed",)
     record = None if recorder is None else recorder.record(())
-    return Solution(problem, outcome, seed, algorithm, explanation=why, seconds={"total": total}, record=record)
+    return Solution(
+        problem, outcome, seed, algorithm, explanation=why, seconds={"total": total}, record=record
+    )
 
 
 def _used(problem: Problem, result: Result) -> dict[str, object]:
-    """The values of the names in the plan, its certified facts and the initial facts."""
+    """Return the values of the names in the plan, its certified facts and the initial facts."""
     names = {name for action in result.actions for name in action.arguments}
-    names |= {name for fact in (*result.certified, *problem.stream_task.task.initial) for name in fact[1:]}
+    names |= {
+        name for fact in (*result.certified, *problem.stream_task.task.initial) for name in fact[1:]
+    }
     values = result.objects.values
-    return {name: values[name] for name in sorted(names) if name in values and not isinstance(values[name], str)}
+    return {
+        name: values[name]
+        for name in sorted(names)
+        if name in values and not isinstance(values[name], str)
+    }

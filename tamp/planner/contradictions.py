@@ -1,4 +1,4 @@
-"""Whether a plan's states bear out what classifiers said of its poses, each asked with other bodies at their start."""
+"""Contradictions: classifiers that say otherwise of a pose in the plan's states than when drawn."""
 
 from __future__ import annotations
 
@@ -26,29 +26,35 @@ class _State:
 
 
 def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
-    """What classifiers say in the states of a plan of relations that they said otherwise when its poses were drawn.
+    """List what classifiers say in a plan's states and said otherwise when its poses were drawn.
 
     One that looks at its arguments alone never does; one that looks at what is around them may.
     """
     if not problem.classifiers or not result.actions:
         return ()
+
     task = problem.stream_task.task
     found: dict[str, None] = {}
     for name, classifier in problem.classifiers.items():
         relation = problem.relations[name]
         for state in _states(task.domain, task.initial, result):
             last = state.number == len(result.actions)
-            stated = {*result.certified, *(task.initial if last else ())}  # of the others no condition need ask
-            for words in _otherwise(problem, relation, classifier, state, stated, result.objects.values):
+            # Of other facts no condition need ask.
+            stated = {*result.certified, *(task.initial if last else ())}
+            for words in _otherwise(
+                problem, relation, classifier, state, stated, result.objects.values
+            ):
                 found[
-                    f"after {state.number} actions ({' '.join((name, *words))}) is not what it was when its pose was "
-                    f"drawn: the classifier of '{name}' looks at bodies that it is not asked about"
+                    f"after {state.number} actions ({' '.join((name, *words))}) is not what it "
+                    f"was when its pose was drawn: the classifier of '{name}' looks at "
+                    "bodies that it is not asked about"
                 ] = None
+
     return tuple(found)[:MOST]
 
 
 def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_State]:
-    """The states after each action, as far as its effects say plainly where bodies stand."""
+    """List the states after each action, as far as its effects say plainly where bodies stand."""
     at = {fact[1]: fact[2] for fact in initial if fact[0] == "at-pose" and len(fact) == 3}
     actions = {action.name: action for action in domain.actions}
     states: list[_State] = []
@@ -61,7 +67,11 @@ def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_
 def _after(action: Action, arguments: tuple[str, ...], at: Mapping[str, str]) -> dict[str, str]:
     table = dict(zip((one.name for one in action.parameters), arguments, strict=True))
     after = dict(at)
-    plain = [one for one in action.effects if one.atom.predicate == "at-pose" and one.condition == And(())]
+    plain = [
+        one
+        for one in action.effects
+        if one.atom.predicate == "at-pose" and one.condition == And(())
+    ]
     for effect in sorted(plain, key=lambda one: one.adds):
         body, pose = (table.get(term, term) for term in effect.atom.terms)
         if effect.adds:
@@ -79,18 +89,36 @@ def _otherwise(
     stated: Collection[Fact],
     values: Mapping[str, object],
 ) -> list[tuple[str, ...]]:
-    """Arguments of which the classifier says in a state what the plan's facts deny."""
+    """List arguments of which the classifier says in a state what the plan's facts deny."""
     task, scene = problem.stream_task.task, problem.scene
     words = {name.lower(): name for name in scene.movable}
-    poses = {words[body]: pose for body, name in state.at.items() if isinstance(pose := values[name], Pose)}
+    poses = {
+        words[body]: pose
+        for body, name in state.at.items()
+        if isinstance(pose := values[name], Pose)
+    }
+
     held = next((name for name in scene.movable if name not in poses), None)
-    seen = observe(relation, classifier, moved(scene, poses, held), task.domain, task.objects, task.initial, state.at)
+    seen = observe(
+        relation,
+        classifier,
+        moved(scene, poses, held),
+        task.domain,
+        task.objects,
+        task.initial,
+        state.at,
+    )
+
     false = {
         one: next((other for other in problem.complements if other.rstrip("~") == f"not-{one}"), "")
         for one in relation.predicates
     }
+
     wrong = [fact for fact in seen.fails if fact in stated]
     wrong += [fact for fact in seen.holds if (false[fact[0]], *fact[1:]) in stated]
+
     first = relation.facts[0]
     places = [1 + first.terms.index(variable) for variable in relation.arguments]
-    return sorted({tuple(fact[place] for place in places) for fact in wrong if fact[0] == first.predicate})
+    return sorted(
+        {tuple(fact[place] for place in places) for fact in wrong if fact[0] == first.predicate}
+    )

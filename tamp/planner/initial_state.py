@@ -1,4 +1,4 @@
-"""What a scene says in symbols at the start: objects, facts, values."""
+"""The initial state of a scene in symbols: objects, facts, values."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ START_BASE = "base_start"
 
 @dataclass
 class Initial:
-    """Objects by name with their types, initial facts, and the values behind names. PDDL names are lower case."""
+    """Objects by name with types, initial facts, values behind names. PDDL names are lower case."""
 
     objects: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     facts: set[Fact] = field(default_factory=set[Fact])
@@ -22,10 +22,11 @@ class Initial:
 
 
 def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) -> Initial:
-    """The scene in the words of the domain.
+    """Say the scene in the words of the domain.
 
-    Facts of predicates that the domain does not declare are left out. Where it declares a predicate `movable`, `fixed`,
-    `surface` or `container` instead of a type of that name, the fact takes the type's place.
+    Facts of predicates that the domain does not declare are left out. Where it declares a predicate
+    `movable`, `fixed`, `surface` or `container` instead of a type of that name, the fact takes the
+    type's place.
 
     Args:
         scene: The scene.
@@ -39,6 +40,7 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         _object(state, domain, name, "surface")
     for name in scene.cavities:
         _object(state, domain, name, "container")
+
     start = _value(state, domain, START_BASE, "base-conf", BaseConf(*scene.robot.base))
     facts: list[Fact] = [("at-base", start), ("standing", start)]
     if holding is None:
@@ -47,6 +49,7 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         held = holding.body.lower()
         grasp = _value(state, domain, f"{held}_held", "grasp", holding)
         facts += [("grasp", held, grasp), ("holding", held, grasp)]
+
     for name in scene.movable:
         if holding is not None and name == holding.body:
             continue
@@ -54,17 +57,23 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         word = name.lower()
         pose = _value(state, domain, f"{word}_start", "pose", body.pose)
         facts += [("pose", word, pose), ("at-pose", word, pose)]
+
         below = body.support or ""
         if below in scene.surfaces:
             facts.append(("supported", word, pose, below.lower()))
         if below in scene.cavities:
             facts.append(("contained", word, pose, below.lower()))
-        carriers = (scene.surfaces[below].body if below in scene.surfaces else below, *body.carriers)
+
+        carriers = (
+            scene.surfaces[below].body if below in scene.surfaces else below,
+            *body.carriers,
+        )
         facts += [
             ("rests-on", word, pose, carrier.lower())
             for carrier in dict.fromkeys(carriers)
             if carrier in scene.bodies and scene.bodies[carrier].movable
         ]
+
     state.facts.update(fact for fact in facts if _fits(domain, fact))
     return state
 

@@ -1,4 +1,4 @@
-"""What to say of a stream without a function."""
+"""The error about a stream without a function."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tamp.symbolic.pddl.structs import Stream
 
 
 def without_function(stream: Stream, file: str | None, known: Mapping[str, Any]) -> InputError:
-    """Of a stream that nothing serves; the error says how to serve it."""
+    """Return the error of a stream that nothing serves; it says how to serve it."""
     place = stream.place
     return InputError(
         f"stream '{stream.name}' has no function",
@@ -27,5 +27,8 @@ def _remedy(stream: str) -> str:
     verb, _, relation = stream.partition("-")
     if verb in ("sample", "test") and relation:
         object_given = f"load_problem(..., groundings={{'{relation}': object}})"
-        return f"Give '{relation}' a grounding: --sampler {relation}=FILE, or from Python: {object_given}"
+        return (
+            f"Give '{relation}' a grounding: --sampler {relation}=FILE, "
+            f"or from Python: {object_given}"
+        )
     return f"Give it one from Python: load_problem(..., functions={{'{stream}': f}})"

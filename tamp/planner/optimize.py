@@ -1,4 +1,4 @@
-"""Planning that goes on after the first plan: fewer actions, then shorter motions, until the time is up."""
+"""Anytime planning: after the first plan fewer actions, then shorter motions, until time is up."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def optimize(
     improved: Callable[[Solution], None] | None = None,
     record: bool = False,
 ) -> Solution:
-    """Plan by the algorithm "adaptive", then improve the plan until the time is up or the user interrupts.
+    """Plan by the algorithm "adaptive", then improve the plan until time is up or Ctrl-C.
 
     The same seed gives the same sequence of improvements; how many there are depends on the clock.
 
@@ -49,13 +49,15 @@ def optimize(
         record: As for `solve`.
 
     Returns:
-        The best plan, with all improvements and the lower bound of the cost; as from `solve` when there is none.
+        The best plan, with all improvements and the lower bound of the cost; as from `solve` when
+        there is none.
 
     Raises:
         InputError: A time that is not positive.
     """
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
+
     deadline = Deadline(max_time)
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
@@ -67,11 +69,13 @@ def optimize(
         if len(known) > MANY:
             known.clear()
         plan = timed(problem, result, known)
+
         now = deadline.elapsed()
         seconds = {"total": now, "timing": now - began}
         found = assemble(problem, _frozen(result), plan, seed, "adaptive", seconds, recorder)
         if best and not improves(found, best[0]):
             return False
+
         step = Improvement(now, found.cost, len(found.plan), found.duration)
         if not best:
             best.append(replace(found, improvements=(step,)))
@@ -101,13 +105,14 @@ def optimize(
         pass
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
+
     if not best:
         return ended_early(problem, outcome, seed, "adaptive", deadline.elapsed(), recorder)
     return replace(best[0], seconds={**best[0].seconds, "total": deadline.elapsed()})
 
 
 def improves(new: Solution, old: Solution) -> bool:
-    """Whether a plan is better: cheaper, or as cheap with fewer actions, or with those of shorter motion."""
+    """Compare plans: better is cheaper, then fewer actions, then shorter motion."""
     if not math.isclose(new.cost, old.cost, rel_tol=1e-9, abs_tol=1e-9):
         return new.cost < old.cost
     if len(new.plan) != len(old.plan):
@@ -116,8 +121,10 @@ def improves(new: Solution, old: Solution) -> bool:
 
 
 def _frozen(result: Result) -> Result:
-    """The counts as they are now: the run goes on counting."""
-    return replace(result, statistics=copy.deepcopy(result.statistics), effort=replace(result.effort))
+    """Copy the counts as they are now: the run goes on counting."""
+    return replace(
+        result, statistics=copy.deepcopy(result.statistics), effort=replace(result.effort)
+    )
 
 
 def _silent(effort: Effort) -> None:

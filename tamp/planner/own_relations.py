@@ -1,8 +1,9 @@
-"""Relations of the user's own in a problem: what their classifiers say at the start, and wherever they must not hold.
+"""Relations of the user's own in a problem: asked of classifiers at the start and where negated.
 
-A classifier decides wherever the relation is asked for: its facts of the initial state are among the initial facts, and
-where a condition needs the relation to be false, that is certified by a stream of its own, for poses of any origin. A
-relation without a classifier is unknown until a stream certifies it.
+A classifier decides wherever the relation is asked for: its facts of the initial state are among
+the initial facts, and where a condition needs the relation to be false, that is certified by a
+stream of its own, for poses of any origin. A relation without a classifier is unknown until a
+stream certifies it.
 """
 
 from __future__ import annotations
@@ -20,10 +21,20 @@ from tamp.planner.served import Served
 from tamp.relations.observed import Observation, moved, observe, refuse_silent
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.complement import atoms_of_conditions, complement_name, with_complements
-from tamp.symbolic.pddl.relations import POSE, Relation, failing, needed_false, relation_names, relation_of
+from tamp.symbolic.pddl.relations import (
+    POSE,
+    Relation,
+    failing,
+    needed_false,
+    relation_names,
+    relation_of,
+)
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 
-REMEDY = "Give it a classifier: --sampler {0}=FILE.py with classify, or weights of 100 labels, some of them negative"
+REMEDY = (
+    "Give it a classifier: --sampler {0}=FILE.py with classify, "
+    "or weights of 100 labels, some of them negative"
+)
 
 MOST = 3
 """Arguments that a warning about a classifier names."""
@@ -75,8 +86,8 @@ def decided(
         context: Of the scene.
 
     Raises:
-        InputError: A condition needs to know that a relation does not hold, and nothing says so; or a classifier
-            answers nothing.
+        InputError: A condition needs to know that a relation does not hold, and nothing says so; or
+            a classifier answers nothing.
     """
     relations: dict[str, Relation] = {}
     own = [name for name in relation_names(declared) if name not in SAMPLERS]
@@ -89,31 +100,52 @@ def decided(
                 _refuse_unknown(relation, domain, goal, served.undecided.get(name))
 
     unused = tuple(
-        f"no stream is named 'sample-{name}' or 'test-{name}': the grounding of '{name}' is not used"
+        f"no stream is named 'sample-{name}' or 'test-{name}': "
+        f"the grounding of '{name}' is not used"
         for name in dict.fromkeys((*served.generators, *served.classifiers))
         if name not in own and name not in SAMPLERS
     )
     asked = {atom.predicate for atom, _ in atoms_of_conditions(domain, goal)}
     relations = {name: one for name, one in relations.items() if one.predicates & asked}
-    classifiers = {name: served.classifiers[name] for name in relations}
-    seen = {name: _observed(one, classifiers[name], domain, objects, facts, context) for name, one in relations.items()}
-    known = frozenset(fact for one in seen.values() for fact in one.holds)
-    warnings = unused + tuple(line for name, one in seen.items() for line in _odd(relations[name], one))
 
-    negated = {name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)}
+    classifiers = {name: served.classifiers[name] for name in relations}
+    seen = {
+        name: _observed(one, classifiers[name], domain, objects, facts, context)
+        for name, one in relations.items()
+    }
+    known = frozenset(fact for one in seen.values() for fact in one.holds)
+    warnings = unused + tuple(
+        line for name, one in seen.items() for line in _odd(relations[name], one)
+    )
+
+    negated = {
+        name: one for name, one in relations.items() if needed_false(domain, goal, one.predicates)
+    }
     if not negated:
-        return Decided(domain, goal, known, classifiers=classifiers, relations=relations, warnings=warnings)
+        return Decided(
+            domain, goal, known, classifiers=classifiers, relations=relations, warnings=warnings
+        )
     for relation in negated.values():
         _check_poses(relation, domain)
-    names = {one: complement_name(one, domain) for relation in negated.values() for one in relation.predicates}
+
+    names = {
+        one: complement_name(one, domain)
+        for relation in negated.values()
+        for one in relation.predicates
+    }
     false = {(names[fact[0]], *fact[1:]) for name in negated for fact in seen[name].fails}
     streams = tuple(
-        BoundStream(failing(one, domain), partial(fails_relation, context, classifier=classifiers[name]), ())
+        BoundStream(
+            failing(one, domain), partial(fails_relation, context, classifier=classifiers[name]), ()
+        )
         for name, one in negated.items()
     )
+
     rewritten, wanted = with_complements(domain, goal, names)
     hidden = frozenset(names.values())
-    return Decided(rewritten, wanted, known | false, streams, hidden, classifiers, relations, warnings)
+    return Decided(
+        rewritten, wanted, known | false, streams, hidden, classifiers, relations, warnings
+    )
 
 
 def _observed(
@@ -140,7 +172,8 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
     said = f"({' '.join((atom.predicate, *atom.terms))})"
     reason = f"its classifier cannot tell yet: {why}" if why else "it has no classifier"
     raise InputError(
-        f"whether {said} does not hold has to be known here, and '{name}' is unknown until a plan makes it true: "
+        f"whether {said} does not hold has to be known here, "
+        f"and '{name}' is unknown until a plan makes it true: "
         f"{reason}",
         file=place.file if place else None,
         line=place.line if place else None,
@@ -152,24 +185,39 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
 def _check_poses(relation: Relation, domain: Domain) -> None:
     declared = domain.predicates.get(POSE)
     if relation.poses and (declared is None or len(declared.parameters) != 2):
-        what = f"whether '{relation.name}' does not hold is asked of every pose, and the domain has no (pose ?o ?p)"
-        raise InputError(what, file=domain.file, remedy="Declare it, and certify it of what is sampled")
+        what = (
+            f"whether '{relation.name}' does not hold is asked of every pose, "
+            "and the domain has no (pose ?o ?p)"
+        )
+        raise InputError(
+            what, file=domain.file, remedy="Declare it, and certify it of what is sampled"
+        )
 
 
 def _odd(relation: Relation, seen: Observation) -> list[str]:
-    """That a classifier failed, or that it does not look at the place that it is asked about."""
+    """Warn of a classifier that failed, or that ignores the place that it is asked about."""
     found: list[str] = []
     for words, why in list(seen.unanswered.items())[:MOST]:
         said = " ".join((relation.name, *words))
-        found.append(f"whether ({said}) holds at the start is not known: asked of it, the classifier failed: {why}")
-    if len(relation.arguments) == 2 and len(relation.bodies) == 1 and relation.arguments[0] in relation.bodies:
+        found.append(
+            f"whether ({said}) holds at the start is not known: "
+            f"asked of it, the classifier failed: {why}"
+        )
+
+    if (
+        len(relation.arguments) == 2
+        and len(relation.bodies) == 1
+        and relation.arguments[0] in relation.bodies
+    ):
         by_body: dict[str, list[float]] = {}
         for (body, _), answer in seen.answers.items():
             by_body.setdefault(body, []).append(answer)
         same = [body for body, answers in by_body.items() if answers[1:] and min(answers) >= LIKELY]
         if same:
             found.append(
-                f"'{relation.name}' holds of {same[0]} at the start whatever its second argument is: its classifier "
+                f"'{relation.name}' holds of {same[0]} at the start "
+                "whatever its second argument is: its classifier "
                 "should look at that, too, if it matters where the body is"
             )
+
     return found

@@ -36,12 +36,12 @@ def solve_parallel(
     improved: Callable[[Solution], None] | None = None,
     record: bool = False,
 ) -> Solution:
-    """Plan in `jobs` processes at a time; the first plan counts, or with `improved` the best one when the time is up.
+    """Plan in `jobs` processes; the first plan counts, with `improved` the best when time is up.
 
-    The first run is what `solve` does with the same arguments, the others have seeds of their own (`member_seed`); the
-    third is by the algorithm "incremental". Which plan comes first depends on the clock, yet each is the plan of one
-    run: `solve` with the seed and the algorithm that the solution names makes it again. The others give way to the
-    first run where cores are scarce.
+    The first run is what `solve` does with the same arguments, the others have seeds of their own
+    (`member_seed`); the third is by the algorithm "incremental". Which plan comes first depends on
+    the clock, yet each is the plan of one run: `solve` with the seed and the algorithm that the
+    solution names makes it again. The others give way to the first run where cores are scarce.
 
     Args:
         problem: From `load_problem`.
@@ -50,7 +50,8 @@ def solve_parallel(
         seed: Of the first run.
         algorithm: Of all runs but the third.
         progress: Called now and then with what the first run has done.
-        accept: Looks at a plan, in the process that made it; one that it refuses does not end the race.
+        accept: Looks at a plan, in the process that made it; one that it refuses does not end the
+            race.
         record: As for `solve`.
         improved: Go on after the first plan, and call this with each that is better.
 
@@ -58,10 +59,26 @@ def solve_parallel(
         InputError: As for `solve`.
     """
     if jobs == 1 and improved is not None:
-        return optimize(problem, max_time=max_time, seed=seed, progress=progress, improved=improved, record=record)
+        return optimize(
+            problem,
+            max_time=max_time,
+            seed=seed,
+            progress=progress,
+            improved=improved,
+            record=record,
+        )
     if jobs == 1:
-        return solve(problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress, record=record)
-    importlib.import_module("tamp.geometric.motion.parametrization")  # no fork while a thread is importing it
+        return solve(
+            problem,
+            max_time=max_time,
+            seed=seed,
+            algorithm=algorithm,
+            progress=progress,
+            record=record,
+        )
+
+    # No fork while a thread is importing it.
+    importlib.import_module("tamp.geometric.motion.parametrization")
     prepare_loops()
     deadline = Deadline(max_time)
     best: list[Solution] = []
@@ -80,8 +97,11 @@ def solve_parallel(
                     record=record,
                 )
                 return {"good": True, "parts": _parts(shared)}
+
             name = "incremental" if number == 2 else algorithm
-            solution = solve(problem, max_time=left, seed=own, algorithm=name, progress=told, record=record)
+            solution = solve(
+                problem, max_time=left, seed=own, algorithm=name, progress=told, record=record
+            )
             good = accept is None or not solution.solved or accept(solution)
             return {"good": good, "parts": _parts(solution)}
 
@@ -108,6 +128,7 @@ def solve_parallel(
         found = race([member(number) for number in range(jobs)], ends, deadline, news)
     except KeyboardInterrupt:
         found, outcome = None, Outcome.INTERRUPTED
+
     if best:
         return best[0]
     if found is None:
@@ -129,5 +150,9 @@ def _seldom(tell: Tell) -> Progress:
 
 
 def _parts(solution: Solution) -> dict[str, Any]:
-    """A solution without its problem, whose streams no pipe can carry and the other side knows."""
-    return {part.name: getattr(solution, part.name) for part in fields(solution) if part.name != "problem"}
+    """Take a solution apart, without its problem: no pipe carries streams, all have them."""
+    return {
+        part.name: getattr(solution, part.name)
+        for part in fields(solution)
+        if part.name != "problem"
+    }

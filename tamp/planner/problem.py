@@ -1,4 +1,4 @@
-"""From files to a problem: the scene, the task in symbols, and the streams tied to their functions."""
+"""Load a problem from files: the scene, the symbolic task, the streams tied to their functions."""
 
 from __future__ import annotations
 
@@ -84,18 +84,23 @@ def load_problem(
 
     Args:
         problem: A YAML file, or the name of a shipped problem.
-        domain: A PDDL file or the name of a shipped domain; by default the one that the problem names.
+        domain: A PDDL file or the name of a shipped domain; by default the one that the problem
+            names.
         streams: The streams file; by default `<domain>.streams.pddl` beside the domain.
-        samplers: Relation to the sampler that serves it, over those that the problem names: NAME, NAME:mixed or
-            NAME:alone. Hand-made ones are alone by themselves, others are mixed with the first hand-made one.
-        groundings: Relation to an object with `propose`, and `classify` where the domain asks for it, over all named
-            samplers; its name is "given" (samplers={"on": "given:alone"} has it alone). A relation of the user's own is
-            served to the streams sample-<relation> and test-<relation>.
-        registry: Further samplers: relation to name to what makes the object; also of files (`samplers.choice`).
-        functions: Further stream functions by name, f(context, *inputs, call=...), and those that compute costs,
-            f(context, *inputs).
+        samplers: Relation to the sampler that serves it, over those that the problem names: NAME,
+            NAME:mixed or NAME:alone. Hand-made ones are alone by themselves, others are mixed with
+            the first hand-made one.
+        groundings: Relation to an object with `propose`, and `classify` where the domain asks for
+            it, over all named samplers; its name is "given" (samplers={"on": "given:alone"} has it
+            alone). A relation of the user's own is served to the streams sample-<relation> and
+            test-<relation>.
+        registry: Further samplers: relation to name to what makes the object; also of files
+            (`samplers.choice`).
+        functions: Further stream functions by name, f(context, *inputs, call=...), and those that
+            compute costs, f(context, *inputs).
         steering: How the base moves: "se2" or "reeds-shepp".
-        scene: Where things are by now, instead of where the file has them; and what is in the hand by now, `holding`.
+        scene: Where things are by now, instead of where the file has them; and what is in the hand
+            by now, `holding`.
 
     Raises:
         InputError: Anything wrong with the files or the names, with its place.
@@ -120,7 +125,9 @@ def load_problem(
     costs = bind_costs(files.streams, context, given)
 
     name = files.loaded.scene.name
-    task = Task(name, known.domain, start.objects, frozenset(start.facts) | known.facts, known.goal, {})
+    task = Task(
+        name, known.domain, start.objects, frozenset(start.facts) | known.facts, known.goal, {}
+    )
     return Problem(
         name=name,
         scene=files.loaded.scene,
@@ -143,7 +150,7 @@ def load_problem(
 
 @dataclass(frozen=True)
 class _Files:
-    """What the files of a problem say, as far as each can be understood by itself."""
+    """The contents of a problem's files, as far as each can be understood by itself."""
 
     loaded: LoadedProblem
     domain: Domain
@@ -162,7 +169,9 @@ class _Files:
         }
 
 
-def _read(problem: str | Path, domain: str | Path | None, streams: str | Path | None, scene: Scene | None) -> _Files:
+def _read(
+    problem: str | Path, domain: str | Path | None, streams: str | Path | None, scene: Scene | None
+) -> _Files:
     """Read the problem, its domain and the domain's streams; take the scene as it is by now."""
     loaded = load_scene(problem)
     if scene is not None:
@@ -171,7 +180,9 @@ def _read(problem: str | Path, domain: str | Path | None, streams: str | Path | 
     domain_path = _domain_path(loaded, domain)
     parsed = parse_domain(read_pddl(domain_path), domain_path)
 
-    streams_path = Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
+    streams_path = (
+        Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
+    )
     declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
     return _Files(loaded, parsed, domain_path, declared, streams_path)
 
@@ -198,7 +209,10 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
 def _context(files: _Files, served: Served, steering: str, holding: Grasp | None) -> Context:
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
-    mixtures = {relation: mix(relation, served.choices[relation], made) for relation, made in served.generators.items()}
+    mixtures = {
+        relation: mix(relation, served.choices[relation], made)
+        for relation, made in served.generators.items()
+    }
     return Context(scene, ROBOTS[scene.robot.model](), mixtures, steering, holding)
 
 
@@ -207,7 +221,9 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
         return find_domain(domain)
     if loaded.domain is None:
         raise loaded.error(
-            "no domain", remedy="Name one in the file (domain: cupboard) or on the command line, before the problem"
+            "no domain",
+            remedy="Name one in the file (domain: cupboard) or on the command line, "
+            "before the problem",
         )
     try:
         return find_domain(loaded.domain, loaded.path.parent)
@@ -217,16 +233,23 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
 
 def _check_metric(loaded: LoadedProblem) -> None:
     metric = loaded.metric
-    if metric is not None and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC:
+    if (
+        metric is not None
+        and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC
+    ):
         remedy = "The one that there is: (minimize (total-cost))"
-        raise InputError(f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy)
+        raise InputError(
+            f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy
+        )
 
 
 def _check_start(loaded: LoadedProblem, context: Context) -> None:
     scene = loaded.scene
     conf = context.conf(scene.robot.base, context.home)
     held = context.holding and context.attachment(context.holding)
-    poses = {name: scene.bodies[name].pose for name in scene.movable if held is None or name != held.body}
+    poses = {
+        name: scene.bodies[name].pose for name in scene.movable if held is None or name != held.body
+    }
     if (hit := context.collisions.arrangement(poses, held).hits(conf)) is not None:
         link, other = hit
         outside = {link, other} & set(scene.bodies)

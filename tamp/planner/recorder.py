@@ -1,4 +1,4 @@
-"""What the streams of a run drew and refused, for those who want to see it. Planning is the same with it or without."""
+"""Record what streams drew and refused, for those who want to see it; planning stays the same."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ LIMIT = 2000
 """Samples that are kept of a run, beside those of the plan,"""
 
 EACH = 200
-"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves room for others."""
+"""and of one stream for one body, refused by it or not, so that one that is hard to place leaves
+room for others.
+"""
 
 
 @dataclass(eq=False)
@@ -40,7 +42,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Record:
-    """What was tried in a run.
+    """A record of what was tried in a run.
 
     Attributes:
         samples: In the order in which they were drawn.
@@ -65,17 +67,23 @@ class Recorder:
         self._counts: Counter[tuple[str, str, bool]] = Counter()
 
     def watched(self, task: StreamTask) -> StreamTask:
-        """The same task with streams that are listened to."""
+        """Return the same task with streams that are listened to."""
         return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
 
     def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
-        """What was heard, all of the values that the plan uses included."""
-        late = [self._late[value] for value in used if isinstance(value, Pose | Grasp) and value in self._late]
+        """Return what was heard, all of the values that the plan uses included."""
+        late = [
+            self._late[value]
+            for value in used
+            if isinstance(value, Pose | Grasp) and value in self._late
+        ]
         return Record((*self.samples, *late), self.dropped - len(late), attempts)
 
     def _watched(self, stream: BoundStream) -> BoundStream:
         def function(*inputs: Any, call: Call) -> Any:
-            made = stream.function(*inputs, call=replace(call, refused=partial(self._refused, stream.name, inputs)))
+            made = stream.function(
+                *inputs, call=replace(call, refused=partial(self._refused, stream.name, inputs))
+            )
             if stream.is_test:
                 self._heard(stream.name, inputs, made)
                 return made
@@ -94,19 +102,26 @@ class Recorder:
         if isinstance(value, Pose | Grasp):
             self._sample(stream, inputs, value, refused=False)
         elif isinstance(value, Rejection):
-            for kind in (Pose, Grasp):  # the first one is what the stream is about, others are those in its way
+            for kind in (
+                Pose,
+                Grasp,
+            ):  # the first one is what the stream is about, others are those in its way
                 subject = next((part for part in inputs if isinstance(part, kind)), None)
-                sample = None if subject is None else self._known.get(subject) or self._late.get(subject)
+                sample = (
+                    None if subject is None else self._known.get(subject) or self._late.get(subject)
+                )
                 if sample is not None:
                     sample.refusals[stream, value.reason] += 1
 
     def _refused(self, stream: str, inputs: tuple[Any, ...], pose: Pose, reason: str) -> None:
-        """A generator's own proposal that its stream did not take."""
+        """Note a generator's own proposal that its stream did not take."""
         sample = self._sample(stream, inputs, pose, refused=True)
         if sample is not None:
             sample.refusals[stream, reason] += 1
 
-    def _sample(self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool) -> Sample | None:
+    def _sample(
+        self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool
+    ) -> Sample | None:
         if value in self._known:
             return self._known[value]
         names = tuple(part for part in inputs if isinstance(part, str))

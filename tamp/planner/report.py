@@ -20,7 +20,7 @@ MOST = 8
 """Lines about what failed."""
 
 STANDING = ("supported", "contained")
-"""Predicates that say where a body is; one of the user's own may speak of a place where it is not."""
+"""Predicates that say where a body is; one of the user's may speak of a place where it is not."""
 
 PARTS = {
     "motion": ("plan-",),
@@ -37,18 +37,19 @@ APART = ("search", "timing", "explaining", "other tries")
 
 
 def headline(problem: Problem) -> str:
-    """One line about the problem."""
+    """Describe the problem in one line."""
     goal = problem.stream_task.task.goal
     goals = len(goal.parts) if isinstance(goal, And) else 1
     movable = len(problem.scene.movable)
     return (
         f"{printable(problem.name)}: {_count(goals, 'goal')}, "
-        f"{movable} movable of {_count(len(problem.scene.bodies), 'body')}, {problem.scene.robot.model}"
+        f"{movable} movable of {_count(len(problem.scene.bodies), 'body')}, "
+        f"{problem.scene.robot.model}"
     )
 
 
 def summary(solution: Solution, loading: float = 0.0) -> str:
-    """What the command line prints when planning has ended, after so many seconds before it began."""
+    """Summarize the planning for the command line, after so many seconds of loading."""
     lines = [f"warning: {warning}" for warning in solution.warnings]
     total = solution.seconds.get("total", 0.0)
     if solution.solved:
@@ -62,16 +63,19 @@ def summary(solution: Solution, loading: float = 0.0) -> str:
         better = _count(len(solution.improvements) - 1, "improvement")
         lines += [
             "",
-            f"  {better}; lower bound of the cost {solution.bound:g}, gap {100 * (solution.gap or 0.0):.0f} %",
+            f"  {better}; lower bound of the cost {solution.bound:g}, "
+            f"gap {100 * (solution.gap or 0.0):.0f} %",
         ]
     return "\n".join([*lines, *_tried(solution), "", *_effort(solution, loading)])
 
 
 def improvement(solution: Solution) -> str:
-    """One line about the latest improvement."""
+    """Describe the latest improvement in one line."""
     latest = solution.improvements[-1]
     count = _count(latest.actions, "action")
-    line = f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    line = (
+        f"{latest.seconds:7.2f} s  {count}, {latest.duration:.1f} s of motion, cost {latest.cost:g}"
+    )
     if solution.bound is None or solution.gap is None:
         return line
     return f"{line}, no plan below {solution.bound:g}, gap {100 * solution.gap:.0f} %"
@@ -85,11 +89,14 @@ def _no_plan(solution: Solution, total: float) -> list[str]:
     if len(solution.explanation) == 1:
         mark = "." if solution.outcome is Outcome.INFEASIBLE else ":"
         return [f"{sentence}{mark} {solution.explanation[0]}"]
-    return [f"{sentence}{':' if solution.explanation else '.'}", *(f"  {line}" for line in solution.explanation)]
+    return [
+        f"{sentence}{':' if solution.explanation else '.'}",
+        *(f"  {line}" for line in solution.explanation),
+    ]
 
 
 def _tried(solution: Solution) -> list[str]:
-    """What failed most, by action and stream, in columns."""
+    """List what failed most, by action and stream, in columns."""
     rows = [tally for tally in solution.tallies if tally.failures][:MOST]
     if not rows:
         return []
@@ -100,12 +107,14 @@ def _tried(solution: Solution) -> list[str]:
     for tally in rows:
         worked = f"{tally.successes:,} of {tally.tries:,}"
         reasons = ", ".join(f"{count:,} {reason}" for reason, count in tally.reasons.most_common(3))
-        lines.append(f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}")
+        lines.append(
+            f"  {tally.action:{actions}}  {tally.stream:{streams}}  {worked:>15}   {reasons}"
+        )
     return lines
 
 
 def _rows(solution: Solution) -> list[str]:
-    """The actions in columns: number, name, bodies, where, how long."""
+    """List the actions in columns: number, name, bodies, where, how long."""
     places = _places(solution)
     rows: list[tuple[str, str, str]] = []
     for action in solution.plan:
@@ -114,7 +123,10 @@ def _rows(solution: Solution) -> list[str]:
         what = [name for name in action.objects if name not in where.split()]
         rows.append((action.name, " ".join(what), where))
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
-    columns = ["  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)) for row in rows]
+    columns = [
+        "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True))
+        for row in rows
+    ]
     durations = [f"{action.trajectory.duration:5.1f} s" for action in solution.plan]
     return [
         f"  {number:2d}  {row}  {duration}"
@@ -123,7 +135,7 @@ def _rows(solution: Solution) -> list[str]:
 
 
 def _places(solution: Solution) -> dict[tuple[str, str], str]:
-    """Where a body at a pose is, by their names: what a fact such as (supported mug p1 table) says of the two."""
+    """Map body and pose names to the place: what a fact such as (supported mug p1 table) says."""
     problem = solution.problem
     scene = problem.scene
     known = {place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)}
@@ -132,14 +144,18 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
         if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
             name = known[fact[3]]
-            places.setdefault((fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}")
+            places.setdefault(
+                (fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}"
+            )
     return places
 
 
 def _manipulated(action: Action, places: dict[tuple[str, str], str]) -> str:
-    """Where a body is taken from, or put."""
+    """Say where a body is taken from, or put."""
     names = action.arguments
-    where = next((places[body, pose] for body in names for pose in names if (body, pose) in places), "")
+    where = next(
+        (places[body, pose] for body in names for pose in names if (body, pose) in places), ""
+    )
     taken = any(segment.attach is not None for segment in action.trajectory.segments)
     return f"from {where.partition(' ')[2]}" if where and taken else where
 
@@ -162,9 +178,11 @@ def _effort(solution: Solution, loading: float) -> list[str]:
         part = name if name in APART else _part(name)
         if part is not None:
             parts[part] = parts.get(part, 0.0) + seconds
+
     rest = "improving" if solution.improvements else "other"
     times = [f"{part} {share} %" for part, share in time_shares(parts, total, rest)]
     passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
+
     effort = solution.effort
     searched = [
         _count(effort.skeletons, "skeleton"),
@@ -172,12 +190,16 @@ def _effort(solution: Solution, loading: float) -> list[str]:
         f"{_count(effort.expanded, 'state')} expanded",
         *([f"{_count(effort.refuted, 'plan')} dropped in the replay"] if effort.refuted else ()),
     ]
+
     samples: list[str] = []
     for name, statistics in solution.statistics.items():
         if statistics.calls:
-            reasons = ", ".join(f"{count} {reason}" for reason, count in statistics.reasons.most_common(3))
+            reasons = ", ".join(
+                f"{count} {reason}" for reason, count in statistics.reasons.most_common(3)
+            )
             kept = _glued(f"{name} {statistics.successes} of {statistics.calls}")
             samples.append(f"{kept}{f' ({reasons})' if reasons else ''}")
+
     return [
         *_listed("time", map(_glued, times), passed),
         *_listed("search", map(_glued, searched)),
@@ -186,7 +208,7 @@ def _effort(solution: Solution, loading: float) -> list[str]:
 
 
 def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
-    """Whole percents of the time that add up to a hundred, the largest part first; `rest` is what no part claims."""
+    """Round shares of time to percents of sum 100, largest first; `rest` is what no part claims."""
     told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
     told[rest] = max(0.0, total - sum(told.values()))
     whole = max(total, sum(told.values()))
@@ -200,12 +222,12 @@ def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[
 
 
 def _glued(text: str) -> str:
-    """The same with spaces at which a line is not broken."""
+    """Return the same with spaces at which a line is not broken."""
     return text.replace(" ", "\u00a0")
 
 
 def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
-    """Items after a label, wrapped, perhaps with something before a colon."""
+    """Wrap items after a label, perhaps with something before a colon."""
     lines = textwrap.wrap(
         "\u00a0· ".join(items),
         WIDTH,

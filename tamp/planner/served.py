@@ -1,4 +1,4 @@
-"""Who serves the relations of a problem: the samplers that are named, the objects that are given."""
+"""Samplers and classifiers that serve a problem's relations: those named, the objects given."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tamp.symbolic.pddl.structs import Domain, StreamFile
 
 @dataclass(frozen=True)
 class Served:
-    """What serves the relations of a problem, by relation.
+    """The samplers and classifiers that serve a problem, by relation.
 
     Attributes:
         choices: The samplers by name.
@@ -42,7 +42,7 @@ class Served:
         groundings: Mapping[str, Grounding],
         registry: Registry,
     ) -> Served:
-        """What the problem names, and over that `samplers` by name and `groundings` as objects.
+        """Take what the problem names, over it `samplers` by name and `groundings` as objects.
 
         Raises:
             InputError: An unknown relation or sampler; one of `on` or `inside` that cannot propose.
@@ -52,59 +52,94 @@ class Served:
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
                 known.setdefault(relation, {}).update(makers)
-        choices = {relation: Choice(next(iter(makers)), alone=True) for relation, makers in SAMPLERS.items()}
+
+        choices = {
+            relation: Choice(next(iter(makers)), alone=True)
+            for relation, makers in SAMPLERS.items()
+        }
         for relation, text in loaded.samplers.items():
             try:
                 choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
             except InputError as error:
                 raise error.at(loaded.path, loaded.line_of("samplers", relation)) from None
-        choices |= {relation: parse_choice(relation, text, known) for relation, text in samplers.items()}
+
+        choices |= {
+            relation: parse_choice(relation, text, known) for relation, text in samplers.items()
+        }
         for relation, item in groundings.items():
-            if isinstance(item, Generator) and choices.get(relation, Choice("", False)).name != GIVEN:
+            if (
+                isinstance(item, Generator)
+                and choices.get(relation, Choice("", False)).name != GIVEN
+            ):
                 choices[relation] = Choice(GIVEN, alone=False)
-        made: dict[str, Grounding] = {name: maker(name, choice, known)() for name, choice in choices.items()}
+
+        made: dict[str, Grounding] = {
+            name: maker(name, choice, known)() for name, choice in choices.items()
+        }
         for relation, item in made.items():
             if not isinstance(item, Generator) and relation in SAMPLERS:
                 what = f"sampler '{choices[relation].name}' for '{relation}' has no method propose"
-                raise InputError(what, remedy="tamp/geometric/samplers/sampler.py says what it is asked")
+                raise InputError(
+                    what, remedy="tamp/geometric/samplers/sampler.py says what it is asked"
+                )
+
         judging = {**made, **groundings}
         return cls(
             choices,
             {relation: item for relation, item in made.items() if isinstance(item, Generator)},
             {relation: item for relation, item in judging.items() if isinstance(item, Classifier)},
-            {relation: item.cannot_tell for relation, item in judging.items() if isinstance(item, Undecided)},
+            {
+                relation: item.cannot_tell
+                for relation, item in judging.items()
+                if isinstance(item, Undecided)
+            },
         )
 
     def functions(self, declared: StreamFile, domain: Domain) -> dict[str, Callable[..., Any]]:
-        """The functions of the streams sample-R and test-R.
+        """Return the functions of the streams sample-R and test-R.
 
         Raises:
-            InputError: There is a stream test-R, and the object for R cannot tell yet whether R holds.
+            InputError: There is a stream test-R, and the object for R cannot tell yet whether R
+                holds.
         """
         streams = {stream.name: stream for stream in declared.streams}
         functions: dict[str, Callable[..., Any]] = {}
         for name, generator in self.generators.items():
             if name not in SAMPLERS:
                 judge = None if f"test-{name}" in streams else self._judge(name, declared, domain)
-                functions[f"sample-{name}"] = partial(sample_relation, relation=name, generator=generator, judge=judge)
+                functions[f"sample-{name}"] = partial(
+                    sample_relation, relation=name, generator=generator, judge=judge
+                )
+
         for name, classifier in self.classifiers.items():
             functions[f"test-{name}"] = partial(test_relation, classifier=classifier)
+
         for name, why in self.undecided.items():
             test = streams.get(f"test-{name}")
             if test is not None and test.name not in functions:
                 line, column = (test.place.line, test.place.column) if test.place else (None, None)
-                what = f"stream '{test.name}' needs a classifier, and that of '{name}' cannot tell yet: {why}"
-                remedy = f"Leave {test.name} out of the streams, give it more labels, or write its classify in Python"
+                what = (
+                    f"stream '{test.name}' needs a classifier, "
+                    f"and that of '{name}' cannot tell yet: {why}"
+                )
+                remedy = (
+                    f"Leave {test.name} out of the streams, give it more labels, "
+                    "or write its classify in Python"
+                )
                 raise InputError(what, file=declared.file, line=line, column=column, remedy=remedy)
         return functions
 
-    def _judge(self, name: str, declared: StreamFile, domain: Domain) -> tuple[Classifier, tuple[int, ...]] | None:
-        """Who judges what a generator proposes where no stream does, and of which of the stream's inputs."""
+    def _judge(
+        self, name: str, declared: StreamFile, domain: Domain
+    ) -> tuple[Classifier, tuple[int, ...]] | None:
+        """Find the judge of a generator's proposals where no stream is, and its inputs."""
         relation = relation_of(declared, domain, name)
         if relation is None or name not in self.classifiers:
             return None
         inputs = relation.stream.inputs
-        return self.classifiers[name], tuple(inputs.index(variable) for variable in relation.arguments)
+        return self.classifiers[name], tuple(
+            inputs.index(variable) for variable in relation.arguments
+        )
 
 
 def _same(item: Grounding) -> Grounding:

@@ -54,12 +54,13 @@ class Improvement:
 
 @dataclass(frozen=True)
 class Solution:
-    """What `solve` returns, with a plan or without one.
+    """The solution that `solve` returns, with a plan or without one.
 
     Attributes:
         outcome: How planning ended.
         plan: The actions in order, empty unless solved.
-        values: The value of every name in the plan: poses, grasps, base configurations, reaches, motions.
+        values: The value of every name in the plan: poses, grasps, base configurations, reaches,
+            motions.
         certified: The facts that streams certified and the plan rests on.
         explanation: Why there is no plan, a line a cause.
         tallies: What was tried for which action, where there is no plan.
@@ -84,28 +85,30 @@ class Solution:
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None
-    samplers: Mapping[str, tuple[Account, ...]] = field(default_factory=dict[str, "tuple[Account, ...]"])
+    samplers: Mapping[str, tuple[Account, ...]] = field(
+        default_factory=dict[str, "tuple[Account, ...]"]
+    )
     improvements: tuple[Improvement, ...] = ()
     bound: float | None = None
 
     @property
     def solved(self) -> bool:
-        """Whether there is a plan."""
+        """Tell whether there is a plan."""
         return self.outcome is Outcome.SOLVED
 
     @property
     def cost(self) -> float:
-        """The sum of the actions' costs."""
+        """Return the sum of the actions' costs."""
         return sum(action.cost for action in self.plan)
 
     @property
     def gap(self) -> float | None:
-        """The part of the cost that the lower bound leaves open: 0 when no plan is cheaper."""
+        """Return the part of the cost that the bound leaves open: 0 when no plan is cheaper."""
         if self.bound is None or not self.plan:
             return None
         return max(0.0, 1.0 - self.bound / self.cost) if self.cost > 0.0 else 0.0
 
     @property
     def duration(self) -> float:
-        """Seconds of motion."""
+        """Return seconds of motion."""
         return sum(action.trajectory.duration for action in self.plan)

@@ -51,6 +51,7 @@ def solve(
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
+
     deadline = Deadline(max_time)
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
@@ -62,19 +63,35 @@ def solve(
 
     try:
         result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
-    except (OutOfTime, KeyboardInterrupt) as end:  # before the first round, or while a bound plan was being timed
+    except (OutOfTime, KeyboardInterrupt) as end:
+        # Before the first round, or while a bound plan was being timed.
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
+
     total = deadline.elapsed()
-    return assemble(problem, result, actions, seed, algorithm, {"total": total, "timing": total - planned}, recorder)
+    return assemble(
+        problem,
+        result,
+        actions,
+        seed,
+        algorithm,
+        {"total": total, "timing": total - planned},
+        recorder,
+    )
 
 
 def _borne_out(
-    problem: Problem, task: StreamTask, seed: int, algorithm: str, deadline: Deadline, progress: Progress
+    problem: Problem,
+    task: StreamTask,
+    seed: int,
+    algorithm: str,
+    deadline: Deadline,
+    progress: Progress,
 ) -> Result:
-    """A plan in whose states the classifiers of the user's own relations say what they said of its poses.
+    """Find a plan in whose states the user's classifiers say what they said of its poses.
 
-    Only those that look at more than their arguments can make the first plan another one than that of the seed.
+    Only those that look at more than their arguments can make the first plan another one than that
+    of the seed.
     """
     make_rng = random_streams(seed)
     result = ALGORITHMS[algorithm](task, make_rng, deadline, progress)
@@ -84,7 +101,11 @@ def _borne_out(
             break
         result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)
         wrong = contradictions(problem, result)
-    return replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong) if wrong else result
+    return (
+        replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong)
+        if wrong
+        else result
+    )
 
 
 def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:

@@ -1,4 +1,4 @@
-"""What streams did in earlier runs with a domain, kept in a file that the user names."""
+"""Statistics of streams in earlier runs with a domain, kept in a file that the user names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REMEDY = "Name another file, or delete this one to begin anew"
 
 
 def read_statistics(path: Path, domain: str) -> dict[str, Posterior]:
-    """Stream to what is known of it; nothing when there is no such file yet.
+    """Read stream to what is known of it; nothing when there is no such file yet.
 
     Raises:
         InputError: The file cannot be read, is none of ours, or is about another domain.
@@ -34,17 +34,24 @@ def read_statistics(path: Path, domain: str) -> dict[str, Posterior]:
         root = Field(read_json(path, MOST_BYTES, kind="file of statistics"), "", path)
         if not isinstance(root.value, dict):
             raise root.wrong(f"it is no '{FORMAT}' file of version {VERSION}")
-        if [found and found.value for found in (root.get("format"), root.get("version"))] != [FORMAT, VERSION]:
+        if [found and found.value for found in (root.get("format"), root.get("version"))] != [
+            FORMAT,
+            VERSION,
+        ]:
             raise root.wrong(f"it is no '{FORMAT}' file of version {VERSION}")
         if root["domain"].text() != domain:
-            raise root.wrong(f"its statistics are of domain '{clipped(root['domain'].text())}', not '{domain}'")
+            raise root.wrong(
+                f"its statistics are of domain '{clipped(root['domain'].text())}', not '{domain}'"
+            )
         return {name: _posterior(entry) for name, entry in root["streams"].fields().items()}
     except InputError as error:
         error.remedy = error.remedy or REMEDY
         raise error.at(path) from None
 
 
-def add_statistics(path: Path, domain: str, ran: Mapping[str, StreamStatistics]) -> dict[str, Posterior]:
+def add_statistics(
+    path: Path, domain: str, ran: Mapping[str, StreamStatistics]
+) -> dict[str, Posterior]:
     """Add what a run tells to what the file says by now, whole or not at all; returns the sum.
 
     Several runs may end at the same time: each waits for the others, and none is lost.

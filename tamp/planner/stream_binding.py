@@ -17,7 +17,10 @@ from tamp.symbolic.pddl.structs import Domain, StreamFile
 
 
 def bind(
-    declared: StreamFile, domain: Domain, context: Context, functions: Mapping[str, Callable[..., Any]]
+    declared: StreamFile,
+    domain: Domain,
+    context: Context,
+    functions: Mapping[str, Callable[..., Any]],
 ) -> tuple[BoundStream, ...]:
     """Tie the streams to their functions.
 
@@ -58,7 +61,11 @@ def bind_costs(
 def unused_functions(declared: StreamFile, functions: Mapping[str, Any]) -> list[str]:
     """Warn of given functions whose name no stream and no cost function has."""
     names = [one.name for one in (*declared.streams, *declared.functions)]
-    return [f"no stream is named '{name}': that function is not used" for name in functions if name not in names]
+    return [
+        f"no stream is named '{name}': that function is not used"
+        for name in functions
+        if name not in names
+    ]
 
 
 def _always(*inputs: Any, call: Any) -> bool:
@@ -73,5 +80,6 @@ def _refuse_decided(declared: StreamFile) -> None:
             file=declared.file,
             line=place.line if place else None,
             column=place.column if place else None,
-            remedy="A stream without outputs tests a relation; tamp.pddlstream takes :predicate too",
+            remedy="A stream without outputs tests a relation; "
+            "tamp.pddlstream takes :predicate too",
         )

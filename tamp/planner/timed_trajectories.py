@@ -1,4 +1,4 @@
-"""From the motions of a bound plan to timed trajectories, action by action."""
+"""Time parametrization of a bound plan's motions: trajectories, action by action."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Segment:
     Attributes:
         part: "base", "arm" or "gripper".
         times: Seconds from the segment's start, shape (n,), increasing from 0.
-        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in between.
+        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in
+            between.
         opening: Of the fingers, metres, while base or arm move.
         holding: The body in the hand meanwhile.
         attach: The grasp that a gripper segment ends with.
@@ -49,20 +50,26 @@ class Trajectory:
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Return seconds."""
         return float(sum(segment.times[-1] for segment in self.segments))
 
 
 Timed = dict[tuple[object, ...], tuple[Path, Segment]]
-"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the bodies are."""
+"""Paths that were timed before: by the path, where its robot stands, what it holds, and where the
+bodies are.
+"""
 
 
 def trajectories(
-    context: Context, actions: Sequence[PlanAction], values: dict[str, object], known: Timed | None = None
+    context: Context,
+    actions: Sequence[PlanAction],
+    values: dict[str, object],
+    known: Timed | None = None,
 ) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 
-    Corners are rounded only where the rounding is free of collision among the bodies as they stand at that moment.
+    Corners are rounded only where the rounding is free of collision among the bodies as they stand
+    at that moment.
 
     Args:
         context: Of the problem.
@@ -99,14 +106,19 @@ class _Replay:
         self._arm: Array = context.home
 
     def timed(self, motion: Motion) -> list[Segment]:
-        return [self._grip(item) if isinstance(item, Grip) else self._path(item) for item in motion.segments]
+        return [
+            self._grip(item) if isinstance(item, Grip) else self._path(item)
+            for item in motion.segments
+        ]
 
     def _grip(self, grip: Grip) -> Segment:
         if grip.attach is not None:
             self._held = grip.attach
             self._poses.pop(grip.attach.body, None)
         elif self._held is not None:
-            tool = Pose.from_matrix(self._context.kinematics.tool(self._context.conf(self._base, self._arm)))
+            tool = Pose.from_matrix(
+                self._context.kinematics.tool(self._context.conf(self._base, self._arm))
+            )
             self._poses[self._held.body] = tool @ self._held.T_tool_body
             self._held = None
         positions = np.array(grip.opening)[:, None]
@@ -115,7 +127,7 @@ class _Replay:
         return Segment("gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach)
 
     def _path(self, path: Path) -> Segment:
-        """The path timed, or what it was timed to before in the same circumstances."""
+        """Time the path, or return what it was timed to before in the same circumstances."""
         held = None if self._held is None else (self._held.body, self._held.T_tool_body.position)
         bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
         key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
@@ -135,15 +147,21 @@ class _Replay:
         velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
 
         def conf(point: Array) -> Array:
-            return context.conf(point, self._arm) if path.part == "base" else context.conf(self._base, point)
+            return (
+                context.conf(point, self._arm)
+                if path.part == "base"
+                else context.conf(self._base, point)
+            )
 
         def edge_free(a: Array, b: Array) -> bool:
             return arrangement.edge_free(conf(a), conf(b))
 
         joints = slice(0, 3) if path.part == "base" else slice(3, None)
         points = path.points
-        if path.part == "base":  # whole turns are not lost between one drive and the next: the yaw goes on where it was
+        if path.part == "base":
+            # Whole turns are not lost between drives: the yaw goes on where it was.
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
+
         timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
         return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

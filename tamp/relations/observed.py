@@ -1,7 +1,8 @@
-"""What a classifier says of the relations of a scene: who plans, executes or judges asks it the same way.
+"""Ask classifiers about the relations of a scene: alike in planning, execution and judging.
 
-A classifier is what the user means by a relation, whether written or learned; it is no part of the planner. Whoever
-asks brings a scene of its own reading: the planner its poses, execution what it sees, the judge the physics engine's.
+A classifier is what the user means by a relation, whether written or learned; it is no part of the
+planner. Whoever asks brings a scene of its own reading: the planner its poses, execution what it
+sees, the judge the physics engine's.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from tamp.symbolic.pddl.structs import Domain, Fact
 
 @dataclass(frozen=True)
 class Observation:
-    """What a classifier says of a relation.
+    """The answers of a classifier about a relation.
 
     Attributes:
         holds: Facts that hold.
@@ -73,12 +74,12 @@ def observe(
 
 
 def scene_names(scene: Scene) -> dict[str, str]:
-    """The scene's names of bodies and places by their PDDL names, which are lower case."""
+    """Map PDDL names, which are lower case, to the scene's names of bodies and places."""
     return {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
 
 
 def moved(scene: Scene, poses: Mapping[str, Pose], absent: str | None = None) -> Scene:
-    """A scene with bodies at poses, T_world_body by the scene's names, and without the one in the hand."""
+    """Move bodies of a scene to poses T_world_body, by name; the body in the hand is taken out."""
     bodies = {
         name: replace(body, pose=poses[name]) if name in poses else body
         for name, body in scene.bodies.items()
@@ -96,6 +97,8 @@ def refuse_silent(relation: str, seen: Observation) -> None:
     if seen.unanswered and not seen.answers:
         words, why = next(iter(seen.unanswered.items()))
         raise InputError(
-            f"the classifier of '{relation}' does not work: asked of ({' '.join((relation, *words))}), {why}",
-            remedy="classify(scene, arguments) returns the probability that the relation holds, or nan",
+            f"the classifier of '{relation}' does not work: "
+            f"asked of ({' '.join((relation, *words))}), {why}",
+            remedy="classify(scene, arguments) returns the probability that the relation holds, "
+            "or nan",
         )

@@ -1,1 +1,1 @@
-"""An independent judge of plan files: its own semantics, pybullet's kinematics and collision detection."""
+"""Judge plan files independently: own semantics, pybullet's kinematics and collision detection."""

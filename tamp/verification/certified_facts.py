@@ -1,4 +1,4 @@
-"""What streams certified, worked out again from the geometry."""
+"""Certified facts of streams, worked out again from the geometry."""
 
 from __future__ import annotations
 
@@ -40,8 +40,17 @@ class Certified:
     Facts about surfaces and cavities are not decided here but in the states in which they matter.
     """
 
-    def __init__(self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, domain: Domain) -> None:
-        self._plan, self._world, self._robot, self._sweeper, self._domain = plan, world, robot, sweeper, domain
+    def __init__(
+        self, plan: PlanFile, world: World, robot: Robot, sweeper: Sweeper, domain: Domain
+    ) -> None:
+        self._plan, self._world, self._robot, self._sweeper, self._domain = (
+            plan,
+            world,
+            robot,
+            sweeper,
+            domain,
+        )
+
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._checks: dict[str, tuple[str, Callable[[list[str]], str | None]]] = {
             "pose": ("op", lambda _: None),
@@ -64,7 +73,7 @@ class Certified:
 
     @property
     def known(self) -> set[str]:
-        """Predicates that can be checked in this domain."""
+        """Return the predicates that can be checked in this domain."""
         declared = self._domain.predicates
         return {
             name for name, (kinds, _) in self._checks.items()
@@ -72,15 +81,21 @@ class Certified:
         }  # fmt: skip
 
     def check(self, facts: Iterable[Fact], trusted: Counter[str]) -> Iterator[Violation]:
-        """Violations of facts; those of unknown predicates are counted in `trusted`."""
-        changed = {effect.atom.predicate for action in self._domain.actions for effect in action.effects}
+        """Yield violations of facts; those of unknown predicates are counted in `trusted`."""
+        changed = {
+            effect.atom.predicate for action in self._domain.actions for effect in action.effects
+        }
         changed |= self._domain.derived_predicates
+
         known = self.known
         for fact in sorted(set(facts)):
             predicate, *terms = fact
             text = f"({' '.join(fact)})"
             if predicate in changed:
-                yield Violation("certified", f"{text}: actions and rules decide about {predicate}, streams do not")
+                yield Violation(
+                    "certified",
+                    f"{text}: actions and rules decide about {predicate}, streams do not",
+                )
             elif predicate not in known:
                 trusted[predicate] += 1
             else:
@@ -91,7 +106,7 @@ class Certified:
                     yield Violation("certified", f"{text} does not hold: {why}", bodies=bodies)
 
     def why_not_held(self, body: str, T_tool_body: Array, opening: float) -> str | None:
-        """Why fingers at an opening do not hold a body that stands so in the tool frame; None when they do."""
+        """Say why fingers at an opening do not hold a body at T_tool_body; None when they do."""
         world, robot = self._world, self._robot
         if not 0.0 <= opening <= robot.opening + 1e-6:
             return f"the fingers cannot open to {1000 * opening:.1f} mm"
@@ -104,10 +119,15 @@ class Certified:
             world.place(body, T_before)
 
     def _why_loose(self, body: str) -> str | None:
-        """Why the hand as it stands does not touch a body as it should."""
+        """Say why the hand as it stands does not touch a body as it should; None when it does."""
         hand, *fingers = (self._world.links[link.name] for link in self._robot.links[-3:])
-        for name, link, loosest in (("palm", hand, math.inf), *(("finger", finger, LOOSE) for finger in fingers)):
-            distance = min(self._world.distance(link, solid, 0.05) for solid in self._world.solids[body])
+        for name, link, loosest in (
+            ("palm", hand, math.inf),
+            *(("finger", finger, LOOSE) for finger in fingers),
+        ):
+            distance = min(
+                self._world.distance(link, solid, 0.05) for solid in self._world.solids[body]
+            )
             if distance < -PRESSED:
                 return f"the {name} is {-1000 * distance:.1f} mm in it"
             if distance > loosest:
@@ -116,7 +136,7 @@ class Certified:
         return None
 
     def _why_beside(self, body: str, T_world_tool: Array, opening: float) -> str | None:
-        """A body is between the pads when a line from pad to pad meets it."""
+        """Say why a body is not between the pads; it is when a line from pad to pad meets it."""
         reach = max(opening / 2 - 2e-4, 1e-4)
         at = [(x, z) for x in np.linspace(-PAD, PAD, 5) for z in np.linspace(-PAD, PAD, 5)]
         ends = []
@@ -148,7 +168,9 @@ class Certified:
     def _standing(self, terms: list[str]) -> str | None:
         x, y, _ = self._plan.values[terms[0]].data
         room = self._world.scene.room
-        inside = room.x[0] - 1e-4 <= x <= room.x[1] + 1e-4 and room.y[0] - 1e-4 <= y <= room.y[1] + 1e-4
+        inside = (
+            room.x[0] - 1e-4 <= x <= room.x[1] + 1e-4 and room.y[0] - 1e-4 <= y <= room.y[1] + 1e-4
+        )
         return None if inside else "it is out of the room"
 
     def _kinematics(self, terms: list[str]) -> str | None:
@@ -159,11 +181,12 @@ class Certified:
             T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
             moved, turned = apart(T_world_tool @ hold.T_tool_body, pose)
             if moved > CLOSE or turned > ALIKE:
-                return f"the hand would hold it {1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg from there"
+                off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+                return f"the hand would hold it {off} from there"
         return None
 
     def _beyond(self, *paths: Array) -> bool:
-        """Whether joint angles (n, 7) are out of the limits."""
+        """Check whether joint angles (n, 7) are out of the limits."""
         limits = limits_of(self._robot)
         lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
@@ -187,7 +210,10 @@ class Certified:
     def _approach(self, terms: list[str]) -> str | None:
         pose, hold = (self._plan.values[term].data for term in terms[1:3])
         T_world_tool = pose @ np.linalg.inv(hold.T_tool_body)
-        hits = (self._hand_hits(name, T_world_tool, self._robot.opening) for name in self._world.scene.fixed)
+        hits = (
+            self._hand_hits(name, T_world_tool, self._robot.opening)
+            for name in self._world.scene.fixed
+        )
         return next((hit for hit in hits if hit), None)
 
     def _approach_clear(self, terms: list[str]) -> str | None:
@@ -199,7 +225,7 @@ class Certified:
         return self._hand_hits(other, pose @ np.linalg.inv(hold.T_tool_body), self._robot.opening)
 
     def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
-        """How deep the hand at a tool pose is in a body, which is brought to the hand of a robot that stands aside."""
+        """Say how deep the hand at a tool pose is in a body, which is brought to a robot aside."""
         world = self._world
         T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
         T_before = world.pose(other)
@@ -219,7 +245,10 @@ class Certified:
         self._world.place(other, self._plan.values[terms[6]].data)
         findings = Findings()
         held = Held(self._bodies[terms[0]], hold.T_tool_body)
-        for path, opening, carried in ((approach, self._robot.opening, None), (lift, hold.opening, held)):
+        for path, opening, carried in (
+            (approach, self._robot.opening, None),
+            (lift, hold.opening, held),
+        ):
             rows = np.array([[*base, *joints, opening] for joints in path])
             times = np.arange(len(rows), dtype=float)
             self._sweeper.sweep(rows, times, carried, findings, against=frozenset({other}))

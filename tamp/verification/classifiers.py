@@ -10,14 +10,17 @@ from tamp.geometric.scene.classifier import Classifier, Undecided
 from tamp.system.python_object import python_object
 
 MODES = (":mixed", ":alone")
-"""What tamp-solve reads after a sampler's name, and the judge may read as well: it says nothing of the classifier."""
+"""What tamp-solve reads after a sampler's name, and the judge may read as well: it says nothing of
+the classifier.
+"""
 
 
 def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
-    """Relation to classifier.
+    """Load classifiers, by relation.
 
     Raises:
-        InputError: Something else than RELATION=FILE; a file that cannot be used, or without a classifier.
+        InputError: Something else than RELATION=FILE; a file that cannot be used, or without a
+            classifier.
     """
     found: dict[str, Classifier] = {}
     for pair in pairs:
@@ -25,15 +28,25 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
         if not (relation and equals and name):
             remedy = "For example: --sampler upright=upright.py"
             raise InputError(f"--sampler wants RELATION=FILE, not '{pair}'", remedy=remedy)
+
         for mode in MODES:
             name = name.removesuffix(mode)
         made = _made(relation, Path(name))
+
         if isinstance(made, Undecided):
-            raise InputError(f"the classifier of '{relation}' cannot tell yet: {made.cannot_tell}", file=name)
+            raise InputError(
+                f"the classifier of '{relation}' cannot tell yet: {made.cannot_tell}", file=name
+            )
         if isinstance(made, type) or not isinstance(made, Classifier):
-            what = f"'{relation}' has no classifier here: no object 'grounding' with the method classify"
-            raise InputError(what, file=name, remedy="classify(scene, arguments) returns a probability")
+            what = (
+                f"'{relation}' has no classifier here: "
+                "no object 'grounding' with the method classify"
+            )
+            raise InputError(
+                what, file=name, remedy="classify(scene, arguments) returns a probability"
+            )
         found[relation.lower()] = made
+
     return found
 
 

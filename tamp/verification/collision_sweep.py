@@ -1,4 +1,4 @@
-"""What the robot and the body in its hand meet on their way through the scene."""
+"""Collision detection along motions: the robot and the body in its hand against the scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Mask = NDArray[np.bool_]
 TOLERANCE = 0.001
 """Metres of penetration that are not yet a collision."""
 DEEPER = 0.0003
-"""Metres by which bodies that lie in each other at the start may get deeper: the arm's way is not quite straight."""
+"""Metres that bodies in each other at the start may get deeper: an arm's way is not straight."""
 REACH = 0.02
 """Metres up to which clearance is measured."""
 BLOCK = 512
@@ -41,8 +41,10 @@ class Natural:
     """Contact that belongs to grasping and standing.
 
     Attributes:
-        touching: Bodies that the hand and fingers may touch: one that they are closing on or letting go of.
-        grasped: Bodies that the hand and fingers may be near: one that they are reaching for or have let go of.
+        touching: Bodies that the hand and fingers may touch: one that they are closing on or
+            letting go of.
+        grasped: Bodies that the hand and fingers may be near: one that they are reaching for or
+            have let go of.
         resting: Bodies that the held one may be near: those that it stood on or will stand on.
     """
 
@@ -53,7 +55,7 @@ class Natural:
 
 @dataclass(frozen=True, eq=False)
 class _Block:
-    """Some samples: rows (n, 11), times (n,), the links' frames (n, links, 4, 4) and the boxes around the links."""
+    """Samples: rows (n, 11), times (n,), frames of links (n, links, 4, 4) and boxes around them."""
 
     rows: Array
     times: Array
@@ -64,7 +66,7 @@ class _Block:
 
 @dataclass
 class Findings:
-    """What a sweep met: the deepest penetration of each pair, the nearest miss, and how many states were looked at.
+    """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
 
     It ends, somewhere in the motion, when they are more than `most`.
     """
@@ -74,30 +76,37 @@ class Findings:
     states: int = 0
     most: float = math.inf
 
-    def met(self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE) -> None:
+    def met(
+        self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE
+    ) -> None:
         """Take note of a contact or near miss."""
         pair = (contact.first, contact.second)
-        if contact.distance < -tolerance and (pair not in self.worst or contact.distance < self.worst[pair].distance):
+        if contact.distance < -tolerance and (
+            pair not in self.worst or contact.distance < self.worst[pair].distance
+        ):
             self.worst[pair] = contact
-        if counts_as_clearance and (self.nearest is None or contact.distance < self.nearest.distance):
+        if counts_as_clearance and (
+            self.nearest is None or contact.distance < self.nearest.distance
+        ):
             self.nearest = contact
 
     @property
     def full(self) -> bool:
-        """Whether as many states as wanted were looked at."""
+        """Tell whether as many states as wanted were looked at."""
         return self.states > self.most
 
     @property
     def margin(self) -> float:
-        """Metres beyond which a pair is of no interest."""
+        """Return metres beyond which a pair is of no interest."""
         return REACH if self.nearest is None else max(0.0, self.nearest.distance)
 
 
 class Sweeper:
-    """Looks for collisions of a world's robot. A state is a row [x, y, yaw, q1..q7, opening], metres and radians.
+    """Looks for collisions of a world's robot. A state is [x, y, yaw, q1..q7, opening], m and rad.
 
     Attributes:
-        together: How deep bodies, sorted by name, lie in each other at the start, metres; they may be moved apart.
+        together: How deep bodies, sorted by name, lie in each other at the start, metres; they may
+            be moved apart.
     """
 
     def __init__(self, world: World, robot: Robot) -> None:
@@ -109,10 +118,12 @@ class Sweeper:
         self.together: dict[tuple[str, str], float] = {}
         count = len(self._names)
         pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
-        self._self_pairs = [(i, j) for i, j in pairs if _sorted(self._names[i], self._names[j]) not in robot.allowed]
+        self._self_pairs = [
+            (i, j) for i, j in pairs if _sorted(self._names[i], self._names[j]) not in robot.allowed
+        ]
 
     def tool(self, row: Array) -> Array:
-        """T_world_tool in a state, by pybullet's kinematics, shape (4, 4)."""
+        """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
         return self._sampler.tool(row)
 
     def sweep(
@@ -146,34 +157,57 @@ class Sweeper:
         rows, times, frames = self._sampler.sampled(rows, times, held)
         findings.states += len(rows)
         moving = np.ones(len(rows), dtype=bool)
-        moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)  # while only the base moves, the robot keeps its shape
+        moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(
+            axis=1
+        )  # while only the base moves, the robot keeps its shape
         for start in range(0, len(rows), BLOCK):
             some = slice(start, start + BLOCK)
-            block = _Block(rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some]))
+            block = _Block(
+                rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some])
+            )
             self._against_bodies(block, held, findings, natural, against)
             if against is None:
                 self._against_itself(block, held, findings, moving[some])
 
     def _against_bodies(
-        self, block: _Block, held: Held | None, findings: Findings, natural: Natural, against: frozenset[str] | None
+        self,
+        block: _Block,
+        held: Held | None,
+        findings: Findings,
+        natural: Natural,
+        against: frozenset[str] | None,
     ) -> None:
         world = self._world
         in_hand = held.body if held else None
-        bodies = [body for body in world.solids if body != in_hand and (against is None or body in against)]
+        bodies = [
+            body
+            for body in world.solids
+            if body != in_hand and (against is None or body in against)
+        ]
         others = [solid for body in bodies for solid in world.solids[body]]
+
         low, high = block.low, block.high
         movers = list(self._solids)
         if held is not None:
             held_low, held_high = self._held_boxes(block.frames, held)
-            low, high = np.concatenate([low, held_low], axis=1), np.concatenate([high, held_high], axis=1)
+            low, high = (
+                np.concatenate([low, held_low], axis=1),
+                np.concatenate([high, held_high], axis=1),
+            )
             movers += world.solids[held.body]
+
         at = [world.pose(solid.owner) for solid in others]
-        centres = np.array([T[:3, :3] @ solid.centre + T[:3, 3] for T, solid in zip(at, others, strict=True)])
-        halves = np.array([np.abs(T[:3, :3]) @ solid.half for T, solid in zip(at, others, strict=True)])
+        centres = np.array(
+            [T[:3, :3] @ solid.centre + T[:3, 3] for T, solid in zip(at, others, strict=True)]
+        )
+        halves = np.array(
+            [np.abs(T[:3, :3]) @ solid.half for T, solid in zip(at, others, strict=True)]
+        )
         others.append(world.floor)
         centres = np.concatenate([centres.reshape(-1, 3), world.floor.centre[None]])
         halves = np.concatenate([halves.reshape(-1, 3), world.floor.half[None]])
-        # The distance of boxes along the worst axis bounds the distance of what is in them: (n, movers, others).
+
+        # The gap of boxes on the worst axis bounds the distance of contents: (n, movers, others).
         gaps = np.full((len(block.rows), len(movers), len(others)), -np.inf)
         for axis in range(3):
             near = low[:, :, None, axis] - (centres + halves)[None, None, :, axis]
@@ -182,30 +216,37 @@ class Sweeper:
         gaps[:, 0, -1] = np.inf  # the base drives on the floor
         candidates = np.argwhere(gaps < REACH)
         bounds = gaps[tuple(candidates.T)]
+
         current = -1
         for (state, mover, other), bound in zip(candidates.tolist(), bounds.tolist(), strict=True):
             first, second = movers[mover], others[other]
             by_hand = first.owner in self.hand
             if bound >= findings.margin or (by_hand and second.owner in natural.touching):
                 continue
+
             if state != current:
                 self._pose(block.rows[state], block.frames[state], held)
                 current = state
             distance = world.distance(first, second, findings.margin)
+
             if distance < REACH:
-                expected = second.owner in (
-                    natural.resting if first.owner == in_hand else natural.grasped if by_hand else ()
-                )  # fmt: skip
+                usual = natural.grasped if by_hand else frozenset[str]()
+                expected = second.owner in (natural.resting if first.owner == in_hand else usual)
                 contact = Contact(first.owner, second.owner, distance, float(block.times[state]))
-                tolerance = max(TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER)
+                tolerance = max(
+                    TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
+                )
                 findings.met(contact, not expected, tolerance)
 
-    def _against_itself(self, block: _Block, held: Held | None, findings: Findings, moving: Mask) -> None:
+    def _against_itself(
+        self, block: _Block, held: Held | None, findings: Findings, moving: Mask
+    ) -> None:
         low, high = block.low, block.high
         pairs = [
             (self._solids[i], self._solids[j], low[:, i], high[:, i], low[:, j], high[:, j])
             for i, j in self._self_pairs
         ]
+
         if held is not None:
             held_low, held_high = self._held_boxes(block.frames, held)
             arm = [number for number, name in enumerate(self._names) if name not in self.hand]
@@ -214,7 +255,11 @@ class Sweeper:
                 for k, solid in enumerate(self._world.solids[held.body])
                 for i in arm
             ]
-        near = np.array([np.all((la <= hb) & (lb <= ha), axis=1) & moving for _, _, la, ha, lb, hb in pairs])
+
+        near = np.array(
+            [np.all((la <= hb) & (lb <= ha), axis=1) & moving for _, _, la, ha, lb, hb in pairs]
+        )
+
         current = -1
         for state, pair in np.argwhere(near.T).tolist():
             if state != current:
@@ -223,10 +268,12 @@ class Sweeper:
             first, second = pairs[pair][:2]
             distance = self._world.distance(first, second, 0.0)
             if distance < 0:
-                findings.met(Contact(first.owner, second.owner, distance, float(block.times[state])), False)
+                findings.met(
+                    Contact(first.owner, second.owner, distance, float(block.times[state])), False
+                )
 
     def _boxes(self, solids: list[Solid], frames: Array) -> tuple[Array, Array]:
-        """Boxes along the world's axes around solids that have these frames: low and high corners, (n, solids, 3)."""
+        """Compute axis-aligned boxes of solids at these frames: corners, each (n, solids, 3)."""
         centres = np.array([solid.centre for solid in solids])
         halves = np.array([solid.half for solid in solids])
         middles = np.einsum("nlij,lj->nli", frames[..., :3, :3], centres) + frames[..., :3, 3]
@@ -235,7 +282,9 @@ class Sweeper:
 
     def _held_boxes(self, frames: Array, held: Held) -> tuple[Array, Array]:
         solids = list(self._world.solids[held.body])
-        return self._boxes(solids, np.repeat(self._sampler.held_frames(frames, held)[:, None], len(solids), axis=1))
+        return self._boxes(
+            solids, np.repeat(self._sampler.held_frames(frames, held)[:, None], len(solids), axis=1)
+        )
 
     def _pose(self, row: Array, frames: Array, held: Held | None) -> None:
         self._world.set_robot(row[:3], row[3:10], row[10])

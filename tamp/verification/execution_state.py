@@ -1,4 +1,4 @@
-"""Where a plan has come to."""
+"""The execution state: the point that a plan has come to."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Held:
 
 @dataclass(eq=False)
 class Course:
-    """The robot's row [x, y, yaw, q1..q7, opening] in metres and radians, what it holds, and the time in seconds."""
+    """The robot's row [x, y, yaw, q1..q7, opening] in m and rad, what it holds, the time in s."""
 
     row: Array
     held: Held | None
@@ -25,5 +25,5 @@ class Course:
 
     @property
     def in_hand(self) -> str | None:
-        """The held body's name."""
+        """Return the held body's name."""
         return None if self.held is None else self.held.body

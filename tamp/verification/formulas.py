@@ -1,4 +1,4 @@
-"""Looking at formulas and writing them down."""
+"""Formulas of PDDL: substitute, show, take apart, unify."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Binding = dict[str, str]
 
 
 def substitute(formula: Formula, binding: Mapping[str, str]) -> Formula:
-    """The formula with objects in the place of its bound variables."""
+    """Substitute objects for a formula's bound variables."""
     if isinstance(formula, Atom):
         return Atom(formula.predicate, tuple(binding.get(term, term) for term in formula.terms))
     if isinstance(formula, Not):
@@ -20,12 +20,13 @@ def substitute(formula: Formula, binding: Mapping[str, str]) -> Formula:
         return type(formula)(tuple(substitute(part, binding) for part in formula.parts))
     inner = {p.name for p in formula.parameters}
     return type(formula)(
-        formula.parameters, substitute(formula.body, {k: v for k, v in binding.items() if k not in inner})
-    )  # fmt: skip
+        formula.parameters,
+        substitute(formula.body, {k: v for k, v in binding.items() if k not in inner}),
+    )
 
 
 def show(formula: Formula) -> str:
-    """In PDDL."""
+    """Write a formula in PDDL."""
     if isinstance(formula, Atom):
         return f"({' '.join((formula.predicate, *formula.terms))})"
     if isinstance(formula, Not):
@@ -37,14 +38,14 @@ def show(formula: Formula) -> str:
 
 
 def flat(formula: Formula) -> list[Formula]:
-    """The parts of a conjunction, nested ones taken apart."""
+    """List the parts of a conjunction, nested ones taken apart."""
     if isinstance(formula, And):
         return [part for one in formula.parts for part in flat(one)]
     return [formula]
 
 
 def free(formula: Formula) -> set[str]:
-    """Its free variables."""
+    """Return a formula's free variables."""
     if isinstance(formula, Atom):
         return {term for term in formula.terms if term.startswith("?")}
     if isinstance(formula, Not):
@@ -55,7 +56,7 @@ def free(formula: Formula) -> set[str]:
 
 
 def predicates(formula: Formula) -> set[str]:
-    """The predicates that it asks for."""
+    """Return the predicates that it asks for."""
     if isinstance(formula, Atom):
         return {formula.predicate}
     if isinstance(formula, And | Or):
@@ -64,12 +65,12 @@ def predicates(formula: Formula) -> set[str]:
 
 
 def ground(atom: Atom, binding: Mapping[str, str]) -> Fact:
-    """The fact that an atom is under a binding of its variables."""
+    """Ground an atom: the fact that it is under a binding of its variables."""
     return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
 
 
 def unify(terms: Sequence[str], row: Sequence[str], binding: Mapping[str, str]) -> Binding | None:
-    """The binding extended so that the terms are the row; None when there is none."""
+    """Unify terms with a row: extend the binding so that they agree; None when it cannot."""
     extended = dict(binding)
     if len(terms) != len(row):
         return None

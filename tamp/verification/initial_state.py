@@ -1,4 +1,4 @@
-"""What the problem says holds at the start, worked out from the scene, and compared with what the plan says."""
+"""The initial state, worked out from the scene and compared with what the plan says of it."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ EXACT = 1e-6
 
 
 def meant(domain: Domain, predicate: str) -> bool:
-    """Whether the domain's predicate is the fluent of that name whose meaning we know."""
+    """Tell whether the domain's predicate is the fluent of that name whose meaning we know."""
     declared = domain.predicates.get(predicate)
     return declared is not None and len(declared.parameters) == FLUENT_ARITY[predicate]
 
 
 def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Violation]:
-    """Whether the plan's objects are the scene's, and what it says of them is so."""
+    """Check that the plan's objects are the scene's, and what it says of them is so."""
     bodies = {name.lower(): body for name, body in scene.bodies.items()}
     places = {name.lower() for name in (*scene.surfaces, *scene.cavities)}
     for name, types in plan.objects.items():
@@ -44,39 +44,50 @@ def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Viol
                 yield Violation("initial", f"'{name}' is not {type_}", bodies=(name,))
     for name, body in bodies.items():
         if body.movable and name not in plan.objects:
-            yield Violation("initial", f"the body '{name}' is missing among the objects", bodies=(name,))
+            yield Violation(
+                "initial", f"the body '{name}' is missing among the objects", bodies=(name,)
+            )
 
 
 def check_initial(
     plan: PlanFile, scene: Scene, domain: Domain, given: frozenset[Fact], static: set[str]
 ) -> Iterator[Violation]:
-    """Whether the plan's initial facts are those that the scene and the problem's `init` imply.
+    """Check that the plan's initial facts are those that the scene and the problem's `init` imply.
 
     Args:
         plan: The plan.
         scene: The problem's.
         domain: The domain.
         given: The problem's own initial facts.
-        static: Predicates that are verified as certified facts, and may stand among the initial ones.
+        static: Predicates that are verified as certified facts, and may stand among the initial
+            ones.
     """
     facts = set(plan.initial)
     for fact in sorted(given - facts):
         yield Violation("initial", f"({' '.join(fact)}) of the problem's init is missing")
+
     bodies = {name.lower(): scene.bodies[name] for name in scene.movable}
     placed: list[str] = []
+
     for fact in plan.initial:
         predicate, *terms = fact
         text = f"({' '.join(fact)})"
         known = predicate in FLUENT_ARITY and meant(domain, predicate)
         if known and len(terms) != FLUENT_ARITY[predicate]:
             yield Violation("initial", f"{text} has a wrong number of arguments")
-        elif fact in given or (not known and predicate in static) or _is_kind(fact, plan, scene, domain):
+        elif (
+            fact in given
+            or (not known and predicate in static)
+            or _is_kind(fact, plan, scene, domain)
+        ):
             continue
         elif known and predicate == "at-pose" and terms[0] in bodies:
             placed.append(terms[0])
             value = plan.values.get(terms[1])
             if value is None or value.type != "pose":
-                yield Violation("initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],))
+                yield Violation(
+                    "initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],)
+                )
             else:
                 moved, turned = apart(value.data, bodies[terms[0]].pose.matrix)
                 if moved > EXACT or turned > 1e-4:
@@ -91,10 +102,16 @@ def check_initial(
                 yield Violation("initial", f"{text}: the base starts elsewhere")
         elif not (known and predicate == "hand-empty"):
             yield Violation("initial", f"the problem does not imply {text}")
+
     if meant(domain, "at-pose"):
         for name in bodies:
             if placed.count(name) != 1:
-                yield Violation("initial", f"'{name}' has {placed.count(name)} poses at the start", bodies=(name,))
+                yield Violation(
+                    "initial",
+                    f"'{name}' has {placed.count(name)} poses at the start",
+                    bodies=(name,),
+                )
+
     for predicate in ("hand-empty", "at-base"):
         count = sum(fact[0] == predicate for fact in facts)
         if meant(domain, predicate) and count != 1:
@@ -102,7 +119,7 @@ def check_initial(
 
 
 def kinds_of(scene: Scene, name: str) -> set[str]:
-    """What the scene says that an object is."""
+    """List the kinds that the scene says an object is of."""
     kinds: set[str] = set()
     for body in scene.bodies.values():
         if body.name.lower() == name:
@@ -115,7 +132,7 @@ def kinds_of(scene: Scene, name: str) -> set[str]:
 
 
 def _is_kind(fact: Fact, plan: PlanFile, scene: Scene, domain: Domain) -> bool:
-    """Whether a fact says of an object only what it is."""
+    """Tell whether a fact says of an object only what it is."""
     if len(fact) != 2:
         return False
     declared = fact[0] in domain.types and fact[0] in plan.objects.get(fact[1], ())
@@ -123,14 +140,19 @@ def _is_kind(fact: Fact, plan: PlanFile, scene: Scene, domain: Domain) -> bool:
 
 
 def apart(T_first: Array, T_second: Array) -> tuple[float, float]:
-    """Metres and radians between two poses of shape (4, 4)."""
+    """Measure metres and radians between two poses of shape (4, 4)."""
     cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
     skew = T_first[:3, :3].T @ T_second[:3, :3]
-    sine = np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]]) / 2
-    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(float(sine), float(cosine))
+    sine = (
+        np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
+        / 2
+    )
+    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(
+        float(sine), float(cosine)
+    )
 
 
 def base_apart(first: Array, second: Array) -> float:
-    """The largest difference of two base configurations x, y, yaw; a full turn is none."""
+    """Measure the largest difference of two base configurations x, y, yaw; a full turn is none."""
     turn = (first[2] - second[2] + math.pi) % (2 * math.pi) - math.pi
     return float(max(np.abs(first[:2] - second[:2]).max(), abs(turn)))

@@ -1,4 +1,4 @@
-"""Whether one part's motion keeps the robot's limits and follows a clock."""
+"""Check the robot's limits of range, velocity and acceleration in a part's motion."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ROUNDING = 2e-6
 
 @dataclass(frozen=True)
 class Excess:
-    """A limit that is exceeded: the violation's kind, seconds from the first segment's start, what, by how much."""
+    """A limit exceeded: the violation's kind, seconds from the segments' start, what, how much."""
 
     kind: str
     time: float
@@ -36,30 +36,39 @@ class Excess:
 
 
 def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[Excess]:
-    """The worst excess of each limit in consecutive segments of one part, which starts and ends at rest."""
+    """Yield each limit's worst excess in segments of a part that starts and ends at rest."""
     part = segments[0].part
     times, rows = _joined(segments)
+
     steps = np.diff(times)
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0))
         yield Excess("time", float(times[at]), f"times of the {part} do not increase", 0.0)
         return
+
     names, lower, upper, velocity, acceleration = _limits(part, robot, room)
     beyond = np.maximum(lower - rows, rows - upper)
     yield from _worst("limit", beyond - SLACK, beyond, times, names, rows, "out of range")
     if len(rows) < 2:
         return
+
     speed = np.abs(np.diff(rows, axis=0)) / steps[:, None]
     allowed = SPEED * velocity + ROUNDING / steps[:, None]
-    yield from _worst("velocity", speed - allowed, speed - velocity, times, names, speed, "too fast")
-    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time between their middles.
+    yield from _worst(
+        "velocity", speed - allowed, speed - velocity, times, names, speed, "too fast"
+    )
+
+    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time
+    # between their middles.
     still = np.zeros((1, rows.shape[1]))
     speeds = np.concatenate([still, np.diff(rows, axis=0) / steps[:, None], still])
     apart = np.concatenate([[steps[0] / 2], (steps[:-1] + steps[1:]) / 2, [steps[-1] / 2]])[:, None]
     shortest = np.concatenate([steps[:1], np.minimum(steps[:-1], steps[1:]), steps[-1:]])[:, None]
     harsh = np.abs(np.diff(speeds, axis=0)) / apart
     allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
-    yield from _worst("acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh")
+    yield from _worst(
+        "acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh"
+    )
 
 
 def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
@@ -76,12 +85,14 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
                 if excess.kind == "limit":
                     where = f"{index + 1} {action.name}, {offset + excess.time:.2f} s"
                     what = f"{where}: {excess.message}: the robot cannot go there"
-                    raise InputError(what, file=plan.file, remedy="tamp-verify says all that is wrong with it")
+                    raise InputError(
+                        what, file=plan.file, remedy="tamp-verify says all that is wrong with it"
+                    )
             offset += sum(float(segment.times[-1]) for segment in segments)
 
 
 def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
-    """Times and rows of segments one after the other; the gripper's row is its opening."""
+    """Join times and rows of segments one after the other; the gripper's row is its opening."""
     times, rows = [], []
     offset = 0.0
     for segment in segments:
@@ -97,19 +108,36 @@ def _limits(part: str, robot: Robot, room: Room) -> tuple[list[str], Array, Arra
     limits = limits_of(robot)
     velocity, acceleration = np.array(limits.velocity), np.array(limits.acceleration)
     if part == "base":
-        lower, upper = np.array([room.x[0], room.y[0], -np.inf]), np.array([room.x[1], room.y[1], np.inf])
+        lower, upper = (
+            np.array([room.x[0], room.y[0], -np.inf]),
+            np.array([room.x[1], room.y[1], np.inf]),
+        )
         return ["base x", "base y", "base yaw"], lower, upper, velocity[:3], acceleration[:3]
     if part == "arm":
         names = [joint.name for joint in robot.joints]
         return names, np.array(limits.lower), np.array(limits.upper), velocity[3:], acceleration[3:]
-    return ["opening"], np.zeros(1), np.array([limits.opening]), np.array([2 * limits.finger]), np.array([np.inf])
+    return (
+        ["opening"],
+        np.zeros(1),
+        np.array([limits.opening]),
+        np.array([2 * limits.finger]),
+        np.array([np.inf]),
+    )
 
 
 def _worst(
-    kind: str, excess: Array, amount: Array, times: Array, names: list[str], values: Array, what: str
+    kind: str,
+    excess: Array,
+    amount: Array,
+    times: Array,
+    names: list[str],
+    values: Array,
+    what: str,
 ) -> Iterator[Excess]:
     for column, name in enumerate(names):
         if len(excess) and excess[:, column].max() > 0:
             row = int(excess[:, column].argmax())
             value, by = float(values[row, column]), float(amount[row, column])
-            yield Excess(kind, float(times[row]), f"{name} is {what}: {value:.4g}, {by:.2g} over", by)
+            yield Excess(
+                kind, float(times[row]), f"{name} is {what}: {value:.4g}, {by:.2g} over", by
+            )

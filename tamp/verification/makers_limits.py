@@ -1,4 +1,4 @@
-"""The judge's own table of what each robot can do, from its maker's data sheets; shared with nothing that plans."""
+"""The judge's own table of each robot's limits, from data sheets; shared with no planner."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class MakersLimits:
         velocity, acceleration: Of base x, y and yaw, then of the arm's joints.
         finger: Speed of each finger.
         opening: The largest distance between the fingers.
-        jerk: Of the arm's joints. Stated, not judged: a plan's accelerations change in steps, and the controller that
-            interpolates it, every millisecond on a Panda, rounds these off.
+        jerk: Of the arm's joints. Stated, not judged: a plan's accelerations change in steps, and
+            the controller that interpolates it, every millisecond on a Panda, rounds these off.
     """
 
     lower: tuple[float, ...]
@@ -39,15 +39,17 @@ PANDA_MOBILE = MakersLimits(
     opening=0.08,
     jerk=(7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0),
 )
-"""Arm: Franka Emika, "Robot and interface specifications" of the Franka Control Interface, limits in joint space. Hand:
-the data sheet of the Franka Hand (80 mm, 50 mm/s a finger). The base is our own."""
+"""Arm: Franka Emika, "Robot and interface specifications" of the Franka Control Interface, limits
+in joint space. Hand: the data sheet of the Franka Hand (80 mm, 50 mm/s a finger). The base is our
+own.
+"""
 
 MAKERS_LIMITS: Mapping[str, MakersLimits] = {"panda_mobile": PANDA_MOBILE}
 """By the robot's name."""
 
 
 def limits_of(robot: Robot) -> MakersLimits:
-    """The maker's limits of a robot; of one that has no entry, what it says of itself."""
+    """Return the maker's limits of a robot; of one that has no entry, what it says of itself."""
     return MAKERS_LIMITS.get(robot.name) or MakersLimits(
         robot.lower, robot.upper, robot.velocity, robot.acceleration,
         min(finger.velocity for finger in robot.fingers), robot.opening, (),

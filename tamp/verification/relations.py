@@ -43,8 +43,16 @@ class Relations:
         asked: Mapping[str, tuple[Relation, Classifier]],
         log: Log,
     ) -> None:
-        self._plan, self._world, self._domain, self._asked, self._log = plan, world, domain, asked, log
-        self._stated = {fact: "initial" for fact in plan.initial} | {fact: "certified" for fact in plan.certified}
+        self._plan, self._world, self._domain, self._asked, self._log = (
+            plan,
+            world,
+            domain,
+            asked,
+            log,
+        )
+        self._stated = {fact: "initial" for fact in plan.initial} | {
+            fact: "certified" for fact in plan.certified
+        }
         self._static = [*plan.initial, *plan.certified]
         self._elsewhere: dict[Fact, bool | None] = {}
         self._denied: set[Fact] = set()
@@ -52,11 +60,15 @@ class Relations:
         self.silent: dict[str, str] = {}
 
     def observed(self, state: State, in_hand: str | None) -> State:
-        """The state with what the classifiers say of bodies where they are now, and would say of the plan's poses."""
+        """Add to a state what classifiers say of bodies now, and would say of the plan's poses."""
         if not self._asked:
             return state
         facts: set[Fact] = {(name, *row) for name, rows in state.facts.items() for row in rows}
-        at = {row[0]: row[1] for row in state.all("at-pose")} if meant(self._domain, "at-pose") else {}
+        at = (
+            {row[0]: row[1] for row in state.all("at-pose")}
+            if meant(self._domain, "at-pose")
+            else {}
+        )
         for relation, classifier in self._asked.values():
             for fact, answer in self._said(relation, classifier, at, in_hand):
                 if answer is None:  # it cannot tell: the plan's word stands, on trust
@@ -69,13 +81,16 @@ class Relations:
     def _said(
         self, relation: Relation, classifier: Classifier, at: Mapping[str, str], in_hand: str | None
     ) -> Iterator[tuple[Fact, bool | None]]:
-        """Facts of a relation, and whether they hold; None where the classifier cannot tell."""
+        """Yield facts of a relation, and whether they hold; None if the classifier cannot tell."""
         world = self._world
         seen = {name: Pose.from_matrix(world.pose(name)) for name in world.scene.bodies}
         scene = moved(world.scene, seen, in_hand)
         names = scene_names(world.scene)
         poses = self._poses(at)
-        for bound in instances(relation, self._domain, self._plan.objects, self._static, poses, names):
+
+        for bound in instances(
+            relation, self._domain, self._plan.objects, self._static, poses, names
+        ):
             bodies = [bound[variable] for variable in relation.bodies]
             for chosen in product(*(poses[body] for body in bodies)):
                 where = dict(zip(bodies, chosen, strict=True))
@@ -87,22 +102,36 @@ class Relations:
                     answer = self._elsewhere[facts[0]]
                 else:
                     placed = {names[body]: self._value(pose) for body, pose in where.items()}
-                    there = moved(world.scene, seen | placed, in_hand if in_hand not in placed else None)
-                    answer = self._elsewhere[facts[0]] = self._ask(relation, classifier, there, words)
+                    there = moved(
+                        world.scene, seen | placed, in_hand if in_hand not in placed else None
+                    )
+                    answer = self._elsewhere[facts[0]] = self._ask(
+                        relation, classifier, there, words
+                    )
                 yield from ((fact, answer) for fact in facts)
 
     def _poses(self, at: Mapping[str, str]) -> dict[str, list[str]]:
-        """The poses that the plan has of each body."""
+        """List the poses that the plan has of each body."""
         found: dict[str, dict[str, None]] = {body: {pose: None} for body, pose in at.items()}
         for fact in (*self._static, *(("at-pose", *row) for row in at.items())):
             if fact[0] in ("pose", "at-pose") and len(fact) == 3:
                 found.setdefault(fact[1], {})[fact[2]] = None
+
         for relation, _ in self._asked.values():
             for atom in relation.facts:
-                places = [(atom.terms.index(body), atom.terms.index(pose)) for pose, body in relation.poses.items()]
+                places = [
+                    (atom.terms.index(body), atom.terms.index(pose))
+                    for pose, body in relation.poses.items()
+                ]
                 rows = [fact[1:] for fact in self._static if fact[0] == atom.predicate]
-                for body, pose in ((row[i], row[j]) for row in rows if len(row) == len(atom.terms) for i, j in places):
+                for body, pose in (
+                    (row[i], row[j])
+                    for row in rows
+                    if len(row) == len(atom.terms)
+                    for i, j in places
+                ):
                     found.setdefault(body, {})[pose] = None
+
         names = scene_names(self._world.scene)
         return {
             body: known
@@ -117,14 +146,20 @@ class Relations:
     def _value(self, pose: str) -> Pose:
         return Pose.from_matrix(self._plan.values[pose].data)
 
-    def _ask(self, relation: Relation, classifier: Classifier, scene: Scene, words: list[str]) -> bool | None:
+    def _ask(
+        self, relation: Relation, classifier: Classifier, scene: Scene, words: list[str]
+    ) -> bool | None:
         try:
             number = probability(classifier, scene, words)
         except Unanswered as error:
-            self.silent.setdefault(relation.name, f"asked of ({' '.join((relation.name, *words))}), {error}")
+            self.silent.setdefault(
+                relation.name, f"asked of ({' '.join((relation.name, *words))}), {error}"
+            )
             return None
         if math.isnan(number):
-            self.silent.setdefault(relation.name, f"it cannot tell of ({' '.join((relation.name, *words))})")
+            self.silent.setdefault(
+                relation.name, f"it cannot tell of ({' '.join((relation.name, *words))})"
+            )
             return None
         self.answers[relation.name] += 1
         return number >= LIKELY
@@ -134,5 +169,11 @@ class Relations:
         kind = self._stated.get(fact)
         if kind is not None and fact not in self._denied:
             self._denied.add(fact)
-            message = f"({' '.join(fact)}) does not hold: the classifier of '{relation.name}' denies it"
-            self._log.add(kind, message, *(fact[1 + relation.facts[0].terms.index(body)] for body in relation.bodies))
+            message = (
+                f"({' '.join(fact)}) does not hold: the classifier of '{relation.name}' denies it"
+            )
+            self._log.add(
+                kind,
+                message,
+                *(fact[1 + relation.facts[0].terms.index(body)] for body in relation.bodies),
+            )

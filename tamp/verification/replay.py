@@ -1,4 +1,4 @@
-"""The plan carried out step by step: facts by PDDL's meaning, bodies and robot by pybullet's, the two compared."""
+"""Replay a plan step by step: facts by PDDL's semantics, geometry by pybullet, the two compared."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ LOOKS = 200_000
 LOOKS_A_ROW = 200
 """and for each row of its motions: tamp-solve's plans need 5 to 30 a row."""
 LOOKS_BEYOND = 5_000
-"""States that are looked at in motions that leave the robot's limits: such a plan does not hold anyway."""
+"""States that are looked at in motions beyond the robot's limits: such a plan fails anyway."""
 
 
 class Replay:
-    """Carries out a plan once, from the bodies' poses in the world, and keeps a `log`, `findings` and a `course`."""
+    """Carries out a plan once, from the bodies' poses; keeps a `log`, `findings` and a `course`."""
 
     def __init__(
         self,
@@ -70,15 +70,16 @@ class Replay:
 
     @property
     def notes(self) -> list[str]:
-        """Oddities that are not the plan's fault."""
+        """Return oddities that are not the plan's fault."""
         return self._standing.notes
 
     def run(self, goal: Formula) -> None:
-        """From the start to the goal."""
+        """Replay the plan from the start to the goal."""
         state = State.of((*self._plan.initial, *self._plan.certified))
         state = self._relations.observed(state, self.course.in_hand)
         self._check_bodies_apart()
         self._standing.check_relations(state, None)
+
         for index, action in enumerate(self._plan.actions):
             self.log.action, self.log.time = (index, action.name), self.course.time
             state = self._apply(state, action)
@@ -88,12 +89,15 @@ class Replay:
             self._agreement.compare(state, self.course)
             self._standing.check_relations(state, self.course.in_hand)
             state = self._relations.observed(state, self.course.in_hand)
+
         self.log.action = self.log.time = None
         if abs(self._plan.duration - self.course.time) > CLOCK:
-            self.log.add("time", f"the plan lasts {self.course.time:.3f} s, not {self._plan.duration:.3f} s")
+            times = f"{self.course.time:.3f} s, not {self._plan.duration:.3f} s"
+            self.log.add("time", f"the plan lasts {times}")
         cost = sum(action.cost for action in self._plan.actions)
         if abs(self._plan.cost - cost) > 1e-6:
             self.log.add("state", f"the actions cost {cost:g}, not {self._plan.cost:g}")
+
         self._standing.check_unused(self.course.in_hand)
         self._standing.check_goal(goal, state, self.course.in_hand)
 
@@ -105,11 +109,12 @@ class Replay:
                 if -TOGETHER <= depth <= TOLERANCE:
                     self._sweeper.together[min(first, second), max(first, second)] = max(0.0, depth)
                 if depth > TOLERANCE:
-                    message = f"{first} and {second} penetrate by {1000 * depth:.1f} mm at the start"
+                    by = f"{1000 * depth:.1f} mm"
+                    message = f"{first} and {second} penetrate by {by} at the start"
                     self.log.add("collision", message, first, second, time=0.0, depth=depth)
 
     def _part(self) -> None:
-        """Bodies that touched each other at the start and were moved apart must not come together again."""
+        """Forget pairs that touched at the start and were moved apart: they may not meet again."""
         together = self._sweeper.together
         for pair in list(together):
             if self._world.body_distance(*pair, TOGETHER) > TOGETHER:
@@ -118,12 +123,17 @@ class Replay:
     def _apply(self, state: State, action: TimedAction) -> State:
         lifted = self._semantics.actions.get(action.name)
         if lifted is None or len(lifted.parameters) != len(action.arguments):
-            wrong = "is unknown to the domain" if lifted is None else f"takes {len(lifted.parameters)} arguments"
+            wrong = "is unknown to the domain"
+            if lifted is not None:
+                wrong = f"takes {len(lifted.parameters)} arguments"
             self.log.add("precondition", f"the action {action.name} {wrong}")
             return state
+
         for parameter, argument in zip(lifted.parameters, action.arguments, strict=True):
             if not self._semantics.fits(argument, parameter.types):
-                self.log.add("precondition", f"'{argument}' is not a {' or '.join(parameter.types)}")
+                types = " or ".join(parameter.types)
+                self.log.add("precondition", f"'{argument}' is not a {types}")
+
         for part in self._semantics.unmet(lifted, action.arguments, state):
             bodies = (argument for argument in action.arguments if argument in self._bodies)
             self.log.add("precondition", f"{show(part)} does not hold", *bodies)
@@ -136,35 +146,43 @@ class Replay:
         if action.start < course.time - CLOCK:
             self.log.add("time", f"it starts at {action.start:.3f} s, before {course.time:.3f} s")
         course.time = self.log.time = action.start
+
         kept = self._check_limits(action)
         natural = self._natural(action)
-        findings = Findings(nearest=self.findings.nearest, most=self._looks if kept else self._looks_beyond)
+        most = self._looks if kept else self._looks_beyond
+        findings = Findings(nearest=self.findings.nearest, most=most)
         for segment in action.segments:
             self._carry_out(segment, natural, findings)
         for contact in findings.worst.values():
-            message = f"{contact.first} and {contact.second} penetrate by {-1000 * contact.distance:.1f} mm"
-            pair = (contact.first, contact.second)
-            self.log.add("collision", message, *pair, time=contact.time, depth=-contact.distance)
-        self.findings.nearest, self.findings.states = findings.nearest, self.findings.states + findings.states
+            pair, depth = (contact.first, contact.second), -contact.distance
+            message = f"{contact.first} and {contact.second} penetrate by {1000 * depth:.1f} mm"
+            self.log.add("collision", message, *pair, time=contact.time, depth=depth)
+
+        self.findings.nearest = findings.nearest
+        self.findings.states += findings.states
         if kept:
             self._looks -= findings.states
         else:
             self._looks_beyond -= findings.states
         if kept and findings.full:
             self.log.add(
-                "unchecked", f"its motions are longer than the judge looks at: {LOOKS} states and {LOOKS_A_ROW} a row"
+                "unchecked",
+                f"its motions are longer than the judge looks at: {LOOKS} states and "
+                f"{LOOKS_A_ROW} a row",
             )
+
         lasts = course.time - action.start
         if abs(lasts - action.duration) > CLOCK:
             self.log.add("time", f"it lasts {lasts:.3f} s, not {action.duration:.3f} s")
 
     def _check_limits(self, action: TimedAction) -> bool:
-        """Whether an action keeps the limits that bound its motions."""
+        """Check that an action keeps the limits that bound its motions."""
         offset, kept = action.start, True
         for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
             segments = list(group)
             for excess in excesses(segments, self._robot, self._world.scene.room):
-                self.log.add(excess.kind, excess.message, time=offset + excess.time, depth=excess.amount)
+                at = offset + excess.time
+                self.log.add(excess.kind, excess.message, time=at, depth=excess.amount)
                 kept = kept and excess.kind not in BOUNDING
             offset += sum(float(segment.times[-1]) for segment in segments)
         return kept
@@ -183,15 +201,17 @@ class Replay:
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
         if course.held is not None:
-            self._world.place(course.held.body, self._sweeper.tool(course.row) @ course.held.T_tool_body)
+            T_world_tool = self._sweeper.tool(course.row)
+            self._world.place(course.held.body, T_world_tool @ course.held.T_tool_body)
         if segment.attach is not None:
             self._attach(segment.attach)
 
     def _rows(self, segment: Segment) -> Array:
-        """The whole robot's states, shape (n, 11), after a check that they go on from where the last ones ended."""
+        """Return the robot's states, shape (n, 11), checked to go on from where the last ended."""
         course, held = self.course, self.course.in_hand
         rows = np.repeat(course.row[None], len(segment.times), axis=0)
         rows[:, 10] = segment.opening
+
         jump = 0.0
         if segment.part == "base":
             rows[:, :3] = segment.positions
@@ -200,15 +220,19 @@ class Replay:
             rows[:, 3:10] = segment.positions
             jump = float(np.abs(rows[0, 3:10] - course.row[3:10]).max())
         if jump > JUMP:
-            self.log.add("continuity", f"the {segment.part} jumps by {jump:.3g} (m, rad)", depth=jump)
+            message = f"the {segment.part} jumps by {jump:.3g} (m, rad)"
+            self.log.add("continuity", message, depth=jump)
         jump = abs(float(rows[0, 10] - course.row[10]))
         if jump > JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
+
         says = segment.holding if segment.part != "gripper" else held and held.lower()
         if says != (held and held.lower()):
-            message = f"the plan says that the hand holds {says or 'nothing'}, not {held or 'nothing'}"
+            told = says or "nothing"
+            message = f"the plan says that the hand holds {told}, not {held or 'nothing'}"
             self.log.add("continuity", message)
-        if segment.part == "gripper" and held and segment.detach is None and np.ptp(rows[:, 10]) > JUMP:
+        keeps = segment.part == "gripper" and segment.detach is None
+        if keeps and held and np.ptp(rows[:, 10]) > JUMP:
             self.log.add("grasp", f"the fingers move while they hold {held}", held)
         return rows
 
@@ -219,12 +243,14 @@ class Replay:
             return
         if course.held is not None:
             self.log.add("grasp", f"the hand holds {course.held.body} already", hold.body)
+
         T_world_body = self._world.pose(body)
         T_tool_body = np.linalg.inv(self._sweeper.tool(course.row)) @ T_world_body
         moved, turned = apart(T_tool_body, hold.T_tool_body)
         if moved > CLOSE or turned > ALIKE:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
             self.log.add("grasp", f"{body} is {off} from where the hand closes", body, depth=moved)
+
         why = self._certified.why_not_held(body, T_tool_body, float(course.row[10]))
         self._world.place(body, T_world_body)
         if why:
@@ -243,17 +269,19 @@ class Replay:
         self._standing.check(None)
 
     def _natural(self, action: TimedAction) -> Natural:
-        """What an action is near by its nature: bodies that it grasps, and what they stand on before and after."""
+        """Find what an action is near by nature: bodies it grasps, what they stand on then."""
         grasped: set[str] = set()
         resting: set[str] = set()
         row, held = self.course.row.copy(), self.course.held
+
         for segment in action.segments:
             _follow(row, segment)
             if segment.attach is not None and segment.attach.body in self._bodies:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
                 resting |= self._standing.stand(body, None).on
-                resting |= {name for pair in self._sweeper.together if body in pair for name in pair}
+                for pair in self._sweeper.together:
+                    resting |= set(pair) if body in pair else set()
                 held = Held(body, segment.attach.T_tool_body)
             if segment.detach is not None and held is not None:
                 before = self._world.pose(held.body)

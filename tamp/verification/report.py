@@ -1,4 +1,4 @@
-"""What the judge found, for people and for programs."""
+"""The judge's report, for people and for programs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ class Report:
         trusted: How many facts of each predicate could only be taken on trust.
         notes: Oddities that are not the plan's fault.
         seconds: That the verification took.
-        on_trust: Relations on which the verdict rests, and of which nobody but the plan says where they hold.
+        on_trust: Relations on which the verdict rests, and of which nobody but the plan says where
+            they hold.
         other_files: Domain and streams by which was judged, where they are not the problem's.
         asked: How many answers each relation's classifier gave.
     """
@@ -45,16 +46,16 @@ class Report:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing is wrong."""
+        """Tell whether nothing is wrong."""
         return not self.violations
 
     @property
     def checked(self) -> bool:
-        """Whether the verdict rests on nothing that could not be checked."""
+        """Tell whether the verdict rests on nothing that could not be checked."""
         return not self.on_trust and not self.other_files
 
     def text(self) -> str:
-        """For people: a line a violation and a summary."""
+        """Report to people: a line a violation and a summary."""
         lines = [f"  {violation}" for violation in self.violations]
         lines += [f"  note: {one_line(note)}" for note in self.notes]
         moving = [f"{self.duration:.1f} s"] if self.duration else []
@@ -66,11 +67,13 @@ class Report:
         verdict = "holds" if self.holds else f"does not hold, {_counted(self.violations)}"
         trust = [f"on trust: {', '.join(self.on_trust)}"] if self.on_trust else []
         verdict = ", ".join([verdict, *trust, *self.other_files])
-        lines.append(f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s")
+        lines.append(
+            f"{printable(self.name)} {verdict}: {', '.join(facts)} in {self.seconds:.1f} s"
+        )
         return "\n".join(lines)
 
     def json(self) -> dict[str, Any]:
-        """For programs."""
+        """Report to programs."""
         return {
             "plan": self.name,
             "holds": self.holds,
@@ -92,4 +95,8 @@ class Report:
 def _counted(violations: tuple[Violation, ...]) -> str:
     counts = Counter(violation.kind for violation in violations)
     plural = "" if len(violations) == 1 else "s"
-    return f"{len(violations)} violation{plural} (" + ", ".join(f"{n} {kind}" for kind, n in counts.items()) + ")"
+    return (
+        f"{len(violations)} violation{plural} ("
+        + ", ".join(f"{n} {kind}" for kind, n in counts.items())
+        + ")"
+    )

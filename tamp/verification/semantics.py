@@ -1,11 +1,23 @@
-"""What PDDL means, in the plainest way: lifted formulas are asked of a set of facts. Shares nothing with the search."""
+"""PDDL's semantics: lifted formulas are asked of a set of facts. Shares nothing with the search."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from tamp.symbolic.pddl.structs import Action, And, Atom, Derived, Domain, Exists, Fact, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import (
+    Action,
+    And,
+    Atom,
+    Derived,
+    Domain,
+    Exists,
+    Fact,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+)
 from tamp.verification.formulas import Binding, flat, free, ground, predicates, substitute, unify
 
 Types = Mapping[str, tuple[str, ...]]
@@ -21,14 +33,14 @@ class State:
 
     @classmethod
     def of(cls, facts: Iterable[Fact]) -> State:
-        """A state of these facts."""
+        """Make a state of these facts."""
         by_predicate: dict[str, set[tuple[str, ...]]] = {}
         for predicate, *terms in facts:
             by_predicate.setdefault(predicate, set()).add(tuple(terms))
         return cls(by_predicate)
 
     def all(self, predicate: str) -> list[tuple[str, ...]]:
-        """The stored facts of a predicate, sorted."""
+        """List the stored facts of a predicate, sorted."""
         return sorted(self.facts.get(predicate, ()))
 
     def __contains__(self, fact: Fact) -> bool:
@@ -53,27 +65,31 @@ class Semantics:
         self._recursive = {name for name in self._rules if name in self._reached(name)}
 
     def without(self, predicates: Collection[str]) -> Semantics:
-        """The same domain in which facts alone, and no rules, decide about some predicates."""
+        """Return the same domain, in which facts alone, no rules, decide about some predicates."""
         rules = tuple(rule for rule in self.domain.derived if rule.head.predicate not in predicates)
         return Semantics(replace(self.domain, derived=rules), self.objects)
 
     def fits(self, name: str, types: Sequence[str]) -> bool:
-        """Whether an object has one of the types."""
+        """Tell whether an object has one of the types."""
         own = self.objects.get(name, ())
-        return "object" in types or any(self.domain.is_a(one, other) for one in own for other in types)
+        return "object" in types or any(
+            self.domain.is_a(one, other) for one in own for other in types
+        )
 
-    def holds(self, formula: Formula, state: State, binding: Mapping[str, str] | None = None) -> bool:
-        """Whether a formula is true; its free variables are bound."""
+    def holds(
+        self, formula: Formula, state: State, binding: Mapping[str, str] | None = None
+    ) -> bool:
+        """Tell whether a formula is true; its free variables are bound."""
         return any(True for _ in self._solutions([formula], state, dict(binding or {}), {}))
 
     def unmet(self, action: Action, arguments: Sequence[str], state: State) -> list[Formula]:
-        """The parts of an action's precondition that do not hold, with the arguments in the place of variables."""
+        """List the parts of an action's precondition that do not hold, arguments substituted."""
         binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
         parts = flat(action.precondition)
         return [substitute(part, binding) for part in parts if not self.holds(part, state, binding)]
 
     def apply(self, action: Action, arguments: Sequence[str], state: State) -> State:
-        """The state after an action: conditions are asked of the state before; adding wins over deleting."""
+        """Apply an action: conditions are asked of the state before; adding wins over deleting."""
         binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
         added: set[Fact] = set()
         deleted: set[Fact] = set()
@@ -88,8 +104,10 @@ class Semantics:
 
     # Solutions of a conjunction, by the atom that binds most
 
-    def _solutions(self, parts: list[Formula], state: State, binding: Binding, types: Types) -> Iterator[Binding]:
-        """Bindings that extend `binding` and make all parts true; `types` are those of variables not yet bound."""
+    def _solutions(
+        self, parts: list[Formula], state: State, binding: Binding, types: Types
+    ) -> Iterator[Binding]:
+        """Yield extensions of `binding` that make all parts true; `types` are of open variables."""
         open_parts: list[Formula] = []
         waiting = parts[::-1]
         while waiting:  # and no call for each: a goal may have thousands of parts
@@ -100,14 +118,19 @@ class Semantics:
                 open_parts.append(part)
             elif not self._true(part, state, binding):
                 return
+
         if not open_parts:
             yield binding
             return
+
         at = min(range(len(open_parts)), key=lambda i: self._burden(open_parts[i]))
         part, others = open_parts[at], [*open_parts[:at], *open_parts[at + 1 :]]
         if isinstance(part, Atom) and self._burden(part) < 3:
             for found in self._matches(part, state, binding):
-                if all(self.fits(found[name], types.get(name, ("object",))) for name in found.keys() - binding.keys()):
+                if all(
+                    self.fits(found[name], types.get(name, ("object",)))
+                    for name in found.keys() - binding.keys()
+                ):
                     yield from self._solutions(others, state, found, types)
         else:
             name = min(free(part) - binding.keys())
@@ -115,7 +138,7 @@ class Semantics:
                 yield from self._solutions(open_parts, state, {**binding, name: value}, types)
 
     def _burden(self, part: Formula) -> int:
-        """Of a part with free variables: 1 is a lookup, 2 asks rules, 3 needs a variable to be enumerated."""
+        """Rank a part with free variables: 1 is a lookup, 2 asks rules, 3 enumerates a variable."""
         if isinstance(part, Atom) and part.predicate != "=" and not self._is_type(part.predicate):
             return 2 if part.predicate in self._rules else 1
         return 3
@@ -133,7 +156,9 @@ class Semantics:
             return self._exists(part.parameters, part.body, state, binding)
         return not self._exists(part.parameters, Not(part.body), state, binding)
 
-    def _exists(self, parameters: Sequence[Parameter], body: Formula, state: State, binding: Binding) -> bool:
+    def _exists(
+        self, parameters: Sequence[Parameter], body: Formula, state: State, binding: Binding
+    ) -> bool:
         types = {parameter.name: parameter.types for parameter in parameters}
         outer = {name: value for name, value in binding.items() if name not in types}
         for found in self._solutions([body], state, outer, types):
@@ -160,22 +185,28 @@ class Semantics:
         return predicate not in self.domain.predicates and predicate in self.domain.types
 
     def _matches(self, atom: Atom, state: State, binding: Binding) -> Iterator[Binding]:
-        """Bindings under which an atom with free variables is true."""
+        """Yield bindings under which an atom with free variables is true."""
         if atom.predicate not in self._rules:
             rows: Collection[tuple[str, ...]] = state.all(atom.predicate)
         elif atom.predicate in self._recursive:
             rows = sorted(self._closure(atom.predicate, state))
         else:
             pattern = [binding.get(term, term) for term in atom.terms]
-            found = {row for rule in self._rules[atom.predicate] for row in self._answers(rule, pattern, state)}
+            found = {
+                row
+                for rule in self._rules[atom.predicate]
+                for row in self._answers(rule, pattern, state)
+            }
             rows = sorted(found | set(state.all(atom.predicate)))
         for row in rows:
             extended = unify(atom.terms, row, binding)
             if extended is not None:
                 yield extended
 
-    def _answers(self, rule: Derived, terms: Sequence[str], state: State) -> Iterator[tuple[str, ...]]:
-        """The rule's heads that are true and fit `terms`, in which variables are open."""
+    def _answers(
+        self, rule: Derived, terms: Sequence[str], state: State
+    ) -> Iterator[tuple[str, ...]]:
+        """Yield the rule's heads that are true and fit `terms`, in which variables are open."""
         types = {parameter.name: parameter.types for parameter in rule.parameters}
         binding: Binding = {}
         for inner, outer in zip(rule.head.terms, terms, strict=True):
@@ -184,17 +215,23 @@ class Semantics:
             if not inner.startswith("?"):
                 if inner != outer:
                     return
-            elif binding.setdefault(inner, outer) != outer or not self.fits(outer, types.get(inner, ("object",))):
+            elif binding.setdefault(inner, outer) != outer or not self.fits(
+                outer, types.get(inner, ("object",))
+            ):
                 return
         for found in self._solutions([rule.body], state, binding, types):
-            for full in self._every({name: kind for name, kind in types.items() if name in rule.head.terms}, found):
+            for full in self._every(
+                {name: kind for name, kind in types.items() if name in rule.head.terms}, found
+            ):
                 yield tuple(full.get(term, term) for term in rule.head.terms)
 
     def _closure(self, predicate: str, state: State) -> set[tuple[str, ...]]:
-        """All true facts of a recursive predicate: those that rest on each other grow together until nothing is new."""
+        """Compute a recursive predicate's fixpoint: facts that rest on each other grow together."""
         if predicate not in state.closed:
             below = self._reached(predicate)
-            group = [name for name in self._rules if name in below and predicate in self._reached(name)]
+            group = [
+                name for name in self._rules if name in below and predicate in self._reached(name)
+            ]
             for name in group:
                 state.closed[name] = set(state.all(name))
             grows = True
@@ -221,7 +258,7 @@ class Semantics:
         return [name for name in self.objects if self.fits(name, types)]
 
     def _reached(self, predicate: str) -> set[str]:
-        """Derived predicates that a derived predicate's rules lead to."""
+        """Return the derived predicates that a derived predicate's rules lead to."""
         reached: set[str] = set()
         front = [predicate]
         while front:

@@ -1,4 +1,4 @@
-"""Whether the facts after an action say what the geometry says."""
+"""Check that the facts after an action agree with the geometry."""
 
 from __future__ import annotations
 
@@ -19,25 +19,33 @@ from tamp.verification.violation_log import Log
 
 
 class Agreement:
-    """Compares states of facts with a course, as far as the domain has the fluents whose meaning we know."""
+    """Compares states of facts with a course, as far as the domain has the fluents that we know."""
 
     def __init__(self, plan: PlanFile, world: World, domain: Domain, log: Log) -> None:
         self._plan, self._world, self._log = plan, world, log
         self._bodies = {name.lower(): name for name in world.scene.bodies}
-        self._meant = {name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)}
+        self._meant = {
+            name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)
+        }
 
     def compare(self, state: State, course: Course) -> None:
         """Log what differs."""
         if "at-pose" in self._meant:
             self._poses(state, course)
+
         if "holding" in self._meant:
             holds = state.all("holding")
             if len(holds) != int(course.held is not None):
                 self._log.add("state", f"by the facts the hand holds {len(holds)} bodies")
             for body, grasp in holds:
                 self._grasp(body, grasp, course)
+
         if "hand-empty" in self._meant and (("hand-empty",) in state) != (course.held is None):
-            self._log.add("state", f"the hand is {'empty' if course.held is None else 'not empty'}, the facts differ")
+            self._log.add(
+                "state",
+                f"the hand is {'empty' if course.held is None else 'not empty'}, the facts differ",
+            )
+
         if "at-base" in self._meant:
             places = state.all("at-base")
             if len(places) != 1:
@@ -48,15 +56,17 @@ class Agreement:
                     self._log.add("state", f"the base is not at {base}")
 
     def follows(self, action: TimedAction) -> None:
-        """The action's segments begin and end where those of the motions among its arguments do."""
+        """Check that the action's segments begin and end where those of its motion arguments do."""
         values = [self._plan.values.get(argument) for argument in action.arguments]
         motions = [value.data for value in values if value is not None and value.type == "motion"]
         if not motions or None in motions:
             return
+
         stretches = [stretch for motion in motions for stretch in motion]
         if [part for part, _ in stretches] != [segment.part for segment in action.segments]:
             self._log.add("state", "its segments are not those of its motion")
             return
+
         for at, ((part, rows), segment) in enumerate(zip(stretches, action.segments, strict=True)):
             moved = segment.opening[:, None] if part == "gripper" else segment.positions
             for end in (0, -1):
@@ -65,7 +75,11 @@ class Agreement:
                 else:
                     off = float(np.abs(rows[end] - moved[end]).max())
                 if off > CLOSE:
-                    self._log.add("state", f"its segment {at + 1} is {off:.3g} (m, rad) off its motion", depth=off)
+                    self._log.add(
+                        "state",
+                        f"its segment {at + 1} is {off:.3g} (m, rad) off its motion",
+                        depth=off,
+                    )
 
     def _poses(self, state: State, course: Course) -> None:
         facts = state.all("at-pose")
@@ -76,7 +90,9 @@ class Agreement:
         for name in self._world.scene.movable:
             count, free = placed[name.lower()], course.in_hand != name
             if count != int(free):
-                where = "nowhere" if count == 0 else f"in {count} places" if free else "not in the hand"
+                where = (
+                    "nowhere" if count == 0 else f"in {count} places" if free else "not in the hand"
+                )
                 self._log.add("state", f"by the facts {name} is {where}", name)
 
     def _pose(self, body: str, pose: str, course: Course) -> None:
@@ -99,8 +115,11 @@ class Agreement:
         moved, turned = apart(held.T_tool_body, hold.T_tool_body)
         wider = abs(float(course.row[10]) - hold.opening)
         if moved > CLOSE or turned > ALIKE or wider > CLOSE:
-            off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg, fingers {1000 * wider:.1f} mm"
-            self._log.add("state", f"{body} is held otherwise than {grasp} says: {off}", body, depth=moved)
+            off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg, "
+            off += f"fingers {1000 * wider:.1f} mm"
+            self._log.add(
+                "state", f"{body} is held otherwise than {grasp} says: {off}", body, depth=moved
+            )
 
     def _value(self, name: str, type_: str) -> Array | Hold | None:
         value = self._plan.values.get(name)

@@ -1,4 +1,4 @@
-"""What bodies stand on: their undersides and what is under them, felt by the physics engine's rays."""
+"""Support of bodies: their undersides and what is below, felt by the physics engine's rays."""
 
 from __future__ import annotations
 
@@ -26,10 +26,11 @@ ELSEWHERE = 300.0
 
 @dataclass(frozen=True, eq=False)
 class Stand:
-    """How a body stands.
+    """The stand of a body on what carries it.
 
     Attributes:
-        on: Names of the bodies that carry it, "floor" included; empty when nothing is within GAP below it.
+        on: Names of the bodies that carry it, "floor" included; empty when nothing is within GAP
+            below it.
         gap: Metres of air above the nearest, infinite when there is nothing.
         lean: Metres by which the centre of mass is out of what carries it; negative inside.
     """
@@ -40,12 +41,12 @@ class Stand:
 
     @property
     def stable(self) -> bool:
-        """Whether it stays where it is."""
+        """Tell whether it stays where it is."""
         return self.why is None
 
     @property
     def why(self) -> str | None:
-        """Why it does not; None when it does."""
+        """Say why it does not; None when it does."""
         if not self.on:
             return f"nothing is within {1000 * GAP:.0f} mm below it"
         if self.lean > LEAN:
@@ -54,27 +55,32 @@ class Stand:
 
 
 class Supports:
-    """Asks a world of bodies how each stands. Bodies in `absent` (the one in the hand) carry nobody."""
+    """Asks a world of bodies how each stands. Bodies `absent` (one in the hand) carry nobody."""
 
     def __init__(self, world: World) -> None:
         self._world = world
         bodies = world.scene.bodies
         self._points = {name: body_points(body.parts) for name, body in bodies.items()}
         self._centres = {name: mass_centre(body) for name, body in bodies.items()}
-        self._sizes = {name: float(np.linalg.norm(points, axis=1).max()) for name, points in self._points.items()}
+        self._sizes = {
+            name: float(np.linalg.norm(points, axis=1).max())
+            for name, points in self._points.items()
+        }
         self._stands: dict[tuple[tuple[str, bytes], ...], Stand] = {}
         self._undersides: dict[tuple[str, bytes], Array] = {}
 
     def stand(self, body: str, absent: str | None = None) -> Stand:
-        """How a body stands where it is; the robot does not count."""
+        """Find how a body stands where it is; the robot does not count."""
         key = self._surroundings(body, absent)
         if key not in self._stands:
             self._stands[key] = self._felt(body, absent)
         return self._stands[key]
 
     def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
-        """What a body's stand depends on: the poses of itself and of the bodies around."""
-        poses = {name: self._world.pose(name) for name in self._points if name != absent or name == body}
+        """Make a key of what a body's stand depends on: its pose and those of bodies around."""
+        poses = {
+            name: self._world.pose(name) for name in self._points if name != absent or name == body
+        }
         centre = poses[body][:3, 3]
         near = [
             name for name, T in poses.items()
@@ -90,6 +96,7 @@ class Supports:
         T_world_absent = self._world.pose(absent) if absent else None
         if absent:
             self._world.place(absent, _shifted(np.eye(4), 2 * ELSEWHERE))
+
         underside = self._underside(body, T_world_body[:3, :3]) + T_world_body[:3, 3]
         try:
             up, down = np.array([0.0, 0.0, 2 * SINK + EVEN]), np.array([0.0, 0.0, GAP + EVEN])
@@ -98,20 +105,28 @@ class Supports:
             self._world.place(body, T_world_body)
             if absent and T_world_absent is not None:
                 self._world.place(absent, T_world_absent)
+
         length = 2 * SINK + 2 * EVEN + GAP
-        gaps = np.array([fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits])
-        # What is met higher up is beside the body and not below it: a ray down its flank begins in a neighbour.
+        gaps = np.array(
+            [fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits]
+        )
+        # What is met higher up is beside the body and not below it: a ray down its flank begins in
+        # a neighbour.
         gaps[gaps < -SINK - EVEN] = np.inf
+
         least = float(gaps.min())
         if least > GAP:
             return Stand(frozenset(), np.inf, np.inf)
+
         carrying = gaps <= least + EVEN
-        on = frozenset(name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name)
+        on = frozenset(
+            name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name
+        )
         centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
         return Stand(on, least, outside(centre, underside[carrying][:, :2]))
 
     def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
-        """Why a body that stands so does not stand on a surface; None when it does."""
+        """Say why a body that stands so does not stand on a surface; None when it does."""
         T_surface_world = np.linalg.inv(self._world.pose(surface.body) @ surface.pose.matrix)
         T_surface_body = T_surface_world @ self._world.pose(body)
         points = self._points[body] @ T_surface_body[:3, :3].T + T_surface_body[:3, 3]
@@ -127,7 +142,7 @@ class Supports:
         return stand.why
 
     def inside(self, body: str, cavity: Cavity, stand: Stand) -> str | None:
-        """Why a body that stands so is not inside a cavity; None when it is."""
+        """Say why a body that stands so is not inside a cavity; None when it is."""
         T_cavity_world = np.linalg.inv(self._world.pose(cavity.body) @ cavity.pose.matrix)
         T_cavity_body = T_cavity_world @ self._world.pose(body)
         points = self._points[body] @ T_cavity_body[:3, :3].T + T_cavity_body[:3, 3]
@@ -139,7 +154,7 @@ class Supports:
         return stand.why
 
     def _underside(self, body: str, rotation: Array) -> Array:
-        """Points of the body's surface as seen from below, relative to its frame's origin, in the world's directions.
+        """Sample the surface seen from below, relative to the frame's origin, in world directions.
 
         Leaves the body elsewhere: the caller puts it back.
         """
@@ -148,6 +163,7 @@ class Supports:
         away[:3, :3] = rotation
         away = _shifted(away, ELSEWHERE)
         world.place(body, away)
+
         key = (body, rotation.round(9).tobytes())
         if key not in self._undersides:
             points = self._points[body] @ rotation.T
@@ -168,9 +184,10 @@ class Supports:
 
 
 def outside(point: Array, points: Array) -> float:
-    """Metres by which a point (2,) is outside of the convex hull of points (n, 2); not positive inside of it.
+    """Measure by how far a point (2,) is outside the convex hull of points (n, 2), m; inside <= 0.
 
-    The largest distance by which a line through the hull's edge separates them, over the directions of all degrees.
+    The largest distance by which a line through the hull's edge separates them, over the directions
+    of all degrees.
     """
     turn = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
     directions = np.stack([np.cos(turn), np.sin(turn)])

@@ -24,7 +24,9 @@ TOLERANCE = 1e-6
 """By which a stated cost may differ from the domain's."""
 
 
-def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, domain: Path | None = None) -> Report:
+def verify_symbolic(
+    plan: dict[str, Any] | Path, problem: Path | None = None, domain: Path | None = None
+) -> Report:
     """Run a plan through the domain's actions and compare what it says with what they do.
 
     Args:
@@ -33,7 +35,8 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
         domain: The domain's file, instead of the one that the plan names.
 
     Raises:
-        InputError: The plan file is malformed, or a file that it was made from is missing or malformed.
+        InputError: The plan file is malformed, or a file that it was made from is missing or
+            malformed.
     """
     began = time.monotonic()
     file = None if isinstance(plan, dict) else plan
@@ -41,6 +44,7 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
     if root["version"].value != VERSION:
         version = clipped(str(root["version"].value))
         raise root["version"].wrong(f"version {version} is not known, only {VERSION}")
+
     violations: list[Violation] = []
     files: dict[str, Path] = {}
     hashes: dict[Path, str | None] = {}
@@ -49,12 +53,18 @@ def verify_symbolic(plan: dict[str, Any] | Path, problem: Path | None = None, do
         files[role] = _file(Path(source["path"].text()), given, role, file)
         hashes[files[role]] = source["sha256"].text() if given is None else None
         if sha256(files[role]) != source["sha256"].text():
-            violations.append(Violation("hash", f"the {role} {files[role]} is not the one that the plan was made from"))
+            violations.append(
+                Violation(
+                    "hash", f"the {role} {files[role]} is not the one that the plan was made from"
+                )
+            )
+
     with unquoted(file, hashes):
         parsed = parse_domain(read_pddl(files["domain"]), files["domain"])
         task = parse_task(read_pddl(files["problem"]), parsed, files["problem"])
     actions = root["actions"].items()
     violations += _run(task, actions, root["cost"].number())
+
     return Report(
         name=file.name if file else "the plan",
         violations=tuple(violations),
@@ -72,26 +82,38 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
     semantics = Semantics(task.domain, {**task.domain.constants, **task.objects})
     state, total = State.of(task.initial), 0.0
     violations: list[Violation] = []
+
     for index, field in enumerate(actions):
         name, arguments = field["name"], [item.text() for item in field["arguments"].items()]
         action = semantics.actions.get(name.text())
         if action is None:
-            raise name.wrong(f"unknown action '{name.text()}'", found=name.text(), choices=tuple(semantics.actions))
+            raise name.wrong(
+                f"unknown action '{name.text()}'",
+                found=name.text(),
+                choices=tuple(semantics.actions),
+            )
         _check_arguments(field["arguments"], action, arguments, semantics)
+
         for parameter, argument in zip(action.parameters, arguments, strict=True):
             if not semantics.fits(argument, parameter.types):
                 what = f"{argument} is no {' or '.join(parameter.types)}"
                 violations.append(Violation("precondition", what, index, action.name))
-        unmet = [f"{show(formula)} does not hold" for formula in semantics.unmet(action, arguments, state)]
+        unmet = [
+            f"{show(formula)} does not hold"
+            for formula in semantics.unmet(action, arguments, state)
+        ]
         violations += [Violation("precondition", what, index, action.name) for what in unmet]
+
         cost = _cost(task, action, arguments)
         if cost is None:
             violations.append(Violation("cost", "its cost is not known", index, action.name))
         elif abs(cost - field["cost"].number()) > TOLERANCE:
             what = f"it costs {cost:g}, not {field['cost'].number():g}"
             violations.append(Violation("cost", what, index, action.name))
+
         total += cost or 0.0
         state = semantics.apply(action, arguments, state)
+
     missing = [part for part in flat(task.goal) if not semantics.holds(part, state)]
     violations += [Violation("goal", f"{show(part)} does not hold") for part in missing]
     if abs(total - stated) > TOLERANCE:
@@ -99,12 +121,20 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
     return violations
 
 
-def _check_arguments(field: Field, action: Action, arguments: list[str], semantics: Semantics) -> None:
+def _check_arguments(
+    field: Field, action: Action, arguments: list[str], semantics: Semantics
+) -> None:
     if len(arguments) != len(action.parameters):
-        raise field.wrong(f"'{action.name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
+        raise field.wrong(
+            f"'{action.name}' takes {len(action.parameters)} arguments, not {len(arguments)}"
+        )
     for argument in arguments:
         if argument not in semantics.objects:
-            raise field.wrong(f"unknown object '{argument}'", found=argument, choices=tuple(sorted(semantics.objects)))
+            raise field.wrong(
+                f"unknown object '{argument}'",
+                found=argument,
+                choices=tuple(sorted(semantics.objects)),
+            )
 
 
 def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
@@ -116,11 +146,13 @@ def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
 
 
 def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path:
-    """The problem's or domain's file: what the user says, else where the plan says, else of that name beside it."""
+    """Find the problem's or domain's file: the user's, else where the plan says, else beside it."""
     beside = [plan.parent / named.name] if plan else []
     for file in (named, *beside) if given is None else (given,):
         if is_file(file):
             return file
     if given is not None:
         raise InputError(f"no such file: {given}")
-    raise InputError(f"the plan's {role} {named} is missing", file=plan, remedy=f"Give --{role} FILE")
+    raise InputError(
+        f"the plan's {role} {named} is missing", file=plan, remedy=f"Give --{role} FILE"
+    )

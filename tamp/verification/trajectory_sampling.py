@@ -1,4 +1,4 @@
-"""A motion sampled so finely that nothing can hide between two samples."""
+"""Sample a motion so finely that nothing can hide between two samples."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ STEP = 0.005
 TURN = math.radians(0.5)
 """Radians that any joint or the base turns between two samples, at most."""
 COARSE = 0.2
-"""Radians that all joints together turn between first samples, so that chords tell the lengths of arcs."""
+"""Radians that all joints together turn between first samples, so that chords tell arcs."""
 SPARE = 1.1
 """How much finer than the chords ask for."""
 PASSES = 4
 REACH = 2.0
-"""Metres from any joint to any point of the robot and what it holds, roughly: for the size of a piece only."""
+"""Metres from any joint to any point of the robot and its load, roughly: for piece sizes only."""
 PIECE = 4096
 """Samples of a piece of a motion that are made at once, at most, by a rough count."""
 STRETCH = 64
@@ -31,7 +31,7 @@ STRETCH = 64
 
 
 class Sampler:
-    """Samples motions of a world's robot. A state is a row [x, y, yaw, q1..q7, opening], metres and radians."""
+    """Samples motions of a world's robot. A state is [x, y, yaw, q1..q7, opening], m and rad."""
 
     def __init__(self, world: World, robot: Robot) -> None:
         self._world, self._robot = world, robot
@@ -39,26 +39,36 @@ class Sampler:
         self._T_hand_tool = robot.T_hand_tool.matrix
 
     def tool(self, row: Array) -> Array:
-        """T_world_tool in a state, by pybullet's kinematics, shape (4, 4)."""
+        """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
         self._world.set_robot(row[:3], row[3:10], row[10])
         return _matrices(self._world.link_frames()[-3:-2])[0] @ self._T_hand_tool
 
     def held_frames(self, frames: Array, held: Held) -> Array:
-        """T_world_body of the held body for frames of the links, shape (n, 4, 4)."""
+        """Compute T_world_body of the held body for frames of the links, shape (n, 4, 4)."""
         return frames[:, -3] @ (self._T_hand_tool @ held.T_tool_body)
 
     def clipped(self, rows: Array) -> Array:
-        """Rows no farther out of the limits than matters; that they are out of them is reported elsewhere.
+        """Clip rows to no farther out of the limits than matters; being out is reported elsewhere.
 
         The yaw has no limits: it stays as it is.
         """
         room, robot = self._world.scene.room, limits_of(self._robot)
-        low = np.array([room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0])
-        high = np.array([room.x[1] + 1, room.y[1] + 1, np.inf, *(limit + 1 for limit in robot.upper), robot.opening])
+        low = np.array(
+            [room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0]
+        )
+        high = np.array(
+            [
+                room.x[1] + 1,
+                room.y[1] + 1,
+                np.inf,
+                *(limit + 1 for limit in robot.upper),
+                robot.opening,
+            ]
+        )
         return np.clip(rows, low, high)
 
     def pieces(self, rows: Array, times: Array) -> Iterator[tuple[Array, Array]]:
-        """A motion's rows and times in pieces that fit into memory, however far apart its rows are."""
+        """Yield a motion's rows and times in pieces that fit memory, however far its rows are."""
         rows = _unwound(self.clipped(rows))
         if len(rows) == 1:
             yield rows, times
@@ -72,20 +82,24 @@ class Sampler:
                 first, cost = edge, 0.0
             cost += needs
             if needs > PIECE:
-                yield from _cut(rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE))
+                yield from _cut(
+                    rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE)
+                )
                 first, cost = edge + 1, 0.0
         if first < len(rows) - 1:
             yield rows[first:], times[first:]
 
     def sampled(self, rows: Array, times: Array, held: Held | None) -> tuple[Array, Array, Array]:
-        """Rows and times with samples between, and the links' frames at each, shape (n, links, 4, 4)."""
+        """Interpolate rows and times; return them and the links' frames, shape (n, links, 4, 4)."""
         if len(rows) > 1:
             turned = np.abs(np.diff(rows[:, 2:10], axis=0)).sum(axis=1)
             rows, times = _divided(rows, times, np.ceil(turned / COARSE))
         frames = self._frames(rows)
         for _ in range(PASSES):
             change = np.abs(np.diff(rows, axis=0))
-            moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(axis=1, initial=0.0)
+            moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(
+                axis=1, initial=0.0
+            )
             parts = np.maximum(moved / STEP, change[:, 2:10].max(axis=1, initial=0.0) / TURN)
             if (parts <= 1 + 1e-6).all():
                 break
@@ -94,7 +108,7 @@ class Sampler:
         return rows, times, frames
 
     def _frames(self, rows: Array) -> Array:
-        """The links' frames, shape (n, links, 4, 4). While only the base moves, the others move with it."""
+        """Compute the links' frames, shape (n, links, 4, 4); rigid while only the base moves."""
         first = np.ones(len(rows), dtype=bool)
         first[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
         asked = []
@@ -109,51 +123,57 @@ class Sampler:
         return _base_frames(rows[:, :3])[:, None] @ T_base_links[np.cumsum(first) - 1]
 
     def _corners(self, frames: Array, held: Held | None) -> Array:
-        """Corners of the boxes around the links and the held body, shape (n, corners, 3)."""
+        """Compute corners of boxes around the links and the held body, shape (n, corners, 3)."""
         signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
         at = [(frames[:, i], solid) for i, solid in enumerate(self._solids)]
         if held is not None:
             T_world_held = self.held_frames(frames, held)
             at += [(T_world_held, solid) for solid in self._world.solids[held.body]]
         corners = [
-            (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3] for T, solid in at
+            (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1)
+            + T[:, None, :3, 3]
+            for T, solid in at
         ]
         return np.concatenate(corners, axis=1)
 
 
 def _divided(rows: Array, times: Array, parts: Array) -> tuple[Array, Array]:
-    """The polyline with its i-th edge in parts[i] equal pieces (at least one)."""
+    """Divide a polyline: its i-th edge in parts[i] equal pieces (at least one)."""
     parts = np.maximum(parts, 1).astype(int)
-    positions = np.concatenate([np.linspace(i, i + 1, n, endpoint=False) for i, n in enumerate(parts)] + [[len(parts)]])
+    positions = np.concatenate(
+        [np.linspace(i, i + 1, n, endpoint=False) for i, n in enumerate(parts)] + [[len(parts)]]
+    )
     index = np.arange(len(rows))
     columns = [np.interp(positions, index, column) for column in (times, *rows.T)]
     return np.column_stack(columns[1:]), columns[0]
 
 
 def _unwound(rows: Array) -> Array:
-    """The same motion with yaws near zero, and with no more turns than make a difference.
+    """Unwind yaws: the same motion near zero, with no more turns than make a difference.
 
-    A base that turns on the spot is everywhere after one turn; one that moves on by less than STEP in a turn is, after
-    as many turns as it goes STEPs, within STEP of wherever it was.
+    A base that turns on the spot is everywhere after one turn; one that moves on by less than STEP
+    in a turn is, after as many turns as it goes STEPs, within STEP of wherever it was.
     """
     turning = np.diff(rows[:, 2])
     moved = np.linalg.norm(np.diff(rows[:, :2], axis=0), axis=1)
     kept = math.tau * np.maximum(1.0, np.ceil(moved / STEP))
-    turning = np.where(np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning)
+    turning = np.where(
+        np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning
+    )
     rows = rows.copy()
     rows[:, 2] = rows[0, 2] % math.tau + np.concatenate([[0.0], np.cumsum(turning)])
     return rows
 
 
 def _cut(edge: Array, times: Array, count: int) -> Iterator[tuple[Array, Array]]:
-    """An edge of two rows in equal pieces."""
+    """Cut an edge of two rows in equal pieces."""
     for piece in range(count):
         share = np.array([[piece / count], [(piece + 1) / count]])
         yield edge[0] + share * (edge[1] - edge[0]), times[0] + share[:, 0] * (times[1] - times[0])
 
 
 def _base_frames(rows: Array) -> Array:
-    """T_world_base of rows x, y, yaw, shape (n, 4, 4)."""
+    """Compute T_world_base of rows x, y, yaw, shape (n, 4, 4)."""
     result = np.tile(np.eye(4), (len(rows), 1, 1))
     cosine, sine = np.cos(rows[:, 2]), np.sin(rows[:, 2])
     result[:, 0, 0] = result[:, 1, 1] = cosine
@@ -163,7 +183,7 @@ def _base_frames(rows: Array) -> Array:
 
 
 def _matrices(frames: Array) -> Array:
-    """Homogeneous matrices (n, 4, 4) of positions and quaternions x, y, z, w, shape (n, 7)."""
+    """Compute homogeneous matrices (n, 4, 4) of positions and quaternions xyzw, shape (n, 7)."""
     x, y, z, w = frames[:, 3:].T
     result = np.zeros((len(frames), 4, 4))
     rows = (

@@ -1,4 +1,4 @@
-"""What a verdict rests on that the judge could not check: relations on trust, files that are not the problem's."""
+"""Trust: what a verdict rests on unchecked, relations on trust and files not the problem's."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STREAMS = ".streams.pddl"
 
 
 def streams_file(plan: PlanFile, override: Path | None, domain: Path | None = None) -> Path | None:
-    """The streams that the user names, else those that the plan names or that lie of that name beside it.
+    """Find the streams' file: the user's, else the plan's, also of that name beside it.
 
     A plan that names none has those beside the domain.
 
@@ -41,7 +41,7 @@ def streams_file(plan: PlanFile, override: Path | None, domain: Path | None = No
 
 
 def read_streams(plan: PlanFile, file: Path | None, domain: Domain) -> StreamFile | None:
-    """The streams of a plan; None where there are none, or others by now that do not fit its domain.
+    """Read a plan's streams; None where there are none, or others by now that misfit its domain.
 
     Raises:
         InputError: The file is malformed, and it is that of the plan or the user names it.
@@ -60,9 +60,13 @@ def read_streams(plan: PlanFile, file: Path | None, domain: Domain) -> StreamFil
 
 
 def other_files(
-    plan: PlanFile, loaded: LoadedProblem, domain: Path, streams: Path | None, given: Mapping[str, Path | None]
+    plan: PlanFile,
+    loaded: LoadedProblem,
+    domain: Path,
+    streams: Path | None,
+    given: Mapping[str, Path | None],
 ) -> tuple[str, ...]:
-    """The domain and streams by which is judged, where they are not those of the problem, or no longer the plan's.
+    """Name domain and streams judged by that are not the problem's, or no longer the plan's.
 
     Args:
         plan: The plan.
@@ -79,17 +83,25 @@ def other_files(
             found.append(f"by the domain {domain.name}; the problem's {named} is not there")
         elif sha256(own) != sha256(domain):
             found.append(f"by the domain {domain.name}, not the problem's {own.name}")
+
     beside = (own or domain).with_suffix(STREAMS)
     source = plan.source("streams")
     if streams is None:
         if source is not None:
             found.append(f"without the streams {source.path.name}, which are not there")
     elif source is not None and source.sha256 != sha256(streams):
-        found.append(f"by the streams {streams.name}, which are not those that the plan was made with")
+        found.append(
+            f"by the streams {streams.name}, which are not those that the plan was made with"
+        )
     elif beside.is_file() and sha256(beside) != sha256(streams):
         found.append(f"by the streams {streams.name}, not the problem's {beside.name}")
-    elif not beside.is_file() and given["streams"] is None and streams.with_suffix("").stem != domain.stem:
+    elif (
+        not beside.is_file()
+        and given["streams"] is None
+        and streams.with_suffix("").stem != domain.stem
+    ):
         found.append(f"by the streams {streams.name}, as the plan says")
+
     return tuple(found)
 
 
@@ -101,9 +113,10 @@ def trusted_relations(
     known: Collection[str],
     given: Collection[Fact],
 ) -> tuple[str, ...]:
-    """The relations on which goal and actions rest, and about which only the plan says what holds.
+    """List relations that goal and actions rest on, and about which only the plan says what holds.
 
-    One that has to hold is meant where the plan states facts of it; one that must not hold also where it states none.
+    One that has to hold is meant where the plan states facts of it; one that must not hold also
+    where it states none.
 
     Args:
         plan: The plan.
@@ -114,9 +127,23 @@ def trusted_relations(
         given: The initial facts that the problem states.
     """
     names = _names(streams, domain)
-    stated = {fact[0] for fact in plan.certified} | {fact[0] for fact in plan.initial if fact not in given}
-    certified = {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
-    settled = {*known, *domain.fluent_predicates, *domain.derived_predicates, *KINDS_OF_OBJECTS, "=", *domain.types}
+
+    stated = {fact[0] for fact in plan.certified} | {
+        fact[0] for fact in plan.initial if fact not in given
+    }
+    certified = (
+        {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
+    )
+
+    settled = {
+        *known,
+        *domain.fluent_predicates,
+        *domain.derived_predicates,
+        *KINDS_OF_OBJECTS,
+        "=",
+        *domain.types,
+    }
+
     found = {
         names.get(predicate, predicate)
         for predicate, sign in _rested_on(plan, domain, goal)
@@ -126,17 +153,34 @@ def trusted_relations(
 
 
 def certifiable(plan: PlanFile, domain: Domain, streams: StreamFile | None) -> frozenset[str]:
-    """The static predicates that streams certify; where the plan's are not there, all; where it names none, its own."""
-    static = domain.predicates.keys() - domain.fluent_predicates - domain.derived_predicates - KINDS_OF_OBJECTS
+    """Return the static predicates that streams certify.
+
+    All of them where the plan's streams are not there; where it names none, its own.
+    """
+    static = (
+        domain.predicates.keys()
+        - domain.fluent_predicates
+        - domain.derived_predicates
+        - KINDS_OF_OBJECTS
+    )
     if streams is None:
         named = plan.source("streams") is not None
         return frozenset(static if named else static & {fact[0] for fact in plan.certified})
-    return frozenset(atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified) & static
+    return (
+        frozenset(
+            atom.predicate for one in (*streams.streams, *streams.rules) for atom in one.certified
+        )
+        & static
+    )
 
 
 def domain_note(loaded: LoadedProblem, domain: Path, given: bool) -> tuple[str, ...]:
-    """That nobody but the plan says by which domain a problem is meant, unless that is one that ships."""
-    if loaded.domain is not None or given or domain.parent.resolve() == shipped("domains").resolve():
+    """Note that only the plan says by which domain a problem is meant, unless that one ships."""
+    if (
+        loaded.domain is not None
+        or given
+        or domain.parent.resolve() == shipped("domains").resolve()
+    ):
         return ()
     return (f"the problem names no domain; judged by {domain.name}, as the plan says",)
 
@@ -151,7 +195,7 @@ def _own_domain(loaded: LoadedProblem) -> Path | None:
 
 
 def _names(streams: StreamFile | None, domain: Domain) -> dict[str, str]:
-    """The relation that a certified predicate speaks of."""
+    """Map certified predicates to the relation that each speaks of."""
     found: dict[str, str] = {}
     for name in relation_names(streams) if streams else ():
         relation = relation_of(streams, domain, name) if streams else None
@@ -161,13 +205,19 @@ def _names(streams: StreamFile | None, domain: Domain) -> dict[str, str]:
 
 
 def _rested_on(plan: PlanFile, domain: Domain, goal: Formula) -> Iterator[tuple[str, bool]]:
-    """The predicates that the goal and the plan's actions ask for, through rules, each with whether it helps."""
+    """Yield predicates that goal and actions ask for, through rules, each with whether it helps."""
     used = {action.name for action in plan.actions}
     stack: list[tuple[Atom, bool]] = [*signed_atoms(goal)]
+
     for action in (one for one in domain.actions if one.name in used):
         stack += signed_atoms(action.precondition)
         for effect in action.effects:
-            stack += [(atom, sign) for atom, one in signed_atoms(effect.condition) for sign in (one, not one)]
+            stack += [
+                (atom, sign)
+                for atom, one in signed_atoms(effect.condition)
+                for sign in (one, not one)
+            ]
+
     seen: set[tuple[str, bool]] = set()
     while stack:
         atom, sign = stack.pop()

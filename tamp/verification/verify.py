@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -13,6 +13,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.robot.robot import ROBOTS
 from tamp.geometric.scene.classifier import Classifier
+from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile, read_plan
 from tamp.plan.sources import check_files, plan_hashes, source_file, unquoted
 from tamp.plan.symbolic import is_symbolic
@@ -21,7 +22,7 @@ from tamp.simulation.physics import World
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal
 from tamp.symbolic.pddl.relations import Relation, relation_names, relation_of
-from tamp.symbolic.pddl.structs import Domain, Fact, StreamFile
+from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.verification.certified_facts import Certified
 from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.formulas import substitute
@@ -32,7 +33,14 @@ from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics
 from tamp.verification.support_relations import RELATIONS
 from tamp.verification.symbolic import verify_symbolic
-from tamp.verification.trust import certifiable, domain_note, other_files, read_streams, streams_file, trusted_relations
+from tamp.verification.trust import (
+    certifiable,
+    domain_note,
+    other_files,
+    read_streams,
+    streams_file,
+    trusted_relations,
+)
 from tamp.verification.violation_log import Log
 
 NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
@@ -53,28 +61,33 @@ def verify(
         problem: The problem's file, instead of the one that the plan names.
         domain: The domain's file, instead of the one that the plan names.
         streams: The streams' file, instead of the one that the plan names.
-        classifiers: What says whether a relation of the user's own holds, by the relation; without it the plan's word
-            is taken, and the report says so.
+        classifiers: What says whether a relation of the user's own holds, by the relation; without
+            it the plan's word is taken, and the report says so.
 
     Raises:
-        InputError: The plan file is malformed, or a file that it was made from is missing or malformed; a classifier of
-            a relation that there is not.
+        InputError: The plan file is malformed, or a file that it was made from is missing or
+            malformed; a classifier of a relation that there is not.
     """
     began = time.monotonic()
     document = plan if isinstance(plan, dict) else Path(plan)
     if is_symbolic(document):
         if classifiers or streams is not None:
             raise InputError(
-                "a plan of a problem in PDDL alone has no streams, and no relation of a scene to ask about"
+                "a plan of a problem in PDDL alone has no streams, "
+                "and no relation of a scene to ask about"
             )
         given = [None if file is None else Path(file) for file in (problem, domain)]
         return verify_symbolic(document, *given)
+
     read = read_plan(document)
     problem_file = source_file(read, "problem", None if problem is None else Path(problem))
     domain_file = source_file(read, "domain", None if domain is None else Path(domain))
     named = plan_hashes(
-        read, problem=None if problem is None else problem_file, domain=None if domain is None else domain_file
+        read,
+        problem=None if problem is None else problem_file,
+        domain=None if domain is None else domain_file,
     )
+
     with unquoted(read.file, named):
         loaded = load_scene(problem_file)
         parsed = parse_domain(read_pddl(domain_file), domain_file)
@@ -84,29 +97,28 @@ def verify(
         loaded.goal.text, parsed, objects, loaded.path,
         line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
     )  # fmt: skip
+
     own_streams = streams_file(read, None if streams is None else Path(streams), domain_file)
     declared = read_streams(read, own_streams, parsed)
     asked = _asked(classifiers, declared, parsed)
     robot = ROBOTS[loaded.scene.robot.model]()
     semantics = Semantics(parsed, objects)
+
     violations = [
         *check_files(read, {"problem": problem_file, "domain": domain_file}, loaded.meshes),
-        *check_objects(read, loaded.scene, parsed),
+        *_check_header(read, loaded.scene, parsed, objects, goal),
     ]
-    if read.robot != loaded.scene.robot.model:
-        violations.append(Violation("initial", f"the problem's robot is {loaded.scene.robot.model}, not {read.robot}"))
-    own_goal = parse_goal(read.goal, parsed, objects, read.file)
-    if substitute(own_goal, {}) != substitute(goal, {}):
-        violations.append(Violation("goal", "the plan's goal is not the problem's"))
     trusted: Counter[str] = Counter()
     with World(loaded.scene, robot) as world:
         sweeper = Sweeper(world, robot)
         certified = Certified(read, world, robot, sweeper, parsed)
         decided = {name for relation, _ in asked.values() for name in relation.predicates}
         stated = certified.known | decided | certifiable(read, parsed, declared)
+
         violations += check_initial(read, loaded.scene, parsed, given, stated)
         static = [fact for fact in read.initial if fact[0] in stated and fact not in given]
         violations += certified.check([*read.certified, *static], trusted)
+
         for body in loaded.scene.bodies.values():
             world.place(body.name, body.pose.matrix)
         log = Log()
@@ -114,9 +126,16 @@ def verify(
         replay = Replay(read, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(goal)
         violations += log.violations
+
         settled = certified.known | decided
-        on_trust = {*trusted_relations(read, parsed, goal, declared, settled, given), *relations.silent}
-        unsaid = [f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())]
+        on_trust = {
+            *trusted_relations(read, parsed, goal, declared, settled, given),
+            *relations.silent,
+        }
+        unsaid = [
+            f"'{name}' is taken on trust: {why}" for name, why in sorted(relations.silent.items())
+        ]
+
         others = {"domain": domain, "streams": streams}
         given_files = {role: None if file is None else Path(file) for role, file in others.items()}
         return Report(
@@ -135,10 +154,28 @@ def verify(
         )
 
 
+def _check_header(
+    plan: PlanFile,
+    scene: Scene,
+    domain: Domain,
+    objects: dict[str, tuple[str, ...]],
+    goal: Formula,
+) -> Iterator[Violation]:
+    """Check that the plan's objects, robot and goal are the problem's."""
+    yield from check_objects(plan, scene, domain)
+    if plan.robot != scene.robot.model:
+        message = f"the problem's robot is {scene.robot.model}, not {plan.robot}"
+        yield Violation("initial", message)
+
+    own_goal = parse_goal(plan.goal, domain, objects, plan.file)
+    if substitute(own_goal, {}) != substitute(goal, {}):
+        yield Violation("goal", "the plan's goal is not the problem's")
+
+
 def _asked(
     classifiers: Mapping[str, Classifier], streams: StreamFile | None, domain: Domain
 ) -> dict[str, tuple[Relation, Classifier]]:
-    """The relations of the classifiers.
+    """Find the relations of the classifiers.
 
     Raises:
         InputError: There is no such relation, or its facts do not say of what it is to be asked.
@@ -147,40 +184,77 @@ def _asked(
     for name, classifier in classifiers.items():
         if streams is None:
             remedy = "Give them: --streams FILE"
-            raise InputError(f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy)
+            raise InputError(
+                f"of what '{name}' is asked, the streams say, and they are not there", remedy=remedy
+            )
+
         names = relation_names(streams)
         if name not in names:
-            raise InputError(f"the streams have no relation '{name}'", file=streams.file, found=name, choices=names)
+            raise InputError(
+                f"the streams have no relation '{name}'",
+                file=streams.file,
+                found=name,
+                choices=names,
+            )
+
         relation = relation_of(streams, domain, name)
         if relation is not None and relation.predicates & RELATIONS:
             raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
         if relation is None:
-            what = f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
+            what = (
+                f"the facts of '{name}' do not say by bodies, poses and places alone that it holds"
+            )
             raise InputError(
-                what, file=streams.file, remedy="docs/adding-a-predicate.md says what its streams are like"
+                what,
+                file=streams.file,
+                remedy="docs/adding-a-predicate.md says what its streams are like",
             )
         found[name] = relation, classifier
     return found
 
 
 def _objects(plan: PlanFile, domain: Domain) -> dict[str, tuple[str, ...]]:
-    """All objects with their types.
+    """Return all objects with their types.
 
     Raises:
         InputError: A fact or an action names one that the plan does not have.
     """
-    values = {name: (value.type,) for name, value in plan.values.items() if value.type in domain.types}
-    objects = {**domain.constants, **{name: ("object",) for name in plan.values}, **values, **plan.objects}
-    facts = [(fact, "initial") for fact in plan.initial] + [(fact, "certified") for fact in plan.certified]
+    values = {
+        name: (value.type,) for name, value in plan.values.items() if value.type in domain.types
+    }
+
+    objects = {
+        **domain.constants,
+        **{name: ("object",) for name in plan.values},
+        **values,
+        **plan.objects,
+    }
+
+    facts = [(fact, "initial") for fact in plan.initial] + [
+        (fact, "certified") for fact in plan.certified
+    ]
     terms = [(term, where) for fact, where in facts for term in fact[1:]]
-    terms += [(term, f"actions[{at}].arguments") for at, action in enumerate(plan.actions) for term in action.arguments]
+    terms += [
+        (term, f"actions[{at}].arguments")
+        for at, action in enumerate(plan.actions)
+        for term in action.arguments
+    ]
+
     for term, where in terms:
         if term not in objects:
-            raise InputError(f"{where}: unknown object '{term}'", file=plan.file, found=term, choices=sorted(objects))
+            raise InputError(
+                f"{where}: unknown object '{term}'",
+                file=plan.file,
+                found=term,
+                choices=sorted(objects),
+            )
+
     return objects
 
 
-def _given(loaded: LoadedProblem, domain: Domain, objects: dict[str, tuple[str, ...]]) -> frozenset[Fact]:
+def _given(
+    loaded: LoadedProblem, domain: Domain, objects: dict[str, tuple[str, ...]]
+) -> frozenset[Fact]:
     facts: set[Fact] = set()
     for passage in loaded.init:
         facts |= parse_facts(

@@ -13,7 +13,14 @@ class Log:
         self.action: tuple[int, str] | None = None
         self.time: float | None = None
 
-    def add(self, kind: str, message: str, *bodies: str, time: float | None = None, depth: float | None = None) -> None:
+    def add(
+        self,
+        kind: str,
+        message: str,
+        *bodies: str,
+        time: float | None = None,
+        depth: float | None = None,
+    ) -> None:
         """Take down a violation, here and now unless another time is said."""
         index, name = self.action or (None, None)
         when = self.time if time is None else time

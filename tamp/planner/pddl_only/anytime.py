@@ -57,6 +57,7 @@ def optimize_symbolic(
         start = search(instantiated, search="astar", heuristic="lmcut", limit=1, deadline=deadline)
         best = replace(best, bound=min(start.bound, best.cost))
         improved(best)
+
         for name, heuristic, weight in LADDER:
             last = name == "astar"
             within = deadline if last else Deadline(SHARE * deadline.left())
@@ -73,12 +74,13 @@ def optimize_symbolic(
                 best = _counted(
                     best, found.expanded, found.evaluated, time.perf_counter() - started
                 )
+
                 if refutation(problem.task, found.plan) is not None:
                     best = replace(best, refuted=best.refuted + 1)
                     break
-                if (
-                    last or found.reason is Reason.UNSOLVABLE
-                ):  # there is none: the bound is the cost
+
+                if last or found.reason is Reason.UNSOLVABLE:
+                    # There is none: the bound is the cost.
                     proven = found.reason is Reason.UNSOLVABLE or found.plan is not None
                     bound = best.cost if found.plan is None and proven else found.bound
                     best = replace(best, bound=max(best.bound, min(bound, best.cost)))

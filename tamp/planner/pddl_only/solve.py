@@ -35,7 +35,7 @@ OUTCOMES = {
 
 @dataclass(frozen=True)
 class SymbolicSolution:
-    """How planning a symbolic problem ended.
+    """The end of planning a symbolic problem.
 
     Attributes:
         plan: Operators in order, empty unless solved.

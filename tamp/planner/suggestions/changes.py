@@ -1,4 +1,4 @@
-"""Changes that would make a problem easier: a body gone, movable, smaller; a place larger, nearer; a goal less."""
+"""Changes that make a problem easier: a body gone, movable, smaller; places larger; goals less."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from tamp.geometric.scene.scene import Body, Box, Cavity, Part, Scene, Surface
 from tamp.planner.problem import Problem
 from tamp.symbolic.pddl.structs import And, Atom, Formula, Or
 
-SMALLER = ((0.75, "a quarter smaller", 2), (0.5, "half its size", 3), (0.3, "a third of its size", 4))
+SMALLER = (
+    (0.75, "a quarter smaller", 2),
+    (0.5, "half its size", 3),
+    (0.3, "a third of its size", 4),
+)
 """Factors by which a body is scaled, in words, and how large a change that is."""
 
 LARGER = 1.5
@@ -50,32 +54,46 @@ class Change:
 
 
 def changes(problem: Problem) -> Iterator[Change]:
-    """All changes that are thought of, in no order that matters."""
+    """Yield all changes that are thought of, in no order that matters."""
     scene = problem.scene
     words = {word for atom in _atoms(problem.stream_task.task.goal) for word in atom.terms}
-    wanted = {name for name in (*scene.bodies, *scene.surfaces, *scene.cavities) if name.lower() in words}
+    wanted = {
+        name for name in (*scene.bodies, *scene.surfaces, *scene.cavities) if name.lower() in words
+    }
     places = [*scene.surfaces.values(), *scene.cavities.values()]
     wanted |= {place.body for place in places if place.name in wanted}
+
     for name, body in scene.bodies.items():
         idle = name not in wanted and not _on(scene, body)
         if idle:
             rest = {other: kept for other, kept in scene.bodies.items() if other != name}
-            yield Change(f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=rest))
+            yield Change(
+                f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=rest)
+            )
+
         if body.movable and (name in wanted or not idle):
             for factor, how, size in SMALLER:
-                yield Change(f"if {name} were {how}", (name,), size, _with(scene, _scaled(body, factor)))
+                yield Change(
+                    f"if {name} were {how}", (name,), size, _with(scene, _scaled(body, factor))
+                )
+
         if not body.movable and _small(body) and not body.cavities and not _on(scene, body):
             loose = replace(body, movable=True, surfaces=(), support=_below(scene, body))
             yield Change(f"if {name} could be moved", (name,), 1, _with(scene, loose))
+
     for place in places:
         body = scene.bodies[place.body]
         if place.name in wanted and not body.movable:
             larger = _larger(body, place)
             if larger is not None and not (isinstance(place, Cavity) and _on(scene, body)):
                 about = (place.name, body.name)
-                yield Change(f"if {place.name} were half as large again", about, 3, _with(scene, larger))
+                yield Change(
+                    f"if {place.name} were half as large again", about, 3, _with(scene, larger)
+                )
+
     for body in scene.bodies.values():
         yield from _brought(scene, body)
+
     goal = problem.stream_task.task.goal
     if isinstance(goal, And) and len(goal.parts) > 1:
         for index, part in enumerate(goal.parts):
@@ -86,16 +104,26 @@ def changes(problem: Problem) -> Iterator[Change]:
 
 
 def _brought(scene: Scene, body: Body) -> Iterator[Change]:
-    """A piece of furniture within reach, with all that stands on it."""
+    """Bring a piece of furniture within reach, with all that stands on it."""
     places = (*body.surfaces, *body.cavities)
     if body.movable or not places:
         return
+
     heights = [(body.pose @ place.pose).position[2] for place in places]
     x, y, z = body.pose.position
     if max(heights) < HANDY[0] or min(heights) > HANDY[1]:
         lifted = replace(body.pose, position=(x, y, z + MIDDLE - sum(heights) / len(heights)))
-        yield Change(f"if {body.name} were {MIDDLE} m high", _around(scene, body), 2, _moved(scene, body, lifted))
-    inside = [min(max(v, low), high) for v, (low, high) in zip((x, y), (scene.room.x, scene.room.y), strict=True)]
+        yield Change(
+            f"if {body.name} were {MIDDLE} m high",
+            _around(scene, body),
+            2,
+            _moved(scene, body, lifted),
+        )
+
+    inside = [
+        min(max(v, low), high)
+        for v, (low, high) in zip((x, y), (scene.room.x, scene.room.y), strict=True)
+    ]
     if inside != [x, y]:
         nearer = replace(body.pose, position=(*inside, z))
         text = f"if {body.name} stood at ({inside[0]:.1f}, {inside[1]:.1f}), in the room"
@@ -108,17 +136,19 @@ def _around(scene: Scene, body: Body) -> tuple[str, ...]:
 
 
 def _moved(scene: Scene, body: Body, pose: Pose) -> Scene:
-    """The scene with a body elsewhere, and all that stands on it."""
+    """Return the scene with a body elsewhere, and all that stands on it."""
     shift = np.subtract(pose.position, body.pose.position)
     bodies = dict(scene.bodies)
     for name in (body.name, *_on(scene, body)):
         x, y, z = np.add(bodies[name].pose.position, shift)
-        bodies[name] = replace(bodies[name], pose=replace(bodies[name].pose, position=(float(x), float(y), float(z))))
+        bodies[name] = replace(
+            bodies[name], pose=replace(bodies[name].pose, position=(float(x), float(y), float(z)))
+        )
     return replace(scene, bodies=bodies)
 
 
 def _on(scene: Scene, body: Body) -> list[str]:
-    """The bodies that stand on a body or in it, or on those."""
+    """List the bodies that stand on a body or in it, or on those."""
     found: list[str] = []
     waiting = {body.name, *(place.name for place in (*body.surfaces, *body.cavities))}
     for name, other in scene.bodies.items():
@@ -129,14 +159,18 @@ def _on(scene: Scene, body: Body) -> list[str]:
 
 
 def _below(scene: Scene, body: Body) -> str | None:
-    """The surface or cavity right below a body's lowest point, to a centimetre."""
+    """Find the surface or cavity right below a body's lowest point, to a centimetre."""
     low, high = bounds(body.parts, body.pose)
     middle = (low + high) / 2
     for place in (*scene.surfaces.values(), *scene.cavities.values()):
         if place.body == body.name:
             continue
-        inside = scene.world_pose(place).inverse() @ Pose((float(middle[0]), float(middle[1]), float(low[2])))
-        if abs(inside.position[2]) < 0.01 and all(abs(inside.position[i]) < place.size[i] / 2 for i in range(2)):
+        inside = scene.world_pose(place).inverse() @ Pose(
+            (float(middle[0]), float(middle[1]), float(low[2]))
+        )
+        if abs(inside.position[2]) < 0.01 and all(
+            abs(inside.position[i]) < place.size[i] / 2 for i in range(2)
+        ):
             return place.name
     return None
 
@@ -151,12 +185,16 @@ def _with(scene: Scene, body: Body) -> Scene:
 
 
 def _scaled(body: Body, factor: float) -> Body:
-    """A smaller body that stands where it stood."""
+    """Scale a body down; it stands where it stood."""
     parts = tuple(scale_part(part, factor) for part in body.parts)
     sunk = float(bounds(body.parts, body.pose)[0][2] - bounds(parts, body.pose)[0][2])
     x, y, z = body.pose.position
     surfaces = tuple(
-        replace(one, pose=scale_pose(one.pose, factor), size=(one.size[0] * factor, one.size[1] * factor))
+        replace(
+            one,
+            pose=scale_pose(one.pose, factor),
+            size=(one.size[0] * factor, one.size[1] * factor),
+        )
         for one in body.surfaces
     )
     return replace(
@@ -167,8 +205,11 @@ def _scaled(body: Body, factor: float) -> Body:
 
 
 def _larger(body: Body, place: Surface | Cavity) -> Body | None:
-    """A body of boxes with wider places, and higher ones where the place is a cavity; None for other bodies."""
-    if not all(isinstance(part.shape, Box) and part.pose.quaternion == Pose().quaternion for part in body.parts):
+    """Widen the places of a body of boxes, cavities in height too; None for other bodies."""
+    if not all(
+        isinstance(part.shape, Box) and part.pose.quaternion == Pose().quaternion
+        for part in body.parts
+    ):
         return None
     factors = np.array((LARGER, LARGER, LARGER if isinstance(place, Cavity) else 1.0))
 

@@ -1,4 +1,4 @@
-"""What would make a problem solvable: small changes tried one by one, those that the failure speaks of first."""
+"""Explain by relaxations why a problem has no plan: small changes tried one by one."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ class Why:
         relaxations: Those that helped.
         tried: How many were tried.
         known: How many were thought of.
-        failed: Those that did not help, in the order in which they were tried, each with how many seeds it helped.
+        failed: Those that did not help, in the order in which they were tried, each with how many
+            seeds it helped.
         untried: Those for which there was no time, or no need.
         unchanged: Seeds with which there is a plan without any change.
         budget: Seconds for each change and seed.
@@ -75,15 +76,28 @@ class Why:
     budget: float = SLICE
 
     def text(self) -> str:
-        """A few lines."""
-        lines = [f"  With --seed {seed} a plan is found as it is: no change is needed" for seed in self.unchanged]
+        """Return a few lines for people."""
+        lines = [
+            f"  With --seed {seed} a plan is found as it is: no change is needed"
+            for seed in self.unchanged
+        ]
+
         for one in self.relaxations:
             plan = f"a plan of {one.actions} actions, found in {one.seconds:.1f} s"
-            lines.append(f"  It would be solvable {one.text} ({plan}; with all of {SEEDS} seeds, and without it none)")
+            lines.append(
+                f"  It would be solvable {one.text} "
+                f"({plan}; with all of {SEEDS} seeds, and without it none)"
+            )
         if not lines:
-            what = f"none of {self.tried} changes that were tried (of {self.known}) makes it solvable by itself"
+            what = (
+                f"none of {self.tried} changes that were tried (of {self.known}) "
+                "makes it solvable by itself"
+            )
             lines.append(f"  {what}, with {SEEDS} seeds and {self.budget:.1f} s for each")
-        lines += self._others("tried as well, and did not help", [_failed(*one) for one in self.failed])
+
+        lines += self._others(
+            "tried as well, and did not help", [_failed(*one) for one in self.failed]
+        )
         return "\n".join(lines + self._others("not tried", list(self.untried)))
 
     @staticmethod
@@ -92,8 +106,11 @@ class Why:
         return [f"  {label}: {', '.join(texts[:SHOWN])}{more}"] if texts else []
 
     def json(self) -> dict[str, object]:
-        """For programs."""
-        found = [{"change": r.text, "actions": r.actions, "seconds": round(r.seconds, 3)} for r in self.relaxations]
+        """Return the same for programs."""
+        found = [
+            {"change": r.text, "actions": r.actions, "seconds": round(r.seconds, 3)}
+            for r in self.relaxations
+        ]
         return {
             "relaxations": found,
             "tried": self.tried,
@@ -116,8 +133,8 @@ def why(
 ) -> Why:
     """Try changes until some work or the time is up; Ctrl-C ends it with those found.
 
-    A change counts when it brings a plan with each of SEEDS seeds, while the problem as it is has none with any of
-    them in the same time: what is only luck is told apart from what is a cause.
+    A change counts when it brings a plan with each of SEEDS seeds, while the problem as it is has
+    none with any of them in the same time: what is only luck is told apart from what is a cause.
 
     Args:
         solution: One without a plan.
@@ -140,12 +157,20 @@ class _Trial:
         progress: Progress | None,
         trying: Callable[[str], None],
     ) -> None:
-        self._solution, self._reload, self._progress, self._trying = solution, reload, progress, trying
+        self._solution, self._reload, self._progress, self._trying = (
+            solution,
+            reload,
+            progress,
+            trying,
+        )
         self._deadline = Deadline(max_time)
         self._budget = min(SLICE, max_time / SHARE)
         self._seeds = [solution.seed + STEP * number for number in range(SEEDS)]
         # What failed with more time fails with less; what was proven once holds for all seeds.
-        enough = solution.outcome is Outcome.EXHAUSTED or solution.seconds.get("total", 0.0) >= self._budget
+        enough = (
+            solution.outcome is Outcome.EXHAUSTED
+            or solution.seconds.get("total", 0.0) >= self._budget
+        )
         proven = solution.outcome in PROVEN
         self._unsolved = set(self._seeds if proven else self._seeds[:1] if enough else ())
         self._unchanged: list[int] = []
@@ -153,13 +178,14 @@ class _Trial:
         self._failed: list[tuple[str, int]] = []
 
     def run(self) -> Why:
-        """All trials, as far as the time goes."""
+        """Run all trials, as far as the time goes."""
         said = "\n".join(self._solution.explanation).lower()
         told = set(re.findall(r"[\w-]+", said))
         order = sorted(
             changes(self._solution.problem),
             key=lambda change: (not told & {name.lower() for name in change.about}, change.size),
         )
+
         ended = 0
         try:
             for number, change in enumerate(order):
@@ -172,12 +198,14 @@ class _Trial:
                 ended = number + 1
         except (KeyboardInterrupt, OutOfTime):
             pass
+
         self._found.sort(key=lambda item: item[0])
         relaxations = () if self._unchanged else tuple(relaxation for _, relaxation in self._found)
         tried = len(self._found) + len(self._failed)
         untried = tuple(change.text for change in order[ended:])
         return Why(
-            relaxations, tried, len(order), tuple(self._failed), untried, tuple(self._unchanged), self._budget
+            relaxations, tried, len(order), tuple(self._failed), untried,
+            tuple(self._unchanged), self._budget,
         )  # fmt: skip
 
     def _try(self, change: Change, changed: Problem) -> None:
@@ -193,7 +221,7 @@ class _Trial:
             self._found.append((change.size, Relaxation(change.text, len(first.plan), seconds)))
 
     def _needed(self) -> bool:
-        """Whether the problem as it is has no plan with any of the seeds, in the same time."""
+        """Check that the problem as it is has no plan with any of the seeds, in the same time."""
         for seed in self._seeds:
             if seed in self._unsolved:
                 continue
@@ -221,8 +249,10 @@ def _silent(text: str) -> None:
     pass
 
 
-def _changed(problem: Problem, change: Change, reload: Callable[[Scene], Problem]) -> Problem | None:
-    """The problem with a change, or None where it makes no sense, such as a goal about what is gone."""
+def _changed(
+    problem: Problem, change: Change, reload: Callable[[Scene], Problem]
+) -> Problem | None:
+    """Apply a change to the problem; None where it makes no sense, as a goal about what is gone."""
     if change.goal is not None:
         task = replace(problem.stream_task.task, goal=change.goal)
         return replace(problem, stream_task=replace(problem.stream_task, task=task))
