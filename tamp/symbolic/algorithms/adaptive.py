@@ -123,7 +123,9 @@ class Adaptive(Run):
             second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
             second.streams.remember(self.streams)
             result = second.solve(draws)
-            result.effort.apart_seconds = max(0.0, self.deadline.elapsed() - (time.perf_counter() - began))
+            result.effort.apart_seconds = max(
+                0.0, self.deadline.elapsed() - (time.perf_counter() - began)
+            )
             return result
         finally:
             self.effort.apart_seconds += time.perf_counter() - began
@@ -148,7 +150,9 @@ class Adaptive(Run):
         self.effort.draws = self.binder.units
         learned = self.absorb()
         learned |= self.bury(skeleton)
-        recalled = self.recall(blamed(self.aside, self.experience) if skeleton.rounds < RECALL else None)
+        recalled = self.recall(
+            blamed(self.aside, self.experience) if skeleton.rounds < RECALL else None
+        )
         if learned and not recalled:
             self.optimism, self.instantiated = self.imagined()
         return None
@@ -162,8 +166,14 @@ class Adaptive(Run):
         """
         goal = self.instantiated.goal.positive
         reached = goal <= self.instantiated.reachable | self.instantiated.initial
-        if self.problem.by_value or not self.problem.streams or not (reached or distinguishes(self.task)):
-            return None  # whoever has values equal that come from different calls looks more closely
+        if (
+            self.problem.by_value
+            or not self.problem.streams
+            or not (reached or distinguishes(self.task))
+        ):
+            return (
+                None  # whoever has values equal that come from different calls looks more closely
+            )
         second = Incremental(self.problem, self.make_rng, self.deadline, self.progress)
         second.brief = True
         second.streams.remember(self.streams)
@@ -171,7 +181,9 @@ class Adaptive(Run):
             result = second.solve(LOOK)
         except OutOfTime:
             return None
-        self.given_up = self.given_up or (result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK)
+        self.given_up = self.given_up or (
+            result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK
+        )
         return result if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED) else None
 
     def bystanders(self) -> frozenset[str]:
@@ -187,4 +199,6 @@ class Adaptive(Run):
         """Whether even the cheapest plan rests on something that failed that often without a success."""
         nodes = () if self.latest is None else self.latest.nodes
         records = [self.experience.facts.get(node.fact) for node in nodes]
-        return any(record and not record.successes and record.failures >= patience for record in records)
+        return any(
+            record and not record.successes and record.failures >= patience for record in records
+        )

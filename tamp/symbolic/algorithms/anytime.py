@@ -100,7 +100,9 @@ def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None
         for number, node in enumerate(skeleton.nodes)
         if not node.stream.is_test and first <= node.step < first + WINDOW
     }
-    return _found(run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None)
+    return _found(
+        run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None
+    )
 
 
 def _found(run: Adaptive, skeleton: Skeleton, values: dict[int, str] | None) -> _Found | None:

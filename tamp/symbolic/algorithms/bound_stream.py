@@ -162,7 +162,9 @@ class Streams:
         """Go on with what another part of the same run has learned, and add to its warnings."""
         self.memory, self.warnings = earlier.memory, earlier.warnings
 
-    def instance(self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()) -> Instance:
+    def instance(
+        self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()
+    ) -> Instance:
         """The instance of a stream for these inputs; the same one each time."""
         key = (name, inputs, fluents)
         instance = self._instances.get(key)
@@ -181,7 +183,11 @@ class Streams:
 
     def false_tests(self) -> list[Instance]:
         """The tests that were called and do not hold, in whatever state."""
-        made = (known for known in self._instances.values() if known.stream.is_test and not known.stream.is_fluent)
+        made = (
+            known
+            for known in self._instances.values()
+            if known.stream.is_test and not known.stream.is_fluent
+        )
         return [known for known in made if known.exhausted and not known.results]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
@@ -203,7 +209,9 @@ class Streams:
                 self.wild[str(predicate).lower(), *words] = None
         except OutOfTime:
             raise
-        except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
+        except (
+            Exception
+        ) as error:  # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
             value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
             _add_new(
@@ -240,8 +248,12 @@ class Streams:
         values = self.objects.values
         if instance.iterator is None:
             key = repr((instance.stream.name, instance.inputs, sorted(instance.fluents)))
-            shown = [tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)]
-            warn = partial(_add_new, self.warnings)  # not a method: a call that knows the streams would keep them alive
+            shown = [
+                tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)
+            ]
+            warn = partial(
+                _add_new, self.warnings
+            )  # not a method: a call that knows the streams would keep them alive
             call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
@@ -262,7 +274,9 @@ class Streams:
             return ()
         parts: Sequence[Any] = (value,) if len(outputs) == 1 else tuple(value)
         if len(parts) != len(outputs):
-            raise ValueError(f"stream {instance.stream.name} yields {len(parts)} values for {len(outputs)} outputs")
+            raise ValueError(
+                f"stream {instance.stream.name} yields {len(parts)} values for {len(outputs)} outputs"
+            )
         types = instance.stream.output_types
         return tuple(
             self.objects.add(part, types[i], outputs[i].lstrip("?").rstrip("0123456789") or "x")
@@ -274,10 +288,14 @@ STRANGERS = (Streams.draw.__code__,)
 """For an alarm: what calls the functions that anyone may have written."""
 
 
-def substitute(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
+def substitute(
+    atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]
+) -> tuple[Fact, ...]:
     """The facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
-    return tuple([(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms])
+    return tuple(
+        [(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms]
+    )
 
 
 def _add_new(warnings: list[str], message: str) -> None:

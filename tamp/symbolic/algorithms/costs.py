@@ -35,7 +35,9 @@ class Costs(Mapping[Fact, float]):
         given: Costs that the problem states; they come first.
     """
 
-    def __init__(self, functions: tuple[BoundFunction, ...], objects: Objects, given: Mapping[Fact, float]) -> None:
+    def __init__(
+        self, functions: tuple[BoundFunction, ...], objects: Objects, given: Mapping[Fact, float]
+    ) -> None:
         self._functions = {bound.declaration.name: bound for bound in functions}
         self._objects = objects
         self._given = given
@@ -74,8 +76,12 @@ class Costs(Mapping[Fact, float]):
         """What an action costs with real arguments."""
         if not isinstance(action.cost, Atom):
             return float(action.cost)
-        binding = dict(zip((parameter.name for parameter in action.parameters), arguments, strict=True))
-        return self[(action.cost.predicate, *(binding.get(term, term) for term in action.cost.terms))]
+        binding = dict(
+            zip((parameter.name for parameter in action.parameters), arguments, strict=True)
+        )
+        return self[
+            (action.cost.predicate, *(binding.get(term, term) for term in action.cost.terms))
+        ]
 
     def _ask(self, fact: Fact) -> float:
         bound = self._functions[fact[0]]
@@ -85,5 +91,7 @@ class Costs(Mapping[Fact, float]):
         except (TypeError, ValueError):
             cost = math.nan
         if not (0.0 <= cost < math.inf):
-            raise InputError(f"function '{fact[0]}' gave {value!r}: a cost is a number, zero or more")
+            raise InputError(
+                f"function '{fact[0]}' gave {value!r}: a cost is a number, zero or more"
+            )
         return cost

@@ -101,7 +101,9 @@ class Incremental(Run):
         A placeholder stands for all values of a call, which hides plans that take two of them: with a second one for
         each call the goals have to exclude each other as well, and no condition may want such values to differ.
         """
-        if distinguishes(self.task, [types for stream in self.useful for types in stream.output_types]):
+        if distinguishes(
+            self.task, [types for stream in self.useful for types in stream.output_types]
+        ):
             return False
         twins = [
             replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN}"))
@@ -115,7 +117,9 @@ class Incremental(Run):
                 return False
             optimism.assumed = self.assumed
             types = {**self.objects.types, **optimism.types}
-            instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
+            instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(
+                list(optimism.makers), types
+            )
             if excluded(instantiated, self.deadline) is None:
                 return False
             imagined.append((optimism, instantiated))
@@ -124,7 +128,9 @@ class Incremental(Run):
 
     def promise(self, name: str) -> Fact | None:
         """As of every run; the values are those found."""
-        return next((fact for fact in self.found if name in fact[1:]), None) or super().promise(name)
+        return next((fact for fact in self.found if name in fact[1:]), None) or super().promise(
+            name
+        )
 
     def _searched(self, rounds: int | None) -> Result | None:
         """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
@@ -144,7 +150,9 @@ class Incremental(Run):
                 return self.solved(skeleton, values)
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0
-                if dry >= DRY:  # there are plans, whose streams fail in the states that these lead through
+                if (
+                    dry >= DRY
+                ):  # there are plans, whose streams fail in the states that these lead through
                     self.given_up = True
                     return None
                 rounds = None if rounds is None else rounds - 1
@@ -173,7 +181,9 @@ class Incremental(Run):
                         self.found.setdefault(fact, instance)
                 for fact in self.streams.wild:
                     self.found.setdefault(fact, None)
-            self.given_up |= instance.exhausted and instance.last is not None and instance.last.given_up
+            self.given_up |= (
+                instance.exhausted and instance.last is not None and instance.last.given_up
+            )
             if instance.exhausted and not instance.results and instance.last is not None:
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh

@@ -20,7 +20,11 @@ from tamp.symbolic.algorithms.experience.elsewhere import choices, elsewhere
 from tamp.symbolic.algorithms.experience.exploration_prices import doubts
 from tamp.symbolic.algorithms.experience.failure_counts import Tally, tallies
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
-from tamp.symbolic.algorithms.explanation.explanation import explain_attempts, explain_failures, explain_infeasible
+from tamp.symbolic.algorithms.explanation.explanation import (
+    explain_attempts,
+    explain_failures,
+    explain_infeasible,
+)
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
 from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
@@ -65,7 +69,9 @@ class Run(Imagination):
         self.deadline = deadline
         self.progress = progress
         super().__init__(problem, pruned)
-        self.streams = Streams({s.name: s for s in problem.streams}, self.objects, make_rng, deadline)
+        self.streams = Streams(
+            {s.name: s for s in problem.streams}, self.objects, make_rng, deadline
+        )
         self.standing = Standing(problem.task, self.streams)
         self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
@@ -96,7 +102,9 @@ class Run(Imagination):
             return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
         instantiated, prices = with_nogoods(self.instantiated, self.experience)
         self.searched = instantiated = elsewhere(instantiated, self.experience, self.optimism)
-        prices |= doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
+        prices |= (
+            doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
+        )
         unit = self._usual_cost()
         if unit > 1.0:
             prices = {fact: unit * price for fact, price in prices.items()}
@@ -124,7 +132,13 @@ class Run(Imagination):
         """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
         self.recall()
         started = time.perf_counter()
-        found = search(self.instantiated, search="astar", heuristic="lmcut", limit=limit, deadline=self.deadline)
+        found = search(
+            self.instantiated,
+            search="astar",
+            heuristic="lmcut",
+            limit=limit,
+            deadline=self.deadline,
+        )
         self.effort.search_seconds += time.perf_counter() - started
         return found.bound if self.optimism.complete else 0.0
 
@@ -137,7 +151,11 @@ class Run(Imagination):
         """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
         operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
         traced, key = self.traced.get(operators, (None, None))
-        known = self.skeletons.get(key) if traced is self.instantiated and not self.experience.exact else None
+        known = (
+            self.skeletons.get(key)
+            if traced is self.instantiated and not self.experience.exact
+            else None
+        )
         if known is None:
             steps, trace = to_steps(self.searched, plan, self.prices)
             chosen: dict[tuple[int, Fact], Guess] = {}
@@ -152,7 +170,9 @@ class Run(Imagination):
             known = self.skeletons.get(key)
             if known is None or not self.is_open(known):
                 maker, promise = self.optimism.maker, self.promise
-                known = self.skeletons[key] = build_skeleton(steps, trace.end, maker, promise, self.given, chosen)
+                known = self.skeletons[key] = build_skeleton(
+                    steps, trace.end, maker, promise, self.given, chosen
+                )
                 self.effort.skeletons = len(self.skeletons)
             self.traced[operators] = (None if trace.open else self.instantiated), key
         return known
@@ -160,7 +180,9 @@ class Run(Imagination):
     def is_open(self, skeleton: Skeleton) -> bool:
         """Whether all calls of a skeleton may still give something that is not known: its plan may rest on others."""
         calls = (((node.stream.name, node.guess[0]), bool(node.outputs)) for node in skeleton.nodes)
-        return not any(call in self.dead or (gives and call in self.settled) for call, gives in calls)
+        return not any(
+            call in self.dead or (gives and call in self.settled) for call, gives in calls
+        )
 
     def promise(self, name: str) -> Fact | None:
         """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""
@@ -180,7 +202,9 @@ class Run(Imagination):
                     continue
                 self.given_up |= instance.last is not None and instance.last.given_up
                 if not instance.results:
-                    self.dead.setdefault((node.stream.name, inputs), instance.last or Rejection("has no value"))
+                    self.dead.setdefault(
+                        (node.stream.name, inputs), instance.last or Rejection("has no value")
+                    )
                     self.refused.add(node.fact)
                 elif not node.stream.is_advisory and len(instance.results) <= FEW:
                     self.settled.add((node.stream.name, inputs))
@@ -192,7 +216,9 @@ class Run(Imagination):
 
     def _refuse_tests(self) -> None:
         """Note all tests of settled values that turned out false, so that no search proposes them one by one."""
-        settled = {name for fact in self.real for name in fact[1:]} | self.problem.task.objects.keys()
+        settled = {
+            name for fact in self.real for name in fact[1:]
+        } | self.problem.task.objects.keys()
         for instance in self.streams.false_tests():
             if settled.issuperset(instance.inputs):
                 key = (instance.stream.name, instance.inputs)
@@ -205,7 +231,9 @@ class Run(Imagination):
         self.real.update(self.streams.wild)
         return len(self.real) > before
 
-    def bind(self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()) -> dict[int, str] | None:
+    def bind(
+        self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()
+    ) -> dict[int, str] | None:
         """Values with which the plan holds when it is replayed, see `Binder.bind`.
 
         If it does not hold with any, the skeleton forgets them, and what gave them is noted to have failed once more.
@@ -234,7 +262,9 @@ class Run(Imagination):
         """The bound plan."""
         lifted = {action.name: action for action in self.task.domain.actions}
         bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
-        actions = tuple(PlanAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound)
+        actions = tuple(
+            PlanAction(name, words, self.costs.of(lifted[name], words)) for name, words in bound
+        )
         initial = self.problem.task.initial
         certified = dict.fromkeys(substitute(fact, values) for fact in skeleton.certified)
         result = self.result(Outcome.SOLVED, ())
@@ -256,11 +286,18 @@ class Run(Imagination):
             *self.instantiated.initial,
         }
         types = {**self.objects.types, **self.optimism.types}
-        missing = Missing(self.task, self.problem.streams, facts - self.refused, types, self.assumed)
+        missing = Missing(
+            self.task, self.problem.streams, facts - self.refused, types, self.assumed
+        )
         started = time.perf_counter()
-        reasons = explain_infeasible(self.problem, self.instantiated, self.dead, missing, self.deadline, self._towards)
+        reasons = explain_infeasible(
+            self.problem, self.instantiated, self.dead, missing, self.deadline, self._towards
+        )
         if self.experience.exact:  # what failed in the states that plans lead through is the cause
-            reasons = (*explain_failures(self.problem, self.streams, self.tallies(), True), *reasons)
+            reasons = (
+                *explain_failures(self.problem, self.streams, self.tallies(), True),
+                *reasons,
+            )
         self.effort.explaining_seconds += time.perf_counter() - started
         return self.result(outcome, reasons)
 
@@ -289,7 +326,9 @@ class Run(Imagination):
         started = time.perf_counter()
         rows = () if outcome is Outcome.SOLVED else self.tallies()
         if explanation is None:
-            explanation = explain_failures(self.problem, self.streams, rows, self.latest is not None)
+            explanation = explain_failures(
+                self.problem, self.streams, rows, self.latest is not None
+            )
         self.effort.explaining_seconds += time.perf_counter() - started
         self.effort.draws = self.binder.units
         return Result(
@@ -301,5 +340,7 @@ class Run(Imagination):
             tallies=rows,
             warnings=tuple(self.streams.warnings),
             memory=self.streams.memory,
-            attempts=partial(explain_attempts, self.problem, list(self.skeletons.values()), self.experience, None),
+            attempts=partial(
+                explain_attempts, self.problem, list(self.skeletons.values()), self.experience, None
+            ),
         )

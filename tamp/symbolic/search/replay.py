@@ -65,7 +65,10 @@ def violation(
             if not world.fits(word, parameter):
                 return f"{step}: '{word}' is no {' or '.join(parameter.types)}"
         world.enter(state, shown(state) if shown else ())
-        binding = {parameter.name: word for parameter, word in zip(action.parameters, arguments, strict=True)}
+        binding = {
+            parameter.name: word
+            for parameter, word in zip(action.parameters, arguments, strict=True)
+        }
         failed = world.failing(action.precondition, binding)
         if failed is not None:
             return f"{step}: the precondition does not hold, {failed}"
@@ -85,7 +88,9 @@ def _by_predicate(facts: Iterable[Fact]) -> dict[str, set[Fact]]:
 class _World:
     """What holds in one state after the other."""
 
-    def __init__(self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]) -> None:
+    def __init__(
+        self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]
+    ) -> None:
         self._task, self._objects, self._kinds_there = task, objects, set(objects.values())
         self._rules: dict[str, list[Derived]] = defaultdict(list)
         for rule in task.domain.derived:
@@ -137,31 +142,48 @@ class _World:
                 return any(self.holds(part, binding) for part in parts)
             case Exists(parameters, body):
                 return any(
-                    self.holds(body, full) for full in self._bindings(parameters, self._where(body, True), binding)
+                    self.holds(body, full)
+                    for full in self._bindings(parameters, self._where(body, True), binding)
                 )
             case Forall(parameters, body):
                 where = self._where(body, False)
-                return all(self.holds(body, full) for full in self._bindings(parameters, where, binding))
+                return all(
+                    self.holds(body, full) for full in self._bindings(parameters, where, binding)
+                )
 
     def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
         """The atoms that are facts of the state wherever the formula holds, or wherever it does not."""
         known = self._plain.get(id(formula))
         if known is None:
             atoms = _atoms(formula) if sign else _guards(formula)
-            kept = (atom for atom in atoms if atom.predicate not in self._rules and atom.predicate not in self._types)
+            kept = (
+                atom
+                for atom in atoms
+                if atom.predicate not in self._rules and atom.predicate not in self._types
+            )
             known = self._plain[id(formula)] = tuple(kept)
         return known
 
-    def _bindings(self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding) -> Iterator[Binding]:
+    def _bindings(
+        self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding
+    ) -> Iterator[Binding]:
         """Values for the parameters for which the atoms hold, as far as these are no derived ones."""
         names = {parameter.name: parameter for parameter in parameters}
         outer = {name: word for name, word in binding.items() if name not in names}
-        yield from self._join([atom for atom in atoms if not names.keys().isdisjoint(atom.terms)], names, outer)
+        yield from self._join(
+            [atom for atom in atoms if not names.keys().isdisjoint(atom.terms)], names, outer
+        )
 
-    def _join(self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding) -> Iterator[Binding]:
+    def _join(
+        self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding
+    ) -> Iterator[Binding]:
         if atoms:
             atom = min(
-                atoms, key=lambda one: (sum(self._open(t, names, binding) for t in one.terms), len(self._of(one)))
+                atoms,
+                key=lambda one: (
+                    sum(self._open(t, names, binding) for t in one.terms),
+                    len(self._of(one)),
+                ),
             )
             rest = [one for one in atoms if one is not atom]
             for fact in self._of(atom):
@@ -183,7 +205,9 @@ class _World:
     def _open(term: str, names: Mapping[str, Parameter], binding: Binding) -> bool:
         return term in names and term not in binding
 
-    def _matched(self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding) -> Binding | None:
+    def _matched(
+        self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding
+    ) -> Binding | None:
         grown = dict(binding)
         for term, word in zip(atom.terms, fact[1:], strict=True):
             if self._open(term, names, grown):
@@ -233,7 +257,9 @@ class _World:
                 binding.setdefault(term, word) == word if term.startswith("?") else term == word
                 for term, word in zip(rule.head.terms, fact[1:], strict=True)
             )
-            fits = same and all(self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding)
+            fits = same and all(
+                self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding
+            )
             if fits and self.holds(rule.body, binding):
                 return True
         return False
@@ -244,7 +270,9 @@ class _World:
         deleted: set[Fact] = set()
         for effect in action.effects:
             changed = added if effect.adds else deleted
-            for full in self._bindings(effect.parameters, self._where(effect.condition, True), binding):
+            for full in self._bindings(
+                effect.parameters, self._where(effect.condition, True), binding
+            ):
                 if self.holds(effect.condition, full):
                     changed.add(_ground(effect.atom, full))
         return (state - deleted) | added
@@ -258,7 +286,11 @@ def _atoms(formula: Formula) -> tuple[Atom, ...]:
     """The atoms that hold where a conjunction does."""
     if isinstance(formula, Atom):
         return (formula,)
-    return tuple(part for part in formula.parts if isinstance(part, Atom)) if isinstance(formula, And) else ()
+    return (
+        tuple(part for part in formula.parts if isinstance(part, Atom))
+        if isinstance(formula, And)
+        else ()
+    )
 
 
 def _guards(formula: Formula) -> tuple[Atom, ...]:
@@ -266,7 +298,9 @@ def _guards(formula: Formula) -> tuple[Atom, ...]:
     if isinstance(formula, Not):
         return _atoms(formula.body)
     if isinstance(formula, Or):
-        return tuple(atom for part in formula.parts if isinstance(part, Not) for atom in _atoms(part.body))
+        return tuple(
+            atom for part in formula.parts if isinstance(part, Not) for atom in _atoms(part.body)
+        )
     return ()
 
 

@@ -91,7 +91,9 @@ class Binder:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
                 if not conflict or self.units - spent_before > budget:
-                    if self.units == spent_before:  # nothing is left to draw: what is known to fail failed once more
+                    if (
+                        self.units == spent_before
+                    ):  # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
                     if not conflict:
@@ -116,7 +118,9 @@ class Binder:
         for node in nodes[failed + 1 :]:
             declaration = node.stream.declaration
             words = [term for term in node.inputs if isinstance(term, str)]
-            asks = node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            asks = (
+                node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            )
             if not asks or any(atom.predicate in pending for atom in declaration.domain):
                 continue
             instance = self._streams.instance(node.stream.name, tuple(words))
@@ -144,7 +148,9 @@ class Binder:
         )
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
-        return _Level(self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict)
+        return _Level(
+            self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict
+        )
 
     def _candidates(
         self,
@@ -162,7 +168,10 @@ class Binder:
         back so that, with growing `tries`, every pair of values meets.
         """
         node = skeleton.nodes[index]
-        key: tuple[object, ...] = (instance.inputs, frozenset[Fact]() if node.stream.is_advisory else instance.fluents)
+        key: tuple[object, ...] = (
+            instance.inputs,
+            frozenset[Fact]() if node.stream.is_advisory else instance.fluents,
+        )
         offered: set[tuple[str, ...]] = set()
 
         def offer(outputs: tuple[str, ...]) -> bool:
@@ -217,7 +226,9 @@ class Binder:
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)
 
-    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]) -> None:
+    def _blame(
+        self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]
+    ) -> None:
         """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
         if not node.stream.is_fluent:
             return

@@ -60,8 +60,14 @@ class Standing:
 
     def __init__(self, task: Task, streams: Streams) -> None:
         self._task, self._streams = task, streams
-        made = {atom.predicate for stream in streams.streams.values() for atom in stream.declaration.certified}
-        asked = {atom.predicate for atom, sign in atoms_of_conditions(task.domain, task.goal) if not sign}
+        made = {
+            atom.predicate
+            for stream in streams.streams.values()
+            for atom in stream.declaration.certified
+        }
+        asked = {
+            atom.predicate for atom, sign in atoms_of_conditions(task.domain, task.goal) if not sign
+        }
         self._absent = made & asked
 
     def fault(self, skeleton: Skeleton, values: Mapping[int, str]) -> Fault | None:
@@ -78,13 +84,19 @@ class Standing:
             reason = self._take(node, values, given)
             if reason is not None:
                 return Fault(reason, False)
-        known = {substitute(fact, values) for fact in skeleton.certified} - given.of_states - self._task.initial
+        known = (
+            {substitute(fact, values) for fact in skeleton.certified}
+            - given.of_states
+            - self._task.initial
+        )
         facts = known & self._streams.certain
         for fact in sorted(known - facts):
             if fact not in self._streams.wild:
                 return Fault(f"({' '.join(fact)}) was not certified", False)
             facts.add(fact)
-        actions = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
+        actions = [
+            (name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions
+        ]
         reason = self._replayed(actions, facts, given)
         if reason is not None:
             return Fault(reason, self._coincide(skeleton, values))
@@ -111,14 +123,20 @@ class Standing:
         outputs = tuple(values[variable] for variable in node.outputs)
         seen = node.given.union(substitute(fact, values) for fact, _ in node.fluents)
         called = self._streams.instances(node.stream.name, inputs)
-        gave = [instance for instance in called if instance.fluents == seen and outputs in instance.results]
+        gave = [
+            instance
+            for instance in called
+            if instance.fluents == seen and outputs in instance.results
+        ]
         if not gave:
             return f"{node.stream.name}({', '.join(inputs)}) never gave ({', '.join(outputs)})"
         made = given.shown.setdefault((node.stream.declaration.fluents, node.given), {})
         made.setdefault(seen, []).extend(self._streams.certified(gave[0], outputs))
         return None
 
-    def _replayed(self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified) -> str | None:
+    def _replayed(
+        self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified
+    ) -> str | None:
         used = {word for _, arguments in actions for word in arguments}
         used.update(word for fact in facts for word in fact[1:])
         used.update(word for fact in given.of_states for word in fact[1:])

@@ -115,7 +115,9 @@ class _Builder:
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
-        for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
+        for argument in (
+            step.arguments
+        ):  # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
                 self._anything(argument, local, number)
         for usage in step.usages:
@@ -152,11 +154,17 @@ class _Builder:
                 )
                 node.given = frozenset(fact for fact in self._given if fact[0] in shown)
             node.needs = [self._last(needed) for needed in node.needs]
-        actions = tuple((name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions)
-        certified = dict.fromkeys((p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified)
+        actions = tuple(
+            (name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions
+        )
+        certified = dict.fromkeys(
+            (p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified
+        )
         return Skeleton(steps, actions, _ordered(self._nodes), tuple(certified))
 
-    def _read(self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]) -> dict[str, Term]:
+    def _read(
+        self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]
+    ) -> dict[str, Term]:
         """The terms of the placeholders that are read in a state.
 
         Besides those in the facts read, derivations may rest on a test for something that the state has: nothing stands
@@ -165,7 +173,12 @@ class _Builder:
         local: dict[str, Term] = {}
         for fact in sorted(read):
             self._adopt(fact, local)
-        open_ = {name for fact in derived for name in fact[1:] if name.startswith(MARK) and name not in local}
+        open_ = {
+            name
+            for fact in derived
+            for name in fact[1:]
+            if name.startswith(MARK) and name not in local
+        }
         if open_:
             for fact in sorted(state):
                 if not open_.isdisjoint(fact[1:]):
@@ -209,7 +222,9 @@ class _Builder:
         if node is None:
             needs = [self._require(needed, local, number) for needed in guess.domain]
             inputs = self._lift(guess.inputs, local)
-            outputs = tuple(_variable(local.setdefault(name, self._new())) for name in guess.outputs)
+            outputs = tuple(
+                _variable(local.setdefault(name, self._new())) for name in guess.outputs
+            )
             node = Node(guess.stream, (guess.inputs, guess.outputs), inputs, outputs, number, fact)
             node.needs = [one for one in needs if one is not None]
             self._nodes.append(node)  # the same test may be asked for again; `_ordered` keeps one
@@ -246,11 +261,16 @@ def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
         same[id(node)] = merged.setdefault(key, node)
     calls = list(merged.values())
     places = {id(node): position for position, node in enumerate(calls)}
-    makers = {variable: position for position, node in enumerate(calls) for variable in node.outputs}
+    makers = {
+        variable: position for position, node in enumerate(calls) for variable in node.outputs
+    }
     waits: list[set[int]] = []
     users: dict[int, list[int]] = {}
     for position, node in enumerate(calls):
-        terms: list[Term] = [*node.inputs, *(term for (_, shown), _ in node.fluents for term in shown)]
+        terms: list[Term] = [
+            *node.inputs,
+            *(term for (_, shown), _ in node.fluents for term in shown),
+        ]
         waits.append({makers[term] for term in terms if isinstance(term, int)})
         waits[-1] |= {places[id(same[id(needed)])] for needed in node.needs} - {position}
         for maker in waits[-1]:

@@ -16,7 +16,9 @@ NOGOOD = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
 
 
-def with_nogoods(instantiated: InstantiatedTask, experience: Experience) -> tuple[InstantiatedTask, dict[Fact, float]]:
+def with_nogoods(
+    instantiated: InstantiatedTask, experience: Experience
+) -> tuple[InstantiatedTask, dict[Fact, float]]:
     """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
     if not experience.nogoods:
         return instantiated, {}
@@ -27,7 +29,9 @@ def with_nogoods(instantiated: InstantiatedTask, experience: Experience) -> tupl
         prices[name] = record.price
         guards.setdefault(fact, []).append(Guard(present, name))
     operators = tuple(
-        _guarded(operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())])
+        _guarded(
+            operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())]
+        )
         for operator in instantiated.operators
     )
     return replace(instantiated, operators=operators), prices

@@ -51,7 +51,9 @@ class Tally:
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
 
 
-def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]) -> tuple[Tally, ...]:
+def tallies(
+    skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]
+) -> tuple[Tally, ...]:
     """What was tried by action and stream: what never worked first, then by failures.
 
     Args:
@@ -59,7 +61,9 @@ def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mappin
         experience: What binding them has taught.
         names: The values of the problem's objects: those that are their own names stand for things.
     """
-    records: dict[Fact, list[Record]] = {fact: [record] for fact, record in experience.facts.items()}
+    records: dict[Fact, list[Record]] = {
+        fact: [record] for fact, record in experience.facts.items()
+    }
     for (fact, _), record in experience.nogoods.items():
         records.setdefault(fact, []).append(record)
     made: dict[tuple[str, str], Tally] = {}
@@ -108,11 +112,15 @@ def _users(skeleton: Skeleton) -> list[int]:
         for word in {*node.guess[0], *node.guess[1]}:
             for number in steps.get(word, ()):
                 shared[number] = shared.get(number, 0) + 1
-        users.append(min(shared, key=lambda number: (-shared[number], number)) if shared else node.step)
+        users.append(
+            min(shared, key=lambda number: (-shared[number], number)) if shared else node.step
+        )
     return users
 
 
-def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]) -> str:
+def _label(
+    skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]
+) -> str:
     """An action with the things that it concerns: those among its arguments, and where its values come from."""
     if number >= len(skeleton.steps):
         return "the goal"
@@ -124,7 +132,11 @@ def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping
             further = [thing for thing in _things(node.guess[0], names) if thing not in things]
             if further:
                 relation = node.stream.name.removeprefix(ADVISORY)
-                text += f" {relation} {' '.join(further)}" if relation != node.stream.name else f" {' '.join(further)}"
+                text += (
+                    f" {relation} {' '.join(further)}"
+                    if relation != node.stream.name
+                    else f" {' '.join(further)}"
+                )
                 things += further
     if things or number + 1 >= len(skeleton.steps):
         return text
@@ -132,4 +144,6 @@ def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping
 
 
 def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:
-    return [word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)]
+    return [
+        word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)
+    ]

@@ -66,11 +66,15 @@ class Experience:
         """Count a try of whatever certifies `fact`: a success, or a failure for a reason."""
         self._count(self.facts.setdefault(fact, Record()), reason)
 
-    def note_nogood(self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str) -> None:
+    def note_nogood(
+        self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str
+    ) -> None:
         """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
 
-    def note_exact(self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
+    def note_exact(
+        self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
+    ) -> None:
         """Note that a call gives nothing in the states that have just these facts of the predicates."""
         self.exact.setdefault(call, (predicates, {}))[1][state] = None
 

@@ -31,4 +31,8 @@ class Posterior:
 
     def __add__(self, other: Posterior) -> Posterior:
         """Both together."""
-        return Posterior(self.successes + other.successes, self.failures + other.failures, self.seconds + other.seconds)
+        return Posterior(
+            self.successes + other.successes,
+            self.failures + other.failures,
+            self.seconds + other.seconds,
+        )

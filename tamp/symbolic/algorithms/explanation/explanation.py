@@ -32,12 +32,17 @@ LINES = 6
 
 
 def explain_attempts(
-    problem: StreamTask, skeletons: Sequence[Skeleton], experience: Experience, bound: Skeleton | None
+    problem: StreamTask,
+    skeletons: Sequence[Skeleton],
+    experience: Experience,
+    bound: Skeleton | None,
 ) -> tuple[Attempt, ...]:
     """What was tried, in the order in which it was found, and what failed in it."""
     return tuple(
         Attempt(
-            actions=tuple(" ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps),
+            actions=tuple(
+                " ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps
+            ),
             rounds=skeleton.rounds,
             bound=skeleton is bound,
             failures=tuple(_failed(experience, skeleton)),
@@ -78,7 +83,11 @@ def explain_infeasible(
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
         causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
-    lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
+    lines += [
+        f"{_call(problem, *key)}: {reason.reason}"
+        for key, reason in dead.items()
+        if key not in blamed
+    ]
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
     soon = Deadline(min(SOON, deadline.left()))
@@ -86,7 +95,10 @@ def explain_infeasible(
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
     what = goals[0] if goals else "the goal"
-    calls = {_call(problem, *key): (frozenset(_names(problem, key[1])), why.reason) for key, why in dead.items()}
+    calls = {
+        _call(problem, *key): (frozenset(_names(problem, key[1])), why.reason)
+        for key, why in dead.items()
+    }
     forbidding = kept_from(problem, instantiated, calls, what)
     kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
     if kept:
@@ -99,7 +111,9 @@ def _exclusive(goals: Sequence[str]) -> str:
     return f"{' and '.join(goals)} cannot {both} at the end: each way to one of them excludes the others"
 
 
-def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool) -> tuple[str, ...]:
+def explain_failures(
+    problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool
+) -> tuple[str, ...]:
     """The call that did not end, what never worked or else failed most, and what was in the way.
 
     Args:
@@ -109,10 +123,16 @@ def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally
         tried: Whether there was a plan to be tried.
     """
     running = streams.running
-    endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    least = SELDOM * max((row.failures for row in rows), default=0)  # one that failed once or twice is no cause
+    endless = (
+        [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
+    )
+    least = SELDOM * max(
+        (row.failures for row in rows), default=0
+    )  # one that failed once or twice is no cause
     never = [row for row in rows if row.never and row.failures >= least]
-    mostly = sorted((row for row in rows if row.failures > row.successes), key=lambda row: -row.failures)
+    mostly = sorted(
+        (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
+    )
     lines = [row.text() for row in never or mostly]
     blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
     lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
@@ -133,8 +153,14 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
             failed.setdefault(kind, Counter())[instance.last.reason] += 1
     never = [(kind, reasons) for kind, reasons in failed.items() if kind not in worked]
     never.sort(key=lambda row: -row[1].total())
-    texts = (", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3)) for _, reasons in never)
-    return [f"{kind} never worked: {text}" for (kind, _), text in zip(never[:LINES], texts, strict=False)]
+    texts = (
+        ", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3))
+        for _, reasons in never
+    )
+    return [
+        f"{kind} never worked: {text}"
+        for (kind, _), text in zip(never[:LINES], texts, strict=False)
+    ]
 
 
 def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
@@ -142,7 +168,11 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
     seen: set[Fact] = set()
     for node in skeleton.nodes:
         records = [(frozenset[Fact](), experience.facts.get(node.fact))]
-        records += [(present, record) for (fact, present), record in experience.nogoods.items() if fact == node.fact]
+        records += [
+            (present, record)
+            for (fact, present), record in experience.nogoods.items()
+            if fact == node.fact
+        ]
         if node.fact in seen:
             continue
         seen.add(node.fact)
@@ -157,8 +187,14 @@ def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Recor
     objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
     reasons = ", ".join(f"{count} {reason}" for reason, count in record.reasons.most_common(3))
     tries = record.failures + record.successes
-    place = " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present)) if present else ""
-    return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+    place = (
+        " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present))
+        if present
+        else ""
+    )
+    return (
+        f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+    )
 
 
 def _kinds(problem: StreamTask, words: tuple[str, ...]) -> str:

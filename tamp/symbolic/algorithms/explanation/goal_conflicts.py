@@ -86,7 +86,9 @@ def _goal(goal: Goal, literals: Iterable[tuple[Fact, bool]]) -> Goal:
     return Goal(positive, frozenset(fact for fact, wanted in literals if not wanted), goal.static)
 
 
-def _texts(instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]) -> tuple[str, ...]:
+def _texts(
+    instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]
+) -> tuple[str, ...]:
     texts: list[str] = []
     for fact, wanted in literals:
         meaning = instantiated.meanings.get(fact[0])

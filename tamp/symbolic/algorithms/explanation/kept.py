@@ -15,7 +15,10 @@ CALLS = 2
 
 
 def kept_from(
-    problem: StreamTask, instantiated: InstantiatedTask, calls: Mapping[str, tuple[frozenset[str], str]], goal: str
+    problem: StreamTask,
+    instantiated: InstantiatedTask,
+    calls: Mapping[str, tuple[frozenset[str], str]],
+    goal: str,
 ) -> Iterator[str]:
     """For each action about the goal's objects that something forbids for good: the action, what it is, and why.
 
@@ -32,8 +35,16 @@ def kept_from(
         if not about:
             continue
         for fact in sorted(facts):
-            others = [word for word in fact[1:] if isinstance(problem.values.get(word), str) and word not in about]
-            reasons = [f"{call}: {why}" for call, (names, why) in calls.items() if not names.isdisjoint(others)]
+            others = [
+                word
+                for word in fact[1:]
+                if isinstance(problem.values.get(word), str) and word not in about
+            ]
+            reasons = [
+                f"{call}: {why}"
+                for call, (names, why) in calls.items()
+                if not names.isdisjoint(others)
+            ]
             because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
@@ -41,7 +52,9 @@ def kept_from(
             if state is None:
                 yield f"{operator.name} wants ({' '.join(fact)}) not to hold, which nothing makes false{because}"
                 continue
-            things = " ".join(word for word in state[1:] if isinstance(problem.values.get(word), str))
+            things = " ".join(
+                word for word in state[1:] if isinstance(problem.values.get(word), str)
+            )
             with_others = f" with {' and '.join(others)}" if others else ""
             never = f", so that {operator.name} is never possible" if for_good else ""
             yield f"{things} {'stays' if for_good else 'is'} {state[0]}{with_others}{never}{because}"
@@ -53,13 +66,21 @@ def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:
     for action in domain.actions:
         if action.name != operator.name:
             continue
-        given = dict(zip((parameter.name for parameter in action.parameters), operator.arguments, strict=False))
+        given = dict(
+            zip(
+                (parameter.name for parameter in action.parameters),
+                operator.arguments,
+                strict=False,
+            )
+        )
         for atom in _unwanted(action.precondition):
             head = (atom.predicate, *(given.get(term, term) for term in atom.terms))
             if head == fact:
                 return None
             for rule in domain.derived:
-                if rule.head.predicate == atom.predicate and _follows(problem, rule.head, rule.body, head, fact):
+                if rule.head.predicate == atom.predicate and _follows(
+                    problem, rule.head, rule.body, head, fact
+                ):
                     return head
     return None
 
@@ -82,8 +103,15 @@ def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fa
         grown = {**dict(zip(atom.terms, fact[1:], strict=False)), **binding}
         if (atom.predicate, *(grown.get(term, term) for term in atom.terms)) != fact:
             continue
-        others = [tuple(grown.get(term, term) for term in other.terms) for other in atoms if other is not atom]
+        others = [
+            tuple(grown.get(term, term) for term in other.terms)
+            for other in atoms
+            if other is not atom
+        ]
         names = [other.predicate for other in atoms if other is not atom]
-        if all((name, *terms) in problem.task.initial for name, terms in zip(names, others, strict=True)):
+        if all(
+            (name, *terms) in problem.task.initial
+            for name, terms in zip(names, others, strict=True)
+        ):
             return True
     return False

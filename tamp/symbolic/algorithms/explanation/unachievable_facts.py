@@ -47,7 +47,12 @@ class Missing:
         types: Mapping[str, tuple[str, ...]],
         assumed: Iterable[str] = (),
     ) -> None:
-        self._task, self._streams, self._types, self._assumed = task, streams, types, frozenset(assumed)
+        self._task, self._streams, self._types, self._assumed = (
+            task,
+            streams,
+            types,
+            frozenset(assumed),
+        )
         self._known = frozenset(facts)
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
         for fact in sorted(self._known):
@@ -77,7 +82,9 @@ class Missing:
         best: tuple[str, list[Atom]] | None = None
         for way in self._ways(fact):
             self._looks = 0
-            lacks = self._lacks(list(way.conditions), way.binding, way.types, len(way.conditions) + 1)
+            lacks = self._lacks(
+                list(way.conditions), way.binding, way.types, len(way.conditions) + 1
+            )
             if lacks and (best is None or len(lacks) < len(best[1])):
                 best = way.name, lacks
         return best
@@ -89,17 +96,26 @@ class Missing:
                 if effect.adds:
                     conditions = (*plain_atoms(action.precondition), *plain_atoms(effect.condition))
                     parameters = (*action.parameters, *effect.parameters)
-                    yield from self._way(action.name, effect.atom, conditions, _typed(parameters), fact)
+                    yield from self._way(
+                        action.name, effect.atom, conditions, _typed(parameters), fact
+                    )
         for rule in domain.derived:
             types = {**_typed(rule.parameters), **_inner(rule.body)}
-            yield from self._way(f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact)
+            yield from self._way(
+                f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact
+            )
         for stream in self._streams:
             declared = stream.declaration
             for atom in declared.certified:
                 yield from self._way(stream.name, atom, declared.domain, {}, fact)
 
     def _way(
-        self, name: str, head: Atom, conditions: Iterable[Atom], types: Mapping[str, tuple[str, ...]], fact: Fact
+        self,
+        name: str,
+        head: Atom,
+        conditions: Iterable[Atom],
+        types: Mapping[str, tuple[str, ...]],
+        fact: Fact,
     ) -> Iterator[_Way]:
         if head.predicate == fact[0]:
             binding = self._matched(head, fact, {}, types)
@@ -107,12 +123,19 @@ class Missing:
                 yield _Way(name, tuple(conditions), types, binding)
 
     def _lacks(
-        self, conditions: list[Atom], binding: Binding, types: Mapping[str, tuple[str, ...]], fewer: int
+        self,
+        conditions: list[Atom],
+        binding: Binding,
+        types: Mapping[str, tuple[str, ...]],
+        fewer: int,
     ) -> list[Atom] | None:
         """The conditions that cannot be had in the best binding, if they are fewer than that."""
         if not conditions:
             return []
-        atom = min(conditions, key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"))
+        atom = min(
+            conditions,
+            key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"),
+        )
         rest = [one for one in conditions if one is not atom]
         best: list[Atom] | None = None
         if atom.predicate in self._assumed or atom.predicate == "=":
@@ -132,7 +155,10 @@ class Missing:
         if fewer > 1:
             found = self._lacks(rest, binding, types, fewer - 1)
             if found is not None and len(found) + 1 < fewer:
-                best = [Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)), *found]
+                best = [
+                    Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)),
+                    *found,
+                ]
         return best
 
     def _matched(
@@ -147,7 +173,9 @@ class Missing:
             if not term.startswith("?"):
                 if term != word:
                     return None
-            elif grown.setdefault(term, word) != word or not self._fits(word, types.get(term, ("object",))):
+            elif grown.setdefault(term, word) != word or not self._fits(
+                word, types.get(term, ("object",))
+            ):
                 return None
         return grown
 
@@ -167,7 +195,11 @@ def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
 def _inner(formula: Formula) -> dict[str, tuple[str, ...]]:
     if isinstance(formula, And):
         return {name: types for part in formula.parts for name, types in _inner(part).items()}
-    return {**_typed(formula.parameters), **_inner(formula.body)} if isinstance(formula, Exists) else {}
+    return (
+        {**_typed(formula.parameters), **_inner(formula.body)}
+        if isinstance(formula, Exists)
+        else {}
+    )
 
 
 def _typed(parameters: Iterable[Parameter]) -> dict[str, tuple[str, ...]]:

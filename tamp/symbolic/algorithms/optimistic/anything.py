@@ -36,14 +36,21 @@ def distinguishes(task: Task, kinds: Iterable[Types] | None = None) -> bool:
     conditions += [(rule.parameters, rule.body) for rule in domain.derived]
     for action in domain.actions:
         conditions.append((action.parameters, action.precondition))
-        conditions += [((*action.parameters, *effect.parameters), effect.condition) for effect in action.effects]
+        conditions += [
+            ((*action.parameters, *effect.parameters), effect.condition)
+            for effect in action.effects
+        ]
 
     own = None if kinds is None else list(kinds)
 
     def matters(types: Types) -> bool:
         return own is None or any(domain.fits(kind, types) for kind in own)
 
-    return any(matters(types) for parameters, one in conditions for types in _differing(one, True, parameters))
+    return any(
+        matters(types)
+        for parameters, one in conditions
+        for types in _differing(one, True, parameters)
+    )
 
 
 def _differing(formula: Formula, sign: bool, scope: tuple[Parameter, ...]) -> Iterator[Types]:

@@ -22,7 +22,9 @@ def bystanders(task: Task) -> frozenset[str]:
             moved.update(fact[1:])
         elif len(fact) == 2 and fact[1] in static:
             static[fact[1]].add(fact[0])
-    kinds = {name: (frozenset(task.objects[name]), frozenset(facts)) for name, facts in static.items()}
+    kinds = {
+        name: (frozenset(task.objects[name]), frozenset(facts)) for name, facts in static.items()
+    }
     wanted = {kinds[name] for name in named if name in kinds}
     return frozenset(
         name for name, kind in kinds.items() if name in moved and name not in named and kind in wanted

@@ -80,7 +80,9 @@ class Optimism:
     several: dict[Fact, list[Guess]] = field(default_factory=dict[Fact, list[Guess]])
     guesses: list[Guess] = field(default_factory=list[Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
+    assumed: Mapping[str, tuple[BoundStream, Atom]] = field(
+        default_factory=dict[str, tuple[BoundStream, Atom]]
+    )
     complete: bool = True
 
     def maker(self, fact: Fact) -> Guess | None:
@@ -99,7 +101,11 @@ class Optimism:
 
     def promise(self, placeholder: str) -> Fact:
         """A fact that the call which gives a placeholder certifies of it."""
-        return next(fact for fact, guess in self.makers.items() if placeholder in guess.outputs and placeholder in fact)
+        return next(
+            fact
+            for fact, guess in self.makers.items()
+            if placeholder in guess.outputs and placeholder in fact
+        )
 
 
 def imagine(
@@ -152,7 +158,11 @@ def imagine(
             return
         seen.add(key)
         call = named.get(key)
-        domain = substitute(declaration.domain, declaration.inputs, inputs) if call is None else call.domain
+        domain = (
+            substitute(declaration.domain, declaration.inputs, inputs)
+            if call is None
+            else call.domain
+        )
         level = 1
         for fact in domain:
             if level_of[fact] >= level:
@@ -182,7 +192,9 @@ def imagine(
                 optimism.makers[fact] = made
                 level_of[fact] = level
                 queue.append(fact)
-            elif fact in optimism.makers and (stream.is_fluent or optimism.makers[fact].stream.is_fluent):
+            elif fact in optimism.makers and (
+                stream.is_fluent or optimism.makers[fact].stream.is_fluent
+            ):
                 optimism.several.setdefault(fact, [optimism.makers[fact]]).append(made)
 
     for stream in streams:
@@ -192,7 +204,9 @@ def imagine(
     while position < len(queue):
         fact = queue[position]
         position += 1
-        index.add(fact)  # now and not before: so a call is found with the last of its facts, and levels come in order
+        index.add(
+            fact
+        )  # now and not before: so a call is found with the last of its facts, and levels come in order
         for stream, place in by_predicate.get(fact[0], ()):
             if level_of[fact] >= (levels if stream.is_test else growing):
                 optimism.complete = False
@@ -207,7 +221,9 @@ def imagine(
 
 
 def relevant(
-    streams: Iterable[BoundStream], predicates: Iterable[str], asked: Callable[[tuple[str, ...]], bool] | None = None
+    streams: Iterable[BoundStream],
+    predicates: Iterable[str],
+    asked: Callable[[tuple[str, ...]], bool] | None = None,
 ) -> list[BoundStream]:
     """The streams whose certified facts the given predicates, or other relevant streams, can use.
 
@@ -266,7 +282,8 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
         and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
         and predicate not in positive
         and all(
-            atom.predicate in makers or atom.predicate in task.domain.types for atom in made[0][0].declaration.domain
+            atom.predicate in makers or atom.predicate in task.domain.types
+            for atom in made[0][0].declaration.domain
         )
     }
 
@@ -283,7 +300,11 @@ def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
     """
     stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
     stack += [(action.precondition, True, False) for action in task.domain.actions]
-    stack += [(effect.condition, True, False) for action in task.domain.actions for effect in action.effects]
+    stack += [
+        (effect.condition, True, False)
+        for action in task.domain.actions
+        for effect in action.effects
+    ]
     stack += [(rule.body, True, True) for rule in task.domain.derived]
     while stack:
         formula, sign, in_rule = stack.pop()

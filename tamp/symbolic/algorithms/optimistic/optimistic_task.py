@@ -68,7 +68,9 @@ class Imagination:
         self.real: dict[Fact, None] = {}
         self.known = [*sorted(task.initial), *type_facts(task)]
         changing = task.domain.fluent_predicates
-        shown = {name for stream in problem.streams for name in stream.declaration.fluents} - changing
+        shown = {
+            name for stream in problem.streams for name in stream.declaration.fluents
+        } - changing
         self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.instantiated = self.imagined()
@@ -94,7 +96,10 @@ class Imagination:
         try:
             optimism = self._guesses()
             instantiated = self._instantiated(optimism)
-            while self._shallower() and not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
+            while (
+                self._shallower()
+                and not instantiated.goal.positive <= instantiated.reachable | instantiated.initial
+            ):
                 self.shallow = (self.shallow or 0) + 1
                 optimism = self._guesses()
                 instantiated = self._instantiated(optimism)
@@ -111,7 +116,11 @@ class Imagination:
         return self._imagined(self.shallow) if self.shallow is not None else optimism
 
     def _imagined(self, deepest: int | None) -> Optimism:
-        known = [fact for fact in self.known if self.aside.isdisjoint(fact)] if self.aside else self.known
+        known = (
+            [fact for fact in self.known if self.aside.isdisjoint(fact)]
+            if self.aside
+            else self.known
+        )
         optimism = imagine(
             self.useful,
             [*known, *self.real],
