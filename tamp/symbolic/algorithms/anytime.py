@@ -1,4 +1,4 @@
-"""Better and better plans: cheaper skeletons first, then other values for a part of the plan at a time."""
+"""Anytime planning: cheaper skeletons first, then other values for a part of the plan at a time."""
 
 from __future__ import annotations
 
@@ -44,12 +44,13 @@ def solve_anytime(
         deadline: When to end.
         progress: Told between rounds.
         better: Told every plan; what it calls better is built upon.
-        bounded: Told a lower bound of the cost, after the first plan: no plan of the optimistic task is cheaper,
-            whatever values the streams find for it.
+        bounded: Told a lower bound of the cost, after the first plan: no plan of the optimistic
+            task is cheaper, whatever values the streams find for it.
         choose: Says which part of the plan is next.
 
     Returns:
-        What ended the search for the first plan; after that nothing but the time ends it, by OutOfTime.
+        What ended the search for the first plan; after that nothing but the time ends it, by
+        OutOfTime.
     """
     run = Adaptive(problem, make_rng, deadline, progress)
     first = run.solve()
@@ -82,7 +83,7 @@ _Found = tuple[Result, tuple[Skeleton, dict[int, str]]]
 
 
 def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
-    """A bound plan that costs less."""
+    """Find and bind a plan that costs less."""
     plan = run.search(weight=weight, below=cost - 1e-9).plan
     if plan is None:
         return None
@@ -93,7 +94,7 @@ def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
 
 
 def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None:
-    """The plan with other values for what a few of its actions in a row need."""
+    """Bind the plan anew with other values for what a few of its actions in a row need."""
     first = choose.randrange(1 - WINDOW, max(1, len(skeleton.steps)))
     chosen = {
         number

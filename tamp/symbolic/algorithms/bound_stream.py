@@ -15,19 +15,23 @@ from tamp.symbolic.pddl.structs import Atom, Fact, Stream
 from tamp.system.deadline import Deadline, OutOfTime
 
 StreamFunction = Callable[..., Any]
-"""f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a Rejection a try, and
-ends when nothing more is to come; a test returns a bool or a Rejection."""
+"""f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a
+Rejection a try, and ends when nothing more is to come; a test returns a bool or a Rejection."""
 
 ADVISORY = "sample-"
-"""Streams of this name's beginning only take advice from their fluents: what they certify holds in any state."""
+"""Streams of this name's beginning only take advice from their fluents: what they certify holds in
+any state."""
 
 MOST_WARNINGS = 100
-"""Different warnings that are kept: nobody reads more, and a function may fail for each of its inputs."""
+"""Different warnings that are kept: nobody reads more, and a function may fail for each of its
+inputs."""
 
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function, and the types of its outputs; whether its name may make it an adviser."""
+    """A declared stream, its function, its outputs' types; whether its name may make it an
+    adviser.
+    """
 
     declaration: Stream
     function: StreamFunction
@@ -62,7 +66,8 @@ class Objects:
     Attributes:
         types: Name to types.
         values: Name to value; a body's value is its name.
-        by_value: Whether equal values have one name; values without a hash are told apart by identity.
+        by_value: Whether equal values have one name; values without a hash are told apart by
+            identity.
     """
 
     types: dict[str, tuple[str, ...]]
@@ -93,7 +98,7 @@ class Objects:
 
 
 def value_key(value: Any) -> Any:
-    """What equal values have in common: numbers are equal as numbers (1 and 1.0), other values need the same type.
+    """Return a key that equal values share: 1 and 1.0 are equal, others need the same type.
 
     Whatever has no hash is told apart by identity.
     """
@@ -108,7 +113,7 @@ def value_key(value: Any) -> Any:
 
 @dataclass
 class Instance:
-    """A stream called with real inputs (and shown real fluents): its results so far, and the means to draw more.
+    """A stream called with real inputs (and shown real fluents): its results, and how to draw more.
 
     Attributes:
         results: Names of the outputs, one tuple a success, in the order in which they were drawn.
@@ -132,8 +137,8 @@ class Streams:
     Args:
         streams: By name.
         objects: The run's objects; results are added to it.
-        make_rng: A random generator from a string that names the instance, so that what an instance draws does not
-            depend on what was drawn elsewhere.
+        make_rng: A random generator from a string that names the instance, so that what an instance
+            draws does not depend on what was drawn elsewhere.
         deadline: The run's end, handed to the functions.
     """
 
@@ -165,7 +170,7 @@ class Streams:
     def instance(
         self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()
     ) -> Instance:
-        """The instance of a stream for these inputs; the same one each time."""
+        """Return the instance of a stream for these inputs; the same one each time."""
         key = (name, inputs, fluents)
         instance = self._instances.get(key)
         if instance is None:
@@ -174,15 +179,15 @@ class Streams:
         return instance
 
     def instances(self, name: str, inputs: tuple[str, ...]) -> list[Instance]:
-        """All instances of a stream for these inputs, whatever fluents they were shown."""
+        """List all instances of a stream for these inputs, whatever fluents they were shown."""
         return self._of_call.get((name, inputs), [])
 
     def called(self) -> list[Instance]:
-        """All instances that were called so far, in the order in which they were first looked at."""
+        """List all instances that were called so far, in the order in which they were first met."""
         return [made for made in self._instances.values() if made.results or made.last is not None]
 
     def false_tests(self) -> list[Instance]:
-        """The tests that were called and do not hold, in whatever state."""
+        """List the tests that were called and do not hold, in whatever state."""
         made = (
             known
             for known in self._instances.values()
@@ -191,7 +196,7 @@ class Streams:
         return [known for known in made if known.exhausted and not known.results]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
-        """One more try: the names of the outputs (none for a test), or None, with the reason in `instance.last`."""
+        """Try once more: return the outputs' names (none for a test), or None and set `last`."""
         if instance.exhausted:
             return None
         statistics = self.statistics[instance.stream.name]
@@ -209,14 +214,14 @@ class Streams:
                 self.wild[str(predicate).lower(), *words] = None
         except OutOfTime:
             raise
-        except (
-            Exception
-        ) as error:  # a user's function may fail in any way; the plan does not hang on it
+        except Exception as error:
+            # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
             value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
             _add_new(
                 self.warnings,
-                f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up",
+                f"stream {instance.stream.name} raised {type(error).__name__}: {error}; "
+                "that call is given up",
             )
         finally:
             statistics.seconds += time.perf_counter() - started
@@ -236,7 +241,7 @@ class Streams:
         _add_new(self.warnings, message)
 
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
-        """The facts that a result makes true."""
+        """Return the facts that a result makes true."""
         declaration = instance.stream.declaration
         return substitute(
             declaration.certified,
@@ -251,9 +256,8 @@ class Streams:
             shown = [
                 tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)
             ]
-            warn = partial(
-                _add_new, self.warnings
-            )  # not a method: a call that knows the streams would keep them alive
+            # not a method: a call that knows the streams would keep them alive
+            warn = partial(_add_new, self.warnings)
             call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
@@ -275,7 +279,8 @@ class Streams:
         parts: Sequence[Any] = (value,) if len(outputs) == 1 else tuple(value)
         if len(parts) != len(outputs):
             raise ValueError(
-                f"stream {instance.stream.name} yields {len(parts)} values for {len(outputs)} outputs"
+                f"stream {instance.stream.name} yields {len(parts)} values "
+                f"for {len(outputs)} outputs"
             )
         types = instance.stream.output_types
         return tuple(
@@ -291,7 +296,7 @@ STRANGERS = (Streams.draw.__code__,)
 def substitute(
     atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]
 ) -> tuple[Fact, ...]:
-    """The facts of lifted atoms under a substitution of variables by objects."""
+    """Return the facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
     return tuple(
         [(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms]

@@ -12,7 +12,8 @@ from tamp.symbolic.algorithms.bound_stream import Objects
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Function
 
 MARK = "#"
-"""Placeholders begin with it, as in tamp.symbolic.algorithms.optimistic.optimistic_instantiation."""
+"""Placeholders begin with it, as in
+tamp.symbolic.algorithms.optimistic.optimistic_instantiation."""
 
 UNKNOWN = 1.0
 """What a placeholder's cost is taken for until the function was asked once."""
@@ -20,14 +21,15 @@ UNKNOWN = 1.0
 
 @dataclass(frozen=True)
 class BoundFunction:
-    """A declared function and the Python function that computes it: numbers, zero or more, from values."""
+    """A declared function and the Python function that computes it: numbers, zero or more."""
 
     declaration: Function
     function: Callable[..., Any]
 
 
 class Costs(Mapping[Fact, float]):
-    """The costs of function facts: those given, those computed, and for placeholders the mean of those computed.
+    """The costs of function facts: given, computed, and for placeholders the mean of those
+    computed.
 
     Args:
         functions: Computed ones.
@@ -73,7 +75,7 @@ class Costs(Mapping[Fact, float]):
         return len({**self._given, **self._known})
 
     def of(self, action: Action, arguments: tuple[str, ...]) -> float:
-        """What an action costs with real arguments."""
+        """Return the cost of an action with real arguments."""
         if not isinstance(action.cost, Atom):
             return float(action.cost)
         binding = dict(

@@ -1,4 +1,4 @@
-"""What algorithms are made of: search what is imagined, lift, bind, and remember what failed."""
+"""One run of planning, the algorithms' steps: search, lift, bind, and remember what failed."""
 
 from __future__ import annotations
 
@@ -39,10 +39,12 @@ from tamp.symbolic.search.search import Result as Found
 from tamp.system.deadline import Deadline
 
 FEW = 8
-"""A stream that ended with no more values than this is replaced by them: a search can then prove that none will do."""
+"""A stream that ended with no more values than this is replaced by them: a search can then prove
+that none will do."""
 
 SEARCH_LIMIT = 2000
-"""States that a search may expand in looking for a cheap plan; after that the first plan is taken."""
+"""States that a search may expand in looking for a cheap plan; after that the first plan is
+taken."""
 
 
 class Run(Imagination):
@@ -84,11 +86,12 @@ class Run(Imagination):
         self.searched = self.instantiated
 
     def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
-        """A plan of the optimistic task, priced by experience.
+        """Search for a plan of the optimistic task, priced by experience.
 
         Args:
             weight: Of the estimate: with less the plans are cheaper and the search is longer.
-            below: What the actions of the plan must cost less than; when it is given, there is one try only.
+            below: What the actions of the plan must cost less than; when it is given, there is one
+                try only.
         """
         started = time.perf_counter()
         try:
@@ -110,26 +113,25 @@ class Run(Imagination):
             prices = {fact: unit * price for fact, price in prices.items()}
         self.prices = prices
         found = search(
-            instantiated, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight, below=below,
-            audit=self.excluded,
+            instantiated, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight,
+            below=below, audit=self.excluded,
         )  # fmt: skip
         self.effort.expanded += found.expanded
-        if (
-            found.reason is Reason.LIMIT and below == math.inf and not self.brief
-        ):  # with many prices many plans look alike: then any plan will do
+        if found.reason is Reason.LIMIT and below == math.inf and not self.brief:
+            # with many prices many plans look alike: then any plan will do
             found = search(instantiated, search="greedy", price=prices, deadline=self.deadline)
             self.effort.expanded += found.expanded
         return found
 
     def excluded(self) -> bool:
-        """Whether it is proven that goals exclude each other in the optimistic task; false where that is not known."""
+        """Check that goals are proven to exclude each other in the optimistic task."""
         if self._audited is self.instantiated:
             return False
         self._audited = self.instantiated
         return excluded(self.instantiated, self.deadline) is not None
 
     def lower_bound(self, limit: int) -> float:
-        """What no plan costs less than, whatever its values: zero where guesses were left out; sees `limit` states."""
+        """Compute a lower bound of any plan's cost; 0 if guesses are missing; sees `limit` states."""
         self.recall()
         started = time.perf_counter()
         found = search(
@@ -143,12 +145,12 @@ class Run(Imagination):
         return found.bound if self.optimism.complete else 0.0
 
     def _usual_cost(self) -> float:
-        """The mean cost of the operators: prices are in units of it where actions cost more than one."""
+        """Compute the operators' mean cost, the unit of prices where actions cost more than one."""
         operators = self.instantiated.operators
         return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
-        """The plan's skeleton; the same one when the plan was found before and rests on the same facts."""
+        """Return the plan's skeleton; the same one if it was found before and rests on the same."""
         operators = tuple((operator.name, operator.arguments) for operator in plan.operators)
         traced, key = self.traced.get(operators, (None, None))
         known = (
@@ -164,9 +166,8 @@ class Run(Imagination):
                     some = choices(self.optimism, self.experience, at.static, at.state)
                     chosen |= {(number, fact): guess for fact, guess in some.items()}
             calls = tuple((place, guess.call) for place, guess in chosen.items())
-            key = (
-                tuple((step.name, step.arguments, step.static, step.usages) for step in steps), trace.end.static, calls,
-            )  # fmt: skip
+            told = tuple((step.name, step.arguments, step.static, step.usages) for step in steps)
+            key = (told, trace.end.static, calls)
             known = self.skeletons.get(key)
             if known is None or not self.is_open(known):
                 maker, promise = self.optimism.maker, self.promise
@@ -178,20 +179,20 @@ class Run(Imagination):
         return known
 
     def is_open(self, skeleton: Skeleton) -> bool:
-        """Whether all calls of a skeleton may still give something that is not known: its plan may rest on others."""
+        """Check that all calls of a skeleton may give something new; else others may serve it."""
         calls = (((node.stream.name, node.guess[0]), bool(node.outputs)) for node in skeleton.nodes)
         return not any(
             call in self.dead or (gives and call in self.settled) for call, gives in calls
         )
 
     def promise(self, name: str) -> Fact | None:
-        """A fact that the call which gives a placeholder, or a value, certifies of it; None of the task's objects."""
+        """Return a fact that the call which gives a value certifies of it; None of objects."""
         if name.startswith(MARK):
             return self.optimism.promise(name)
         return next((fact for fact in self.real if name in fact[1:]), None)
 
     def bury(self, skeleton: Skeleton) -> bool:
-        """Note the calls with real inputs that ended without any value; whether there were new ones."""
+        """Note the calls with real inputs that ended without a value; say if there were new ones."""
         before = len(self.dead) + len(self.settled)
         for node in skeleton.nodes:
             if node.stream.is_fluent or any(isinstance(term, int) for term in node.inputs):
@@ -215,7 +216,7 @@ class Run(Imagination):
         return len(self.dead) + len(self.settled) > before
 
     def _refuse_tests(self) -> None:
-        """Note all tests of settled values that turned out false, so that no search proposes them one by one."""
+        """Note all tests of settled values that are false, so that no search proposes them."""
         settled = {
             name for fact in self.real for name in fact[1:]
         } | self.problem.task.objects.keys()
@@ -226,7 +227,7 @@ class Run(Imagination):
                 self.refused.update(self.streams.certified(instance, ()))
 
     def absorb(self) -> bool:
-        """Take over the facts that streams found besides; whether there were new ones."""
+        """Take over the facts that streams found besides; say if there were new ones."""
         before = len(self.real)
         self.real.update(self.streams.wild)
         return len(self.real) > before
@@ -234,9 +235,10 @@ class Run(Imagination):
     def bind(
         self, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()
     ) -> dict[int, str] | None:
-        """Values with which the plan holds when it is replayed, see `Binder.bind`.
+        """Find values with which the plan holds when it is replayed, see `Binder.bind`.
 
-        If it does not hold with any, the skeleton forgets them, and what gave them is noted to have failed once more.
+        If it does not hold with any, the skeleton forgets them, and what gave them is noted to have
+        failed once more.
         """
         refused: list[Fault] = []
 
@@ -259,7 +261,7 @@ class Run(Imagination):
         return values
 
     def solved(self, skeleton: Skeleton, values: dict[int, str]) -> Result:
-        """The bound plan."""
+        """Return the bound plan."""
         lifted = {action.name: action for action in self.task.domain.actions}
         bound = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
         actions = tuple(
@@ -276,7 +278,7 @@ class Run(Imagination):
         return result
 
     def hopeless(self) -> Result:
-        """The end of a run in which no plan is left: infeasible, unless a stream was given up before its end."""
+        """End the run where no plan is left: infeasible, unless a stream was given up too early."""
         outcome = Outcome.EXHAUSTED if self.given_up else Outcome.INFEASIBLE
         facts = {
             *self.known,
@@ -302,27 +304,27 @@ class Run(Imagination):
         return self.result(outcome, reasons)
 
     def _towards(self, goal: Formula) -> InstantiatedTask:
-        """The optimistic task with another goal."""
+        """Instantiate the optimistic task with another goal."""
         facts = [*self.real, *self.sampled(), *self.optimism.makers]
         types = {**self.objects.types, **self.optimism.types}
         instantiator = Instantiator(replace(self.task, goal=goal), frozenset(self.assumed))
         return instantiator.instantiate(facts, types, frozenset(self.refused))
 
     def sampled(self) -> Iterable[Fact]:
-        """Real facts that are known besides those that were settled."""
+        """Return the real facts that are known besides those that were settled."""
         return ()
 
     def tallies(self) -> tuple[Tally, ...]:
-        """What was tried, by action and stream."""
+        """Count what was tried, by action and stream."""
         return tallies(list(self.skeletons.values()), self.experience, self.problem.values)
 
     def stopped(self, outcome: Outcome) -> Result:
-        """What the run ends with when the time is up or the user wants an end: no alarm disturbs that."""
+        """End the run when the time is up or the user wants an end: no alarm disturbs that."""
         self.deadline.ended = True
         return self.result(outcome)
 
     def result(self, outcome: Outcome, explanation: tuple[str, ...] | None = None) -> Result:
-        """What the run ends with; by default the explanation is what failed most."""
+        """Return the result of the run; by default the explanation is what failed most."""
         started = time.perf_counter()
         rows = () if outcome is Outcome.SOLVED else self.tallies()
         if explanation is None:

@@ -30,7 +30,7 @@ class Part:
 
 
 def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
-    """The goal's conjuncts, universal ones taken apart, each with its ways to hold."""
+    """List the goal's conjuncts, universal ones taken apart, each with its ways to hold."""
     rules = _by_head(instantiated.axioms)
     literals = [(fact, True) for fact in sorted(instantiated.goal.positive)]
     literals += [(fact, False) for fact in sorted(instantiated.goal.negative)]

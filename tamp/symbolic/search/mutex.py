@@ -45,7 +45,7 @@ def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Litera
 
 
 class Mutexes:
-    """Which pairs of facts a reachable state may contain; an absence that the goal wants is a fact.
+    """Pairs of facts that a reachable state may contain; an absence the goal wants is a fact.
 
     Args:
         instantiated: The task.
@@ -171,7 +171,7 @@ class Mutexes:
         return any_new
 
     def _meet(self, k: int, others: int) -> bool:
-        """Note that a fact occurs with these; whether any of them is new."""
+        """Note that a fact occurs with these; say if any of them is new."""
         new = others & ~self._with[k]
         if not new:
             return False
@@ -221,7 +221,7 @@ class Mutexes:
         )
 
     def _known(self, literal: Literal) -> bool:
-        """Whether a literal is looked at: absences only where the goal wants them."""
+        """Check that a literal is looked at: absences only where the goal wants them."""
         return literal[1] or literal in self._absent
 
     def _numbers(self, literals: Iterable[Literal]) -> tuple[int, ...]:
@@ -239,14 +239,14 @@ class Mutexes:
         return mask
 
     def _partners(self, numbers: tuple[int, ...]) -> int:
-        """What goes with each of these."""
+        """Return what goes with each of these."""
         mask = self._alive
         for k in numbers:
             mask &= self._with[k]
         return mask
 
     def _consistent(self, numbers: tuple[int, ...]) -> bool:
-        """Whether these go together, pair by pair; a fact without a number never holds."""
+        """Check that these go together, pair by pair; a fact without a number never holds."""
         wanted = 0
         for k in numbers:
             if k < 0:

@@ -8,9 +8,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formu
 
 
 def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozenset[str]], set[str]]:
-    """Return for each derived predicate those that rest on it and it on them, and itself; and
-    which rest on themselves.
-    """
+    """Return for each derived predicate those of its stratum; and which rest on themselves."""
     below = {
         name: {p for rule in those for p in _used(rule.body) if p in rules}
         for name, those in rules.items()

@@ -26,7 +26,10 @@ from tamp.symbolic.search.recursion import strata_of
 
 Binding = Mapping[str, str]
 
-REFUTED = "a plan was dropped that did not hold when it was replayed, a mistake of the planner's: please report it"
+REFUTED = (
+    "a plan was dropped that did not hold when it was replayed, "
+    "a mistake of the planner's: please report it"
+)
 """How the reason is told to people."""
 
 
@@ -37,7 +40,7 @@ def violation(
     objects: Mapping[str, tuple[str, ...]] | None = None,
     shown: Callable[[frozenset[Fact]], Iterable[Fact]] | None = None,
 ) -> str | None:
-    """What is wrong with a plan; None where it leads from the initial state to the goal.
+    """Replay a plan and say what is wrong; None where it leads from the start to the goal.
 
     Args:
         task: Gives actions, rules, the initial state and the goal.
@@ -86,7 +89,7 @@ def _by_predicate(facts: Iterable[Fact]) -> dict[str, set[Fact]]:
 
 
 class _World:
-    """What holds in one state after the other."""
+    """The facts that hold in one state after the other."""
 
     def __init__(
         self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]
@@ -111,7 +114,7 @@ class _World:
             self._rows[predicate] = facts | self._static.get(predicate, set())
 
     def fits(self, word: str, parameter: Parameter) -> bool:
-        """Whether an object is there and of one of the parameter's types."""
+        """Check that an object is there and of one of the parameter's types."""
         return word in self._fitting(parameter.types)
 
     def _fitting(self, types: tuple[str, ...]) -> dict[str, None]:
@@ -123,14 +126,14 @@ class _World:
         return found
 
     def failing(self, formula: Formula, binding: Binding) -> str | None:
-        """The part of a conjunction that does not hold, in words."""
+        """Return the part of a conjunction that does not hold, in words."""
         if isinstance(formula, And):
             said = (self.failing(part, binding) for part in formula.parts)
             return next((one for one in said if one is not None), None)
         return None if self.holds(formula, binding) else _words(formula, binding)
 
     def holds(self, formula: Formula, binding: Binding) -> bool:
-        """Whether a condition holds."""
+        """Check that a condition holds."""
         match formula:
             case Atom():
                 return self._fact(_ground(formula, binding))
@@ -152,7 +155,7 @@ class _World:
                 )
 
     def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
-        """The atoms that are facts of the state wherever the formula holds, or wherever it does not."""
+        """Return the atoms that are facts wherever the formula holds, or wherever it does not."""
         known = self._plain.get(id(formula))
         if known is None:
             atoms = _atoms(formula) if sign else _guards(formula)
@@ -167,7 +170,7 @@ class _World:
     def _bindings(
         self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding
     ) -> Iterator[Binding]:
-        """Values for the parameters for which the atoms hold, as far as these are no derived ones."""
+        """Yield the parameters' values for which the atoms hold, as far as none is derived."""
         names = {parameter.name: parameter for parameter in parameters}
         outer = {name: word for name, word in binding.items() if name not in names}
         yield from self._join(
@@ -228,9 +231,10 @@ class _World:
         return fact[0] in self._rules and self._derived(fact)
 
     def _derived(self, fact: Fact) -> bool:
-        """Whether a rule gives the fact.
+        """Check that a rule gives the fact.
 
-        Where its predicate rests on itself: the least fixpoint over what is asked for of its kind on the way to it.
+        Where its predicate rests on itself: the least fixpoint over what is asked for of its kind
+        on the way to it.
         """
         if fact in self._known:
             return self._known[fact]
@@ -265,7 +269,7 @@ class _World:
         return False
 
     def after(self, action: Action, binding: Binding, state: frozenset[Fact]) -> frozenset[Fact]:
-        """The state after an action; adding wins over deleting."""
+        """Return the state after an action; adding wins over deleting."""
         added: set[Fact] = set()
         deleted: set[Fact] = set()
         for effect in action.effects:
@@ -283,7 +287,7 @@ def _ground(atom: Atom, binding: Binding) -> Fact:
 
 
 def _atoms(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that hold where a conjunction does."""
+    """Return the atoms that hold where a conjunction does."""
     if isinstance(formula, Atom):
         return (formula,)
     return (
@@ -294,7 +298,7 @@ def _atoms(formula: Formula) -> tuple[Atom, ...]:
 
 
 def _guards(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that hold where a disjunction may fail."""
+    """Return the atoms that hold where a disjunction may fail."""
     if isinstance(formula, Not):
         return _atoms(formula.body)
     if isinstance(formula, Or):

@@ -1,4 +1,4 @@
-"""Finding values for a skeleton: draw, test, and jump back to a choice that the failure depends on."""
+"""Binding a skeleton: draw, test, and jump back to a choice that the failure depends on."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RECENT = 3
 
 @dataclass
 class _Level:
-    """One node on the way down: where its candidates come from, and which earlier levels its failure depends on."""
+    """One node on the way down: its candidates, and the levels that its failure depends on."""
 
     candidates: Iterator[tuple[str, ...]]
     conflict: set[int]
@@ -29,10 +29,10 @@ class _Level:
 
 
 class Binder:
-    """Backtracking with conflict-directed backjumping (Prosser 1993) over the stream calls of a skeleton.
+    """Backtracking with conflict-directed backjumping (Prosser 1993) over a skeleton's calls.
 
-    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest level in it. Every
-    failure is noted in `experience` under the symbolic fact that it concerns.
+    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest
+    level in it. Every failure is noted in `experience` under the symbolic fact that it concerns.
     """
 
     def __init__(self, streams: Streams, experience: Experience, deadline: Deadline) -> None:
@@ -51,10 +51,11 @@ class Binder:
         *,
         holds: Callable[[dict[int, str]], bool] | None = None,
     ) -> dict[int, str] | None:
-        """Values for all variables, or None when none were found within the budget.
+        """Find values for all variables, or None when none were found within the budget.
 
         Args:
-            skeleton: What to bind; it remembers the values that worked, to be tried first next time.
+            skeleton: What to bind; it remembers the values that worked, to be tried first next
+                time.
             tries: New draws a visit of a node.
             budget: Draws in all.
             fresh: The nodes that are to take new values before those that worked.
@@ -91,9 +92,8 @@ class Binder:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
                 if not conflict or self.units - spent_before > budget:
-                    if (
-                        self.units == spent_before
-                    ):  # nothing is left to draw: what is known to fail failed once more
+                    if self.units == spent_before:
+                        # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
                     if not conflict:
@@ -109,7 +109,7 @@ class Binder:
                     raise OutOfTime
 
     def _settle(self, nodes: Sequence[Node], failed: int) -> None:
-        """Ask the later tests of real values too, once one failed for good: the next search learns from all.
+        """Ask the later tests of real values too, once one failed for good: search learns from all.
 
         Not those that rest on what a test of this skeleton has yet to certify.
         """
@@ -162,10 +162,10 @@ class Binder:
         tries: int,
         fresh: bool,
     ) -> Iterator[tuple[str, ...]]:
-        """The value that was taken last time and a few recent ones, then new draws, then the earliest results.
+        """Yield the last value and a few recent ones, then new draws, then the earliest results.
 
-        New draws come before most earlier results, since what failed once often fails again; the earliest ones come
-        back so that, with growing `tries`, every pair of values meets.
+        New draws come before most earlier results, since what failed once often fails again; the
+        earliest ones come back so that, with growing `tries`, every pair of values meets.
         """
         node = skeleton.nodes[index]
         key: tuple[object, ...] = (
@@ -229,7 +229,7 @@ class Binder:
     def _blame(
         self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]
     ) -> None:
-        """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
+        """Add to the conflict the levels that placed what a failed fluent stream met."""
         if not node.stream.is_fluent:
             return
         blockers = instance.last.blockers if instance.last is not None else ()
@@ -239,15 +239,15 @@ class Binder:
 
 
 def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
-    """The symbolic state facts about the blockers."""
+    """Return the symbolic state facts about the blockers."""
     return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
 
 
 def value_of(term: Term, values: Mapping[int, str]) -> str:
-    """A term's value."""
+    """Return a term's value."""
     return term if isinstance(term, str) else values[term]
 
 
 def substitute(fact: LiftedFact, values: Mapping[int, str]) -> Fact:
-    """A lifted fact with its variables' values."""
+    """Return a lifted fact with its variables' values."""
     return (fact[0], *(value_of(term, values) for term in fact[1]))

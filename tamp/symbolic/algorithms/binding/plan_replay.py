@@ -1,4 +1,4 @@
-"""Whether a bound plan holds: replayed by the book on what the streams really certified."""
+"""Replay of a bound plan by the book, on what the streams really certified."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from tamp.symbolic.search.replay import violation
 
 @dataclass(frozen=True)
 class Fault:
-    """Why a bound plan does not hold.
+    """A reason why a bound plan does not hold.
 
     Attributes:
         reason: In words.
-        expected: Whether nobody could know it before the values were there: something found besides forbids it, or
-            values that were imagined as different are the same. Otherwise the planner has made a mistake.
+        expected: Whether nobody could know it before the values were there: something found besides
+            forbids it, or values that were imagined as different are the same. Otherwise the
+            planner has made a mistake.
     """
 
     reason: str
@@ -33,14 +34,14 @@ Shown = tuple[tuple[str, ...], frozenset[Fact]]
 
 @dataclass
 class _Certified:
-    """What streams that look at the state gave: facts of those states that have what they were shown."""
+    """Facts by streams that look at the state: they hold in states that have what was shown."""
 
     shown: dict[Shown, dict[frozenset[Fact], list[Fact]]] = field(
         default_factory=dict[Shown, dict[frozenset[Fact], list[Fact]]]
     )
 
     def of(self, state: frozenset[Fact]) -> Iterable[Fact]:
-        """Those that hold in a state because its facts were shown."""
+        """Yield those that hold in a state because its facts were shown."""
         for (predicates, given), made in self.shown.items():
             yield from made.get(given.union(fact for fact in state if fact[0] in predicates), ())
 
@@ -71,11 +72,11 @@ class Standing:
         self._absent = made & asked
 
     def fault(self, skeleton: Skeleton, values: Mapping[int, str]) -> Fault | None:
-        """What is wrong with a bound plan, if anything is.
+        """Find what is wrong with a bound plan, if anything is.
 
-        Preconditions, derived predicates, effects and the goal are evaluated on the initial facts and those that the
-        plan says it rests on; each of these must have been certified with these values, of the state at that step
-        where its stream was shown one.
+        Preconditions, derived predicates, effects and the goal are evaluated on the initial facts
+        and those that the plan says it rests on; each of these must have been certified with these
+        values, of the state at that step where its stream was shown one.
         """
         given = _Certified()
         for node in skeleton.nodes:
@@ -111,14 +112,14 @@ class Standing:
         return None if reason is None else Fault(reason, True)
 
     def _coincide(self, skeleton: Skeleton, values: Mapping[int, str]) -> bool:
-        """Whether a variable has the value of another one, or of an object that the task or the plan names."""
+        """Check that a variable's value is another one's, or an object that task or plan names."""
         named = {*self._task.objects, *self._task.domain.constants}
         lifted = (*skeleton.actions, *skeleton.certified)
         named.update(term for _, terms in lifted for term in terms if isinstance(term, str))
         return len(set(values.values())) < len(values) or not named.isdisjoint(values.values())
 
     def _take(self, node: Node, values: Mapping[int, str], given: _Certified) -> str | None:
-        """Add what a call certified of a state; what is wrong if it never gave these values."""
+        """Add what a call certified of a state; say what is wrong if it never gave these values."""
         inputs = tuple(value_of(term, values) for term in node.inputs)
         outputs = tuple(values[variable] for variable in node.outputs)
         seen = node.given.union(substitute(fact, values) for fact, _ in node.fluents)

@@ -22,16 +22,18 @@ def build_skeleton(
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
-    A placeholder that two parts of the plan use without handing it over in a fluent fact becomes two variables: the
-    grasp of a second pick need not be the grasp of the first.
+    A placeholder that two parts of the plan use without handing it over in a fluent fact becomes
+    two variables: the grasp of a second pick need not be the grasp of the first.
 
     Args:
         steps: The plan.
         end: The final state, and what the goal rests on in it.
         maker: Who certifies an optimistic fact; None for known ones.
-        promise: What the call that gives a placeholder, or a value, certifies of it; None for the task's own objects.
+        promise: What the call that gives a placeholder, or a value, certifies of it; None for the
+            task's own objects.
         given: Facts that no action changes: they are shown to the streams that ask for them.
-        chosen: For a step's number and a fact that it rests on who certifies that there, where several may.
+        chosen: For a step's number and a fact that it rests on who certifies that there, where
+            several may.
     """
     builder = _Builder(maker, promise, given, chosen or {})
     for number, step in enumerate(steps):
@@ -41,7 +43,7 @@ def build_skeleton(
 
 
 class _Builder:
-    """Walks through the plan, keeping for each fluent fact of the state which variables stand in it."""
+    """Walks through the plan and keeps for each fluent fact which variables stand in it."""
 
     def __init__(
         self,
@@ -61,7 +63,8 @@ class _Builder:
         self._certified: list[LiftedFact] = []
         self._shown: dict[int, dict[Fact, tuple[Term, ...]]] = {}
 
-    # Variables, merged as they turn out to be the same (congruence closure over the calls that produce them).
+    # Variables, merged as they turn out to be the same (congruence closure over the calls that
+    # produce them).
 
     def _find(self, variable: int) -> int:
         while self._parent[variable] != variable:
@@ -94,7 +97,7 @@ class _Builder:
             self._union(x, y)
 
     def _last(self, node: Node) -> Node:
-        """The node that a node was merged into."""
+        """Return the node that a node was merged into."""
         while id(node) in self._kept:
             node = self._kept[id(node)]
         return node
@@ -108,16 +111,15 @@ class _Builder:
     # The walk.
 
     def take(self, number: int, step: Step) -> None:
-        """One action: bind its arguments through the facts that it reads, then require what it rests on."""
+        """Take one action: bind its arguments through what it reads, require what it rests on."""
         for fact in step.state:
             self._state.setdefault(fact, fact[1:])
         self._shown[number] = {fact: self._state[fact] for fact in step.state}
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
-        for argument in (
-            step.arguments
-        ):  # no condition says what it is: any value of the stream that gives it will do
+        for argument in step.arguments:
+            # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
                 self._anything(argument, local, number)
         for usage in step.usages:
@@ -132,7 +134,7 @@ class _Builder:
             self._state[fact] = self._lift(fact[1:], local)
 
     def finish(self, number: int, end: End) -> None:
-        """What the goal rests on in the final state."""
+        """Require what the goal rests on in the final state."""
         self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in end.state}
         local = self._read(end.read, end.state, end.derived)
         for fact in sorted(end.static):
@@ -140,7 +142,7 @@ class _Builder:
         self._certify(end.static, local)
 
     def skeleton(self, steps: tuple[Step, ...]) -> Skeleton:
-        """The result, every term resolved."""
+        """Build the skeleton, every term resolved."""
         for node in self._nodes:
             node.inputs = tuple(self._resolve(term) for term in node.inputs)
             node.outputs = tuple(self._find(variable) for variable in node.outputs)
@@ -165,10 +167,10 @@ class _Builder:
     def _read(
         self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]
     ) -> dict[str, Term]:
-        """The terms of the placeholders that are read in a state.
+        """Return the terms of the placeholders that are read in a state.
 
-        Besides those in the facts read, derivations may rest on a test for something that the state has: nothing stands
-        there, *or* it is clear of it.
+        Besides those in the facts read, derivations may rest on a test for something that the state
+        has: nothing stands there, *or* it is clear of it.
         """
         local: dict[str, Term] = {}
         for fact in sorted(read):
@@ -253,7 +255,7 @@ def _variable(term: Term) -> int:
 
 
 def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
-    """An order that fails early: tests as soon as their inputs are known, generators step by step, motions last."""
+    """Order the calls to fail early: tests once they can be, generators by step, motions last."""
     merged: dict[tuple[object, ...], Node] = {}
     same: dict[int, Node] = {}
     for node in nodes:
@@ -291,5 +293,5 @@ def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
 
 
 def _rank(node: Node) -> tuple[int, int]:
-    """Tests, then generators, then what depends on the whole state; each in the order of the steps."""
+    """Rank tests, then generators, then what depends on the whole state; each by its step."""
     return (0 if node.stream.is_test else 2 if node.stream.is_fluent else 1, node.step)

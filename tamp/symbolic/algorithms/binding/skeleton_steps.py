@@ -19,7 +19,7 @@ NOGOOD = "(nogood)"
 def with_nogoods(
     instantiated: InstantiatedTask, experience: Experience
 ) -> tuple[InstantiatedTask, dict[Fact, float]]:
-    """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
+    """Guard the task by all nogoods that were learned; return it and the guards' prices."""
     if not experience.nogoods:
         return instantiated, {}
     guards: dict[Fact, list[Guard]] = {}
@@ -46,7 +46,7 @@ def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
 def to_steps(
     instantiated: InstantiatedTask, plan: Plan, prices: Mapping[Fact, float]
 ) -> tuple[tuple[Step, ...], Trace]:
-    """The plan's steps, and the trace that they come from."""
+    """Return the plan's steps, and the trace that they come from."""
     traced = trace(instantiated, plan.operators, prices)
     steps: list[Step] = []
     for step in traced.steps:

@@ -1,4 +1,4 @@
-"""What streams that look at the state have ruled out for good: a call, in a state that has just these facts."""
+"""States that streams which look at the state have ruled out for good, call by call."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from tamp.symbolic.search.instantiation.axioms import stratify
 from tamp.symbolic.search.operators import Axiom, Facts, InstantiatedTask
 
 ELSEWHERE = "(elsewhere)"
-"""The predicate of derived facts that say that a state is another one; no PDDL name looks like it."""
+"""The predicate of derived facts that say that a state is another one; no PDDL name looks like
+it."""
 
 
 NONE: Facts = frozenset()
@@ -91,7 +92,7 @@ def elsewhere(
 def choices(
     optimism: Optimism, experience: Experience, facts: Facts, state: Facts
 ) -> dict[Fact, Guess]:
-    """Choose a call for each of the facts that several certify: the first that is not known to fail in the state.
+    """Choose a call for each fact that several certify: the first not known to fail in the state.
 
     Args:
         optimism: Which calls certify what.

@@ -19,10 +19,10 @@ WORST = 5.0
 def doubts(
     optimism: Optimism, experience: Experience, earlier: Mapping[str, Posterior]
 ) -> dict[Fact, float]:
-    """A price for what is not tried yet.
+    """Price what is not tried yet, as exploration asks.
 
-    For each test of placeholders, since a generator that certifies the same goes first; and for the calls of streams
-    that earlier runs know, by the failures to expect.
+    For each test of placeholders, since a generator that certifies the same goes first; and for the
+    calls of streams that earlier runs know, by the failures to expect.
     """
     known, makers = experience.facts, optimism.makers
     prices = {

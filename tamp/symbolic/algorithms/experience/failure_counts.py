@@ -1,4 +1,4 @@
-"""What was tried for each action of the plans that were tried, and why it failed."""
+"""Counts of the tries and failures of each action in the plans that were tried, and the reasons."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Tally:
         return self.tries > 0 and self.successes == 0
 
     def text(self) -> str:
-        """One line."""
+        """Describe it in one line."""
         reasons = ", ".join(f"{count} {reason}" for reason, count in self.reasons.most_common(3))
         how = "never worked" if self.never else f"worked {self.successes} times"
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
@@ -54,7 +54,7 @@ class Tally:
 def tallies(
     skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]
 ) -> tuple[Tally, ...]:
-    """What was tried by action and stream: what never worked first, then by failures.
+    """Count what was tried by action and stream: what never worked first, then by failures.
 
     Args:
         skeletons: The plans that were tried, in order.
@@ -90,7 +90,7 @@ def tallies(
 
 
 def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
-    """The things of the problem that reasons name as hit or blocking, and how often; most first."""
+    """Count the things of the problem that reasons name as hit or blocking; most first."""
     counts: Counter[str] = Counter()
     for row in rows:
         for reason, count in row.reasons.items():
@@ -101,7 +101,7 @@ def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tupl
 
 
 def _users(skeleton: Skeleton) -> list[int]:
-    """For each call the step with which it has most objects in common; the first of those that need it."""
+    """Find for each call the step that shares most objects with it; the first of those."""
     steps: dict[str, list[int]] = defaultdict(list)
     for number, step in enumerate(skeleton.steps):
         for word in dict.fromkeys(step.arguments):
@@ -121,7 +121,7 @@ def _users(skeleton: Skeleton) -> list[int]:
 def _label(
     skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]
 ) -> str:
-    """An action with the things that it concerns: those among its arguments, and where its values come from."""
+    """Describe an action with the things that it and its values' sources concern."""
     if number >= len(skeleton.steps):
         return "the goal"
     step = skeleton.steps[number]

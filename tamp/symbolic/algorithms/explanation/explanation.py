@@ -1,4 +1,4 @@
-"""Why there is no plan, in words that name objects."""
+"""Explanations of why there is no plan, in words that name objects."""
 
 from __future__ import annotations
 
@@ -22,10 +22,12 @@ from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
 SOON = 3.0
-"""Seconds in which goals that exclude each other are looked for once it is proven that there is no plan."""
+"""Seconds in which goals that exclude each other are looked for once it is proven that there is no
+plan."""
 
 SELDOM = 0.05
-"""What never worked is the cause where it failed at least so often, as a share of the failures of what failed most."""
+"""What never worked is the cause where it failed at least so often, as a share of the failures of
+what failed most."""
 
 LINES = 6
 """How many causes are worth reading."""
@@ -37,7 +39,7 @@ def explain_attempts(
     experience: Experience,
     bound: Skeleton | None,
 ) -> tuple[Attempt, ...]:
-    """What was tried, in the order in which it was found, and what failed in it."""
+    """List what was tried, in the order in which it was found, and what failed in it."""
     return tuple(
         Attempt(
             actions=tuple(
@@ -59,7 +61,7 @@ def explain_infeasible(
     deadline: Deadline,
     instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
-    """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
+    """Name the unreachable goal facts and what they lack; or the goals that exclude each other.
 
     Args:
         problem: The task and its streams.
@@ -108,13 +110,14 @@ def explain_infeasible(
 
 def _exclusive(goals: Sequence[str]) -> str:
     both = "both hold" if len(goals) == 2 else "hold together"
-    return f"{' and '.join(goals)} cannot {both} at the end: each way to one of them excludes the others"
+    said = f"{' and '.join(goals)} cannot {both} at the end"
+    return f"{said}: each way to one of them excludes the others"
 
 
 def explain_failures(
     problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool
 ) -> tuple[str, ...]:
-    """The call that did not end, what never worked or else failed most, and what was in the way.
+    """Name the call that did not end, what never worked or failed most, and what was in the way.
 
     Args:
         problem: The task and its streams.
@@ -126,9 +129,8 @@ def explain_failures(
     endless = (
         [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
     )
-    least = SELDOM * max(
-        (row.failures for row in rows), default=0
-    )  # one that failed once or twice is no cause
+    # one that failed once or twice is no cause
+    least = SELDOM * max((row.failures for row in rows), default=0)
     never = [row for row in rows if row.never and row.failures >= least]
     mostly = sorted(
         (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
@@ -142,7 +144,7 @@ def explain_failures(
 
 
 def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
-    """Kinds of calls, by the objects of the problem among their inputs, that failed whatever else was tried."""
+    """List the kinds of calls, by the problem's objects in them, that failed whatever was tried."""
     failed: dict[str, Counter[str]] = {}
     worked: set[str] = set()
     for instance in streams.called():
@@ -208,5 +210,5 @@ def _names(problem: StreamTask, inputs: tuple[str, ...]) -> list[str]:
 
 
 def _call(problem: StreamTask, name: str, inputs: tuple[str, ...]) -> str:
-    """The call with the objects that the user knows: those of the problem."""
+    """Write the call with the objects that the user knows: those of the problem."""
     return f"{name}({', '.join([x for x in inputs if x in problem.task.objects] or inputs)})"

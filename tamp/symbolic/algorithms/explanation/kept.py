@@ -1,4 +1,4 @@
-"""What stays as it is for good and keeps actions from being taken: "can stays loaded with crate"."""
+"""Facts that stay for good and keep actions from being taken: "can stays loaded with crate"."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ def kept_from(
     calls: Mapping[str, tuple[frozenset[str], str]],
     goal: str,
 ) -> Iterator[str]:
-    """For each action about the goal's objects that something forbids for good: the action, what it is, and why.
+    """Yield the actions about the goal's objects that are forbidden for good: by what, and why.
 
     Args:
         problem: The task, whose rules say what a fact means.
         instantiated: The optimistic task.
-        calls: The calls that ended without a value, each with the objects that it is about and its reason.
+        calls: The calls that ended without a value, each with the objects that it is about and its
+            reason.
         goal: As text.
     """
     wanted = set(goal.replace("(", " ").replace(")", " ").split())
@@ -50,18 +51,20 @@ def kept_from(
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now
             if state is None:
-                yield f"{operator.name} wants ({' '.join(fact)}) not to hold, which nothing makes false{because}"
+                absent = f"{operator.name} wants ({' '.join(fact)}) not to hold"
+                yield f"{absent}, which nothing makes false{because}"
                 continue
             things = " ".join(
                 word for word in state[1:] if isinstance(problem.values.get(word), str)
             )
             with_others = f" with {' and '.join(others)}" if others else ""
             never = f", so that {operator.name} is never possible" if for_good else ""
-            yield f"{things} {'stays' if for_good else 'is'} {state[0]}{with_others}{never}{because}"
+            stays = "stays" if for_good else "is"
+            yield f"{things} {stays} {state[0]}{with_others}{never}{because}"
 
 
 def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:
-    """The derived fact that the operator wants not to hold, and that holds because of a fluent one."""
+    """Find the derived fact that the operator wants not to hold, which a fluent one makes hold."""
     domain = problem.task.domain
     for action in domain.actions:
         if action.name != operator.name:
@@ -94,7 +97,7 @@ def _unwanted(formula: Formula) -> Iterator[Atom]:
 
 
 def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fact: Fact) -> bool:
-    """Whether the rule derives the head from the fact, as far as its other plain conditions hold at the start."""
+    """Check that the rule derives the head from the fact, given what plainly holds at the start."""
     binding = dict(zip(rule_head.terms, head[1:], strict=False))
     atoms = plain_atoms(body)
     for atom in atoms:

@@ -1,4 +1,4 @@
-"""What a fact that nothing can make true lacks: the precondition at which the nearest way to it ends."""
+"""Reasons why a fact is unachievable: the precondition at which the nearest way to it ends."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Binding = dict[str, str]
 
 @dataclass(frozen=True)
 class _Way:
-    """An action, rule or stream that could make a fact true: its name, its conditions, its variables' types."""
+    """An action, rule or stream that could make a fact true: name, conditions, variables' types."""
 
     name: str
     conditions: tuple[Atom, ...]
@@ -47,12 +47,8 @@ class Missing:
         types: Mapping[str, tuple[str, ...]],
         assumed: Iterable[str] = (),
     ) -> None:
-        self._task, self._streams, self._types, self._assumed = (
-            task,
-            streams,
-            types,
-            frozenset(assumed),
-        )
+        self._task, self._streams, self._types = task, streams, types
+        self._assumed = frozenset(assumed)
         self._known = frozenset(facts)
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
         for fact in sorted(self._known):
@@ -60,7 +56,9 @@ class Missing:
         self._looks = 0
 
     def reason(self, fact: Fact) -> str:
-        """In words why nothing makes the fact true: "cook needs (hot stove), which nothing makes true"."""
+        """Say why nothing makes the fact true: "cook needs (hot stove), which nothing makes
+        true".
+        """
         said: list[str] = []
         seen = {fact}
         for _ in range(DEEPEST):
@@ -78,7 +76,7 @@ class Missing:
         return f"{', and '.join(said)}, which nothing makes true"
 
     def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
-        """The way to a fact that lacks least, and what it lacks; None when there is no way or none lacks anything."""
+        """Find the way to a fact that lacks least, and what; None if no way lacks anything."""
         best: tuple[str, list[Atom]] | None = None
         for way in self._ways(fact):
             self._looks = 0
@@ -129,7 +127,7 @@ class Missing:
         types: Mapping[str, tuple[str, ...]],
         fewer: int,
     ) -> list[Atom] | None:
-        """The conditions that cannot be had in the best binding, if they are fewer than that."""
+        """Find the conditions that the best binding cannot have, if they are fewer than that."""
         if not conditions:
             return []
         atom = min(
@@ -184,7 +182,7 @@ class Missing:
 
 
 def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that must hold for a formula to hold, as far as they are plain."""
+    """List the atoms that must hold for a formula to hold, as far as they are plain."""
     if isinstance(formula, Atom):
         return (formula,)
     if isinstance(formula, And):
@@ -207,5 +205,6 @@ def _typed(parameters: Iterable[Parameter]) -> dict[str, tuple[str, ...]]:
 
 
 def _shown(atom: Atom) -> str:
-    """A fact to read; of what is not known yet there is "some"."""
-    return f"({' '.join([atom.predicate, *(f'some {t[1:]}' if t[:1] == '?' else t for t in atom.terms)])})"
+    """Write a fact to read; of what is not known yet there is "some"."""
+    terms = (f"some {term[1:]}" if term[:1] == "?" else term for term in atom.terms)
+    return f"({' '.join([atom.predicate, *terms])})"

@@ -1,4 +1,4 @@
-"""Streams instantiated optimistically: every call is assumed to succeed, its outputs are placeholders."""
+"""Optimistic instantiation of streams: every call succeeds, its outputs are placeholders."""
 
 from __future__ import annotations
 
@@ -67,13 +67,15 @@ class Optimism:
 
     Attributes:
         makers: Fact to the guess that certifies it, the first one of several.
-        several: Fact to all guesses that certify it, where one of them looks at the state: one may fail in a state in
-            which another does not.
+        several: Fact to all guesses that certify it, where one of them looks at the state: one may
+            fail in a state in which another does not.
         guesses: All of them.
         types: Placeholder to its types.
-        assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
-            one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
-        complete: Whether nothing was left out for being deep or one too many: what is not here cannot become true.
+        assumed: The predicates of tests that are taken to hold wherever they are asked for, instead
+            of being imagined one by one: there are as many as pairs of poses. Each with its stream
+            and the atom that it certifies.
+        complete: Whether nothing was left out for being deep or one too many: what is not here
+            cannot become true.
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
@@ -86,7 +88,7 @@ class Optimism:
     complete: bool = True
 
     def maker(self, fact: Fact) -> Guess | None:
-        """The call that certifies a fact; that of an assumed one is made up when it is asked for."""
+        """Return the call that certifies a fact; of an assumed one it is made up when asked for."""
         known = self.makers.get(fact)
         if known is not None or fact[0] not in self.assumed:
             return known
@@ -100,7 +102,7 @@ class Optimism:
         return made
 
     def promise(self, placeholder: str) -> Fact:
-        """A fact that the call which gives a placeholder certifies of it."""
+        """Return a fact that the call which gives a placeholder certifies of it."""
         return next(
             fact
             for fact, guess in self.makers.items()
@@ -118,10 +120,11 @@ def imagine(
     enough: int = ENOUGH,
     names: dict[tuple[str, tuple[str, ...]], Named] | None = None,
 ) -> Optimism:
-    """Instantiate streams from known facts and from each other's promises, to a fixpoint or `levels` deep.
+    """Instantiate streams from facts and each other's promises, to a fixpoint or `levels` deep.
 
-    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there are no more of the
-    level that was reached then, nor of deeper ones, but for tests, which feed nothing.
+    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there
+    are no more of the level that was reached then, nor of deeper ones, but for tests, which feed
+    nothing.
 
     Args:
         streams: Those worth instantiating (see `relevant`).
@@ -129,9 +132,10 @@ def imagine(
         dead: Calls (stream, inputs) that are known to yield nothing.
         levels: Greatest depth of guesses resting on guesses.
         deepest: The same for those with outputs, which others rest on; by default as many.
-        enough: Number of guesses from which on they become shallower. The first level is always complete.
-        names: The placeholders of calls imagined before, and the facts about them, kept and added to: what was learned
-            is kept under their names, so a name must always mean the same.
+        enough: Number of guesses from which on they become shallower. The first level is always
+            complete.
+        names: The placeholders of calls imagined before, and the facts about them, kept and added
+            to: what was learned is kept under their names, so a name must always mean the same.
     """
     optimism = Optimism()
     index = FactIndex()
@@ -204,9 +208,8 @@ def imagine(
     while position < len(queue):
         fact = queue[position]
         position += 1
-        index.add(
-            fact
-        )  # now and not before: so a call is found with the last of its facts, and levels come in order
+        # now and not before: so a call is found with the last of its facts, and levels come in order
+        index.add(fact)
         for stream, place in by_predicate.get(fact[0], ()):
             if level_of[fact] >= (levels if stream.is_test else growing):
                 optimism.complete = False
@@ -225,12 +228,13 @@ def relevant(
     predicates: Iterable[str],
     asked: Callable[[tuple[str, ...]], bool] | None = None,
 ) -> list[BoundStream]:
-    """The streams whose certified facts the given predicates, or other relevant streams, can use.
+    """List the streams whose certified facts the predicates or other relevant streams can use.
 
     Args:
         streams: Those to choose from.
         predicates: Those that conditions mention.
-        asked: Whether something of these types is asked for, whatever is certified of it (see `anything`).
+        asked: Whether something of these types is asked for, whatever is certified of it (see
+            `anything`).
     """
     needed = set(predicates)
     remaining = list(streams)
@@ -250,7 +254,7 @@ def relevant(
 
 
 def type_facts(task: Task) -> list[Fact]:
-    """Types as unary facts, an object's own and those above: (movable mug), (body mug), (object mug)."""
+    """List types as unary facts, inherited ones too: (movable mug), (body mug), (object mug)."""
     facts: dict[Fact, None] = {}
     domain = task.domain
     for name, types in {**domain.constants, **task.objects}.items():
@@ -261,10 +265,11 @@ def type_facts(task: Task) -> list[Fact]:
 
 
 def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
-    """The test streams whose facts are only asked for in order to lift a guard: under a negation in a derived rule.
+    """Return the tests whose facts only lift a guard: under a negation in a derived rule.
 
-    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate. It
-    is asked of what streams give, or of types: where only given facts say what it may be asked of, they are looked up.
+    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs
+    that predicate. It is asked of what streams give, or of types: where only given facts say what
+    it may be asked of, they are looked up.
     """
     everything = list(streams)
     positive = {atom.predicate for atom, sign in _atoms(task) if sign}
@@ -289,14 +294,15 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
 
 
 def used_predicates(task: Task) -> set[str]:
-    """The predicates that conditions of the task mention."""
+    """Return the predicates that conditions of the task mention."""
     return {atom.predicate for atom, _ in _atoms(task)}
 
 
 def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of all conditions, each with whether it helps by holding.
+    """Yield the atoms of all conditions, each with whether it helps by holding.
 
-    In an action's condition a negation counts as help, since only a derived rule's negation can become a guard.
+    In an action's condition a negation counts as help, since only a derived rule's negation can
+    become a guard.
     """
     stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
     stack += [(action.precondition, True, False) for action in task.domain.actions]

@@ -1,4 +1,4 @@
-"""The optimistic task of a run: what is imagined, how deep, and without what is known to be dead."""
+"""The optimistic task of a run: what is imagined, how deep, and without calls known as dead."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.symbolic.search.operators import InstantiatedTask
 
 DEEPEST = 8
-"""How many times the first depth and number of guesses are imagined at most, when there is no plan with fewer."""
+"""How many times the first depth and number of guesses are imagined at most, when there is no plan
+with fewer."""
 
 
 class Imagination:
-    """The task with placeholders for what streams may give, imagined anew as calls die and values turn out.
+    """The task with placeholders for what streams may give, imagined anew as calls die.
 
     Args:
         problem: The task and its streams.
@@ -76,11 +77,11 @@ class Imagination:
         self.optimism, self.instantiated = self.imagined()
 
     def bystanders(self) -> frozenset[str]:
-        """The objects of which nothing is imagined at first: none, unless an algorithm knows when to recall them."""
+        """Return the objects of which nothing is imagined at first: none, unless overridden."""
         return frozenset()
 
     def recall(self, objects: frozenset[str] | None = None) -> bool:
-        """Imagine these as well that were set aside, or all of them; whether there were any."""
+        """Imagine these as well that were set aside, or all of them; say if there were any."""
         recalled = self.aside if objects is None else objects & self.aside
         if recalled:
             self.aside -= recalled
@@ -88,9 +89,10 @@ class Imagination:
         return bool(recalled)
 
     def imagined(self) -> tuple[Optimism, InstantiatedTask]:
-        """The optimistic task without the calls that are known to be dead.
+        """Instantiate the optimistic task without the calls that are known to be dead.
 
-        Where guesses have to be left out, those that are not deeper than a first plan asks for are all that is kept.
+        Where guesses have to be left out, those that are not deeper than a first plan asks for are
+        all that is kept.
         """
         started = time.perf_counter()
         try:
@@ -108,7 +110,7 @@ class Imagination:
             self.effort.search_seconds += time.perf_counter() - started
 
     def _guesses(self) -> Optimism:
-        """As many as may be; the lowest level alone, when those were too many for the first time."""
+        """Guess as much as may be; the lowest level alone, once those were too many."""
         optimism = Optimism(complete=False)
         if self.shallow is None:
             optimism = self._imagined(None)
@@ -139,11 +141,11 @@ class Imagination:
         return self.instantiator.instantiate(facts, types, frozenset(self.refused))
 
     def _shallower(self) -> bool:
-        """Whether guesses are kept shallower than they might be."""
+        """Check that guesses are kept shallower than they might be."""
         return self.shallow is not None and self.shallow < LEVELS * self.depth
 
     def deepen(self) -> bool:
-        """Imagine more where guesses were left out; whether there was anything to add, and not too much already."""
+        """Imagine more where guesses were left out; say if anything could be added."""
         if not self.optimism.complete and self._shallower():
             self.shallow = (self.shallow or 0) + 1
         elif self.optimism.complete or self.depth >= DEEPEST:
