@@ -103,17 +103,20 @@ class Adaptive(Run):
                 result = self._round()
                 if result is not None:
                     return result
+
                 dry = dry + 1 if self.binder.units == before else 0
                 if dry >= DRY or (self.shallow is not None and self.effort.searches >= deeper):
                     deepened, deeper = self.recall() or self.deepen(), 2 * deeper
                     if dry >= DRY and not deepened:
                         return self.result(Outcome.EXHAUSTED)
                     dry = 0 if deepened else dry
+
                 draws = 0
                 if self._stuck(patience):
                     draws, patience = SECOND_OPINION * patience, 2 * patience
                 elif dry == 0 and self._wanders(trails):
                     draws, trails = 10 * LITTLE * trails, 2 * trails
+
                 if draws:
                     result = self._second_opinion(draws)
                     if result.outcome in (Outcome.SOLVED, Outcome.INTERRUPTED):
@@ -146,14 +149,17 @@ class Adaptive(Run):
                 raise OutOfTime
             self.doubtful = True
             return None if self.recall() or self.deepen() else (self._looked() or self.hopeless())
+
         skeleton = self.skeleton(found.plan)
         self.latest = skeleton
         tries = FIRST_TRIES + skeleton.rounds
         budget = max(ROUND_BUDGET, NODE_BUDGET * len(skeleton.nodes)) * (1 + skeleton.rounds)
+
         values = self.bind(skeleton, tries, budget)
         if values is not None:
             self.bound = skeleton, values
             return self.solved(skeleton, values)
+
         skeleton.rounds += 1
         self.effort.draws = self.binder.units
         learned = self.absorb()
@@ -189,6 +195,7 @@ class Adaptive(Run):
             result = second.solve(LOOK)
         except OutOfTime:
             return None
+
         self.given_up = self.given_up or (
             result.outcome is Outcome.EXHAUSTED and second.binder.units < LOOK
         )

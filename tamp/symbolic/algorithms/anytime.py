@@ -57,8 +57,10 @@ def solve_anytime(
     if first.outcome is not Outcome.SOLVED:
         return first
     better(first)
+
     bound = run.lower_bound(BOUND_LIMIT)
     bounded(bound)
+
     best, vain = first, 0
     while run.bound is not None and best.actions and not deadline.passed:
         cost = sum(action.cost for action in best.actions)
@@ -66,6 +68,7 @@ def solve_anytime(
         if cost > bound + 1e-9 and vain < VAIN:
             vain += 1
             found = _cheaper(run, WEIGHTS[vain % len(WEIGHTS)], cost)
+
         skeleton, memory = run.bound[0], dict(run.bound[0].memory)
         if found is None:
             found = _redrawn(run, skeleton, choose)

@@ -19,19 +19,15 @@ StreamFunction = Callable[..., Any]
 Rejection a try, and ends when nothing more is to come; a test returns a bool or a Rejection."""
 
 ADVISORY = "sample-"
-"""Streams of this name's beginning only take advice from their fluents: what they certify holds in
-any state."""
+"""Streams named so only take advice from their fluents: what they certify holds in any state."""
 
 MOST_WARNINGS = 100
-"""Different warnings that are kept: nobody reads more, and a function may fail for each of its
-inputs."""
+"""Different warnings that are kept: nobody reads more, and each input may fail."""
 
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function, its outputs' types; whether its name may make it an
-    adviser.
-    """
+    """A declared stream, its function and output types; whether its name may make it an adviser."""
 
     declaration: Stream
     function: StreamFunction
@@ -66,8 +62,7 @@ class Objects:
     Attributes:
         types: Name to types.
         values: Name to value; a body's value is its name.
-        by_value: Whether equal values have one name; values without a hash are told apart by
-            identity.
+        by_value: Whether equal values have one name; those without a hash go by identity.
     """
 
     types: dict[str, tuple[str, ...]]
@@ -188,17 +183,14 @@ class Streams:
 
     def false_tests(self) -> list[Instance]:
         """List the tests that were called and do not hold, in whatever state."""
-        made = (
-            known
-            for known in self._instances.values()
-            if known.stream.is_test and not known.stream.is_fluent
-        )
-        return [known for known in made if known.exhausted and not known.results]
+        ended = (one for one in self._instances.values() if one.exhausted and not one.results)
+        return [one for one in ended if one.stream.is_test and not one.stream.is_fluent]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
         """Try once more: return the outputs' names (none for a test), or None and set `last`."""
         if instance.exhausted:
             return None
+
         statistics = self.statistics[instance.stream.name]
         started = time.perf_counter()
         self.running = instance
@@ -225,6 +217,7 @@ class Streams:
             )
         finally:
             statistics.seconds += time.perf_counter() - started
+
         statistics.calls += 1
         if isinstance(value, Rejection):
             instance.last = value
@@ -243,11 +236,8 @@ class Streams:
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
         """Return the facts that a result makes true."""
         declaration = instance.stream.declaration
-        return substitute(
-            declaration.certified,
-            (*declaration.inputs, *declaration.outputs),
-            (*instance.inputs, *outputs),
-        )
+        variables = (*declaration.inputs, *declaration.outputs)
+        return substitute(declaration.certified, variables, (*instance.inputs, *outputs))
 
     def _advance(self, instance: Instance) -> Any:
         values = self.objects.values
@@ -266,6 +256,7 @@ class Streams:
                     return made
                 return () if made else Rejection("does not hold")
             instance.iterator = iter(made)
+
         for value in instance.iterator:
             return value
         instance.exhausted = True

@@ -107,11 +107,13 @@ class Incremental(Run):
             self.task, [types for stream in self.useful for types in stream.output_types]
         ):
             return False
+
         twins = [
             replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN}"))
             for stream in self.useful
             if not stream.is_test
         ]
+
         imagined: list[tuple[Optimism, InstantiatedTask]] = []
         for streams in (self.useful, [*self.useful, *twins]):
             optimism = imagine(streams, self.known)
@@ -125,6 +127,7 @@ class Incremental(Run):
             if excluded(instantiated, self.deadline) is None:
                 return False
             imagined.append((optimism, instantiated))
+
         self.optimism, self.instantiated = imagined[0]
         return True
 
@@ -143,12 +146,14 @@ class Incremental(Run):
                 raise OutOfTime
             if found.plan is None:
                 return None
+
             skeleton = self.skeleton(found.plan)
             self.latest = skeleton
             before = self.binder.units
             values = self.bind(skeleton, TRIES, BUDGET)
             if values is not None:
                 return self.solved(skeleton, values)
+
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0
                 if dry >= DRY:
@@ -168,6 +173,7 @@ class Incremental(Run):
         for guess in imagine(static, known, levels=1).guesses:
             if all(fact in self.found for fact in guess.certified):
                 continue
+
             shown = [fact for fact in self.known if fact[0] in guess.stream.declaration.fluents]
             instance = self.streams.instance(guess.stream.name, guess.inputs, frozenset(shown))
             for _ in range(1 if guess.stream.is_test else PER_LEVEL):
@@ -183,6 +189,7 @@ class Incremental(Run):
                         self.found.setdefault(fact, instance)
                 for fact in self.streams.wild:
                     self.found.setdefault(fact, None)
+
             self.given_up |= (
                 instance.exhausted and instance.last is not None and instance.last.given_up
             )

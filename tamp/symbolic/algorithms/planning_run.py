@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Iterable, Set
 from dataclasses import replace
@@ -14,12 +13,10 @@ from tamp.symbolic.algorithms.binding.binder import Binder, substitute
 from tamp.symbolic.algorithms.binding.plan_replay import Fault, Standing
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.binding.skeleton_construction import build_skeleton
-from tamp.symbolic.algorithms.binding.skeleton_steps import to_steps, with_nogoods
+from tamp.symbolic.algorithms.binding.skeleton_steps import to_steps
 from tamp.symbolic.algorithms.bound_stream import Streams
-from tamp.symbolic.algorithms.experience.elsewhere import choices, elsewhere
-from tamp.symbolic.algorithms.experience.exploration_prices import doubts
+from tamp.symbolic.algorithms.experience.elsewhere import choices
 from tamp.symbolic.algorithms.experience.failure_counts import Tally, tallies
-from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.algorithms.explanation.explanation import (
     explain_attempts,
     explain_failures,
@@ -27,36 +24,25 @@ from tamp.symbolic.algorithms.explanation.explanation import (
 )
 from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
-from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
+from tamp.symbolic.algorithms.priced_search import PricedSearch
 from tamp.symbolic.algorithms.result import Outcome, PlanAction, Progress, Result, StreamTask
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
-from tamp.symbolic.search.mutex import excluded
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.replay import REFUTED
-from tamp.symbolic.search.search import Plan, Reason, search
-from tamp.symbolic.search.search import Result as Found
+from tamp.symbolic.search.search import Plan
 from tamp.system.deadline import Deadline
 
 FEW = 8
 """A stream that ended with no more values than this is replaced by them: a search can then prove
 that none will do."""
 
-SEARCH_LIMIT = 2000
-"""States that a search may expand in looking for a cheap plan; after that the first plan is
-taken."""
 
-
-class Run(Imagination):
+class Run(PricedSearch):
     """One run of planning: what it knows, and the steps that algorithms are made of.
 
     `pruned` leaves out the streams whose facts nothing asks for.
-
-    Attributes:
-        brief: Whether searches end without a plan where they have seen SEARCH_LIMIT states.
     """
-
-    brief = False
 
     def __init__(
         self,
@@ -68,86 +54,16 @@ class Run(Imagination):
         pruned: bool = True,
     ) -> None:
         self.make_rng = make_rng
-        self.deadline = deadline
         self.progress = progress
-        super().__init__(problem, pruned)
+        super().__init__(problem, deadline, pruned)
         self.streams = Streams(
             {s.name: s for s in problem.streams}, self.objects, make_rng, deadline
         )
         self.standing = Standing(problem.task, self.streams)
-        self.experience = Experience()
         self.binder = Binder(self.streams, self.experience, deadline)
         self.skeletons: dict[object, Skeleton] = {}
         self.traced: dict[object, tuple[InstantiatedTask | None, object]] = {}
         self.latest: Skeleton | None = None
-        self.doubtful = False
-        self._audited: InstantiatedTask | None = None
-        self.prices: dict[Fact, float] = {}
-        self.searched = self.instantiated
-
-    def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
-        """Search for a plan of the optimistic task, priced by experience.
-
-        Args:
-            weight: Of the estimate: with less the plans are cheaper and the search is longer.
-            below: What the actions of the plan must cost less than; when it is given, there is one
-                try only.
-        """
-        started = time.perf_counter()
-        try:
-            return self._search(weight, below)
-        finally:
-            self.effort.search_seconds += time.perf_counter() - started
-
-    def _search(self, weight: float, below: float) -> Found:
-        self.effort.searches += 1
-        if self.doubtful and self.excluded():
-            return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
-        instantiated, prices = with_nogoods(self.instantiated, self.experience)
-        self.searched = instantiated = elsewhere(instantiated, self.experience, self.optimism)
-        prices |= (
-            doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
-        )
-        unit = self._usual_cost()
-        if unit > 1.0:
-            prices = {fact: unit * price for fact, price in prices.items()}
-        self.prices = prices
-        found = search(
-            instantiated, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight,
-            below=below, audit=self.excluded,
-        )  # fmt: skip
-        self.effort.expanded += found.expanded
-        if found.reason is Reason.LIMIT and below == math.inf and not self.brief:
-            # with many prices many plans look alike: then any plan will do
-            found = search(instantiated, search="greedy", price=prices, deadline=self.deadline)
-            self.effort.expanded += found.expanded
-        return found
-
-    def excluded(self) -> bool:
-        """Check that goals are proven to exclude each other in the optimistic task."""
-        if self._audited is self.instantiated:
-            return False
-        self._audited = self.instantiated
-        return excluded(self.instantiated, self.deadline) is not None
-
-    def lower_bound(self, limit: int) -> float:
-        """Compute a lower bound of any plan's cost; 0 if guesses are missing; sees `limit` states."""
-        self.recall()
-        started = time.perf_counter()
-        found = search(
-            self.instantiated,
-            search="astar",
-            heuristic="lmcut",
-            limit=limit,
-            deadline=self.deadline,
-        )
-        self.effort.search_seconds += time.perf_counter() - started
-        return found.bound if self.optimism.complete else 0.0
-
-    def _usual_cost(self) -> float:
-        """Compute the operators' mean cost, the unit of prices where actions cost more than one."""
-        operators = self.instantiated.operators
-        return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
     def skeleton(self, plan: Plan) -> Skeleton:
         """Return the plan's skeleton; the same one if it was found before and rests on the same."""
@@ -158,6 +74,7 @@ class Run(Imagination):
             if traced is self.instantiated and not self.experience.exact
             else None
         )
+
         if known is None:
             steps, trace = to_steps(self.searched, plan, self.prices)
             chosen: dict[tuple[int, Fact], Guess] = {}
@@ -165,6 +82,7 @@ class Run(Imagination):
                 for number, at in enumerate((*trace.steps, trace.end)):
                     some = choices(self.optimism, self.experience, at.static, at.state)
                     chosen |= {(number, fact): guess for fact, guess in some.items()}
+
             calls = tuple((place, guess.call) for place, guess in chosen.items())
             told = tuple((step.name, step.arguments, step.static, step.usages) for step in steps)
             key = (told, trace.end.static, calls)
@@ -176,6 +94,7 @@ class Run(Imagination):
                 )
                 self.effort.skeletons = len(self.skeletons)
             self.traced[operators] = (None if trace.open else self.instantiated), key
+
         return known
 
     def is_open(self, skeleton: Skeleton) -> bool:
@@ -192,8 +111,9 @@ class Run(Imagination):
         return next((fact for fact in self.real if name in fact[1:]), None)
 
     def bury(self, skeleton: Skeleton) -> bool:
-        """Note the calls with real inputs that ended without a value; say if there were new ones."""
+        """Note the calls with real inputs that ended without a value; say if any are new."""
         before = len(self.dead) + len(self.settled)
+
         for node in skeleton.nodes:
             if node.stream.is_fluent or any(isinstance(term, int) for term in node.inputs):
                 continue
@@ -211,6 +131,7 @@ class Run(Imagination):
                     self.settled.add((node.stream.name, inputs))
                     for outputs in instance.results:
                         self.real.update(dict.fromkeys(self.streams.certified(instance, outputs)))
+
         if self.settled:
             self._refuse_tests()
         return len(self.dead) + len(self.settled) > before
@@ -280,6 +201,7 @@ class Run(Imagination):
     def hopeless(self) -> Result:
         """End the run where no plan is left: infeasible, unless a stream was given up too early."""
         outcome = Outcome.EXHAUSTED if self.given_up else Outcome.INFEASIBLE
+
         facts = {
             *self.known,
             *self.real,
@@ -291,6 +213,7 @@ class Run(Imagination):
         missing = Missing(
             self.task, self.problem.streams, facts - self.refused, types, self.assumed
         )
+
         started = time.perf_counter()
         reasons = explain_infeasible(
             self.problem, self.instantiated, self.dead, missing, self.deadline, self._towards
@@ -327,11 +250,13 @@ class Run(Imagination):
         """Return the result of the run; by default the explanation is what failed most."""
         started = time.perf_counter()
         rows = () if outcome is Outcome.SOLVED else self.tallies()
+
         if explanation is None:
             explanation = explain_failures(
                 self.problem, self.streams, rows, self.latest is not None
             )
         self.effort.explaining_seconds += time.perf_counter() - started
+
         self.effort.draws = self.binder.units
         return Result(
             outcome=outcome,

@@ -23,8 +23,13 @@ from tamp.symbolic.pddl.structs import (
     Task,
 )
 from tamp.symbolic.search.recursion import strata_of
-
-Binding = Mapping[str, str]
+from tamp.symbolic.search.replay_formulas import (
+    Binding,
+    conjunct_atoms,
+    formula_words,
+    ground,
+    guard_atoms,
+)
 
 REFUTED = (
     "a plan was dropped that did not hold when it was replayed, "
@@ -54,16 +59,20 @@ def violation(
     """
     there = {**task.domain.constants, **task.objects, **(objects or {})}
     lifted = {action.name: action for action in task.domain.actions}
+
     static = {*task.initial, *facts}
     changing = task.domain.fluent_predicates
     state = frozenset(fact for fact in static if fact[0] in changing)
     static.difference_update(state)
+
     world = _World(task, there, static)
+
     for number, (name, arguments) in enumerate(actions):
         step = f"step {number + 1}, ({' '.join((name, *arguments))})"
         action = lifted.get(name)
         if action is None or len(arguments) != len(action.parameters):
             return f"{step}: there is no such action"
+
         for parameter, word in zip(action.parameters, arguments, strict=True):
             if not world.fits(word, parameter):
                 return f"{step}: '{word}' is no {' or '.join(parameter.types)}"
@@ -76,6 +85,7 @@ def violation(
         if failed is not None:
             return f"{step}: the precondition does not hold, {failed}"
         state = world.after(action, binding, state)
+
     world.enter(state, shown(state) if shown else ())
     failed = world.failing(task.goal, {})
     return None if failed is None else f"the goal does not hold in the end, {failed}"
@@ -130,13 +140,13 @@ class _World:
         if isinstance(formula, And):
             said = (self.failing(part, binding) for part in formula.parts)
             return next((one for one in said if one is not None), None)
-        return None if self.holds(formula, binding) else _words(formula, binding)
+        return None if self.holds(formula, binding) else formula_words(formula, binding)
 
     def holds(self, formula: Formula, binding: Binding) -> bool:
         """Check that a condition holds."""
         match formula:
             case Atom():
-                return self._fact(_ground(formula, binding))
+                return self._fact(ground(formula, binding))
             case Not(body):
                 return not self.holds(body, binding)
             case And(parts):
@@ -158,7 +168,7 @@ class _World:
         """Return the atoms that are facts wherever the formula holds, or wherever it does not."""
         known = self._plain.get(id(formula))
         if known is None:
-            atoms = _atoms(formula) if sign else _guards(formula)
+            atoms = conjunct_atoms(formula) if sign else guard_atoms(formula)
             kept = (
                 atom
                 for atom in atoms
@@ -194,6 +204,7 @@ class _World:
                 if grown is not None:
                     yield from self._join(rest, names, grown)
             return
+
         left = [name for name in names if name not in binding]
         if not left:
             yield binding
@@ -278,46 +289,5 @@ class _World:
                 effect.parameters, self._where(effect.condition, True), binding
             ):
                 if self.holds(effect.condition, full):
-                    changed.add(_ground(effect.atom, full))
+                    changed.add(ground(effect.atom, full))
         return (state - deleted) | added
-
-
-def _ground(atom: Atom, binding: Binding) -> Fact:
-    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
-
-
-def _atoms(formula: Formula) -> tuple[Atom, ...]:
-    """Return the atoms that hold where a conjunction does."""
-    if isinstance(formula, Atom):
-        return (formula,)
-    return (
-        tuple(part for part in formula.parts if isinstance(part, Atom))
-        if isinstance(formula, And)
-        else ()
-    )
-
-
-def _guards(formula: Formula) -> tuple[Atom, ...]:
-    """Return the atoms that hold where a disjunction may fail."""
-    if isinstance(formula, Not):
-        return _atoms(formula.body)
-    if isinstance(formula, Or):
-        return tuple(
-            atom for part in formula.parts if isinstance(part, Not) for atom in _atoms(part.body)
-        )
-    return ()
-
-
-def _words(formula: Formula, binding: Binding) -> str:
-    match formula:
-        case Atom():
-            return f"({' '.join(_ground(formula, binding))})"
-        case Not(body):
-            return f"(not {_words(body, binding)})"
-        case And(parts) | Or(parts):
-            head = "and" if isinstance(formula, And) else "or"
-            return f"({' '.join((head, *(_words(part, binding) for part in parts)))})"
-        case Exists(parameters, body) | Forall(parameters, body):
-            head = "exists" if isinstance(formula, Exists) else "forall"
-            names = " ".join(parameter.name for parameter in parameters)
-            return f"({head} ({names}) {_words(body, binding)})"

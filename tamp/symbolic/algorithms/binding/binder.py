@@ -65,9 +65,11 @@ class Binder:
         makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
         values: dict[int, str] = {}
         levels: list[_Level] = []
+
         spent_before = self.units
         self._met.clear()
         refusals = 0
+
         while True:
             index = len(levels)
             if index < len(nodes):
@@ -86,6 +88,7 @@ class Binder:
                 if outputs is not None:
                     values.update(zip(nodes[index].outputs, outputs, strict=True))
                     break
+
                 levels.pop()
                 for variable in nodes[index].outputs:
                     values.pop(variable, None)
@@ -99,6 +102,7 @@ class Binder:
                     if not conflict:
                         self._settle(nodes, index)
                     return None
+
                 target = max(conflict)
                 for dropped in range(target + 1, len(levels)):
                     for variable in nodes[dropped].outputs:
@@ -184,10 +188,12 @@ class Binder:
         remembered = skeleton.memory.get(index)
         if not fresh and remembered is not None and remembered[0] == key and offer(remembered[1]):
             yield remembered[1]
+
         earlier = list(instance.results)
         for outputs in () if fresh else reversed(earlier[-RECENT:]):
             if offer(outputs):
                 yield outputs
+
         if instance.exhausted and not instance.results:
             self._met.append((node, instance))
         draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
@@ -201,6 +207,7 @@ class Binder:
             self._note(node, instance, outputs is not None)
             if outputs is not None and offer(outputs):
                 yield outputs
+
         for outputs in earlier[:draws]:
             if offer(outputs):
                 yield outputs

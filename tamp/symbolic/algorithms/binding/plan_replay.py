@@ -85,6 +85,7 @@ class Standing:
             reason = self._take(node, values, given)
             if reason is not None:
                 return Fault(reason, False)
+
         known = (
             {substitute(fact, values) for fact in skeleton.certified}
             - given.of_states
@@ -95,12 +96,14 @@ class Standing:
             if fact not in self._streams.wild:
                 return Fault(f"({' '.join(fact)}) was not certified", False)
             facts.add(fact)
+
         actions = [
             (name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions
         ]
         reason = self._replayed(actions, facts, given)
         if reason is not None:
             return Fault(reason, self._coincide(skeleton, values))
+
         wild = set(self._streams.wild)
         if self._absent:  # what was found out about the plan's values, for this plan or another
             names = {*self._task.objects, *self._task.domain.constants}

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from heapq import heapify, heappop, heappush
 
+from tamp.symbolic.algorithms.binding.call_order import ordered
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Step, Term
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
 from tamp.symbolic.pddl.structs import Fact
@@ -79,6 +79,7 @@ class _Builder:
         if a == b:
             return
         self._parent[b] = a
+
         first, second = self._producer.get(a), self._producer.pop(b, None)
         if second is None:
             return
@@ -87,6 +88,7 @@ class _Builder:
             return
         if first is second:
             return
+
         keep, drop = sorted((first, second), key=lambda node: node.step)
         self._nodes.remove(drop)
         self._kept[id(drop)] = keep
@@ -118,16 +120,19 @@ class _Builder:
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
+
         for argument in step.arguments:
             # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
                 self._anything(argument, local, number)
+
         for usage in step.usages:
             around = dict(local)
             for fact in sorted(usage.present):
                 self._adopt(fact, around)
             self._require(usage.fact, around, number)
             self._certify((usage.fact,), around)
+
         self._actions.append((step.name, self._lift(step.arguments, local)))
         self._certify(step.static, local)
         for fact in step.added:
@@ -156,13 +161,14 @@ class _Builder:
                 )
                 node.given = frozenset(fact for fact in self._given if fact[0] in shown)
             node.needs = [self._last(needed) for needed in node.needs]
+
         actions = tuple(
             (name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions
         )
         certified = dict.fromkeys(
             (p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified
         )
-        return Skeleton(steps, actions, _ordered(self._nodes), tuple(certified))
+        return Skeleton(steps, actions, ordered(self._nodes), tuple(certified))
 
     def _read(
         self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]
@@ -175,6 +181,7 @@ class _Builder:
         local: dict[str, Term] = {}
         for fact in sorted(read):
             self._adopt(fact, local)
+
         open_ = {
             name
             for fact in derived
@@ -215,12 +222,14 @@ class _Builder:
         guess = self._chosen.get((number, fact)) or self._maker(fact)
         if guess is None:
             return None
+
         node = None
         for name in guess.outputs:
             if name in local:
                 candidate = self._producer.get(self._find(_variable(local[name])))
                 if candidate is not None:
                     node = candidate
+
         if node is None:
             needs = [self._require(needed, local, number) for needed in guess.domain]
             inputs = self._lift(guess.inputs, local)
@@ -229,11 +238,12 @@ class _Builder:
             )
             node = Node(guess.stream, (guess.inputs, guess.outputs), inputs, outputs, number, fact)
             node.needs = [one for one in needs if one is not None]
-            self._nodes.append(node)  # the same test may be asked for again; `_ordered` keeps one
+            self._nodes.append(node)  # the same test may be asked for again; `ordered` keeps one
             for variable in outputs:
                 self._producer[self._find(variable)] = node
             for certified in guess.certified:
                 self._certified.append((certified[0], self._lift(certified[1:], local)))
+
         symbols = (*guess.inputs, *guess.outputs)
         for name, term in zip(symbols, (*node.inputs, *node.outputs), strict=True):
             if name.startswith(MARK):
@@ -252,46 +262,3 @@ def _variable(term: Term) -> int:
     if isinstance(term, str):
         raise TypeError(f"{term} is not a variable")
     return term
-
-
-def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
-    """Order the calls to fail early: tests once they can be, generators by step, motions last."""
-    merged: dict[tuple[object, ...], Node] = {}
-    same: dict[int, Node] = {}
-    for node in nodes:
-        key: tuple[object, ...] = (node.stream.name, node.inputs, node.outputs, node.fluents)
-        same[id(node)] = merged.setdefault(key, node)
-    calls = list(merged.values())
-    places = {id(node): position for position, node in enumerate(calls)}
-    makers = {
-        variable: position for position, node in enumerate(calls) for variable in node.outputs
-    }
-    waits: list[set[int]] = []
-    users: dict[int, list[int]] = {}
-    for position, node in enumerate(calls):
-        terms: list[Term] = [
-            *node.inputs,
-            *(term for (_, shown), _ in node.fluents for term in shown),
-        ]
-        waits.append({makers[term] for term in terms if isinstance(term, int)})
-        waits[-1] |= {places[id(same[id(needed)])] for needed in node.needs} - {position}
-        for maker in waits[-1]:
-            users.setdefault(maker, []).append(position)
-    ready = [(*_rank(node), position) for position, node in enumerate(calls) if not waits[position]]
-    heapify(ready)
-    order: list[Node] = []
-    while ready:
-        position = heappop(ready)[-1]
-        order.append(calls[position])
-        for user in users.get(position, ()):
-            waits[user].discard(position)
-            if not waits[user]:
-                heappush(ready, (*_rank(calls[user]), user))
-    if len(order) < len(calls):
-        raise ValueError("the plan's stream calls depend on each other in a circle")
-    return tuple(order)
-
-
-def _rank(node: Node) -> tuple[int, int]:
-    """Rank tests, then generators, then what depends on the whole state; each by its step."""
-    return (0 if node.stream.is_test else 2 if node.stream.is_fluent else 1, node.step)

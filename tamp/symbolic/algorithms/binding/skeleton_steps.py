@@ -56,6 +56,7 @@ def to_steps(
             for guard in step.guards
             if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
         ]
+
         steps.append(
             Step(
                 name=operator.name,
@@ -70,4 +71,5 @@ def to_steps(
                 cost=operator.cost,
             )
         )
+
     return tuple(steps), traced

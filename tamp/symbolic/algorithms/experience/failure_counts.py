@@ -66,6 +66,7 @@ def tallies(
     }
     for (fact, _), record in experience.nogoods.items():
         records.setdefault(fact, []).append(record)
+
     made: dict[tuple[str, str], Tally] = {}
     counted: set[tuple[str, str, Fact]] = set()
     for skeleton in skeletons[-LATEST:]:
@@ -85,6 +86,7 @@ def tallies(
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
+
     rows = [tally for tally in made.values() if tally.tries]
     return tuple(sorted(rows, key=lambda row: (not row.never, -row.failures)))
 

@@ -85,6 +85,7 @@ def explain_infeasible(
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
         causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
+
     lines += [
         f"{_call(problem, *key)}: {reason.reason}"
         for key, reason in dead.items()
@@ -92,15 +93,18 @@ def explain_infeasible(
     ]
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
+
     soon = Deadline(min(SOON, deadline.left()))
     goals = conflict(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
+
     what = goals[0] if goals else "the goal"
     calls = {
         _call(problem, *key): (frozenset(_names(problem, key[1])), why.reason)
         for key, why in dead.items()
     }
+
     forbidding = kept_from(problem, instantiated, calls, what)
     kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
     if kept:

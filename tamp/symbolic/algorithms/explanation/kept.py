@@ -35,6 +35,7 @@ def kept_from(
         about = [word for word in operator.arguments if word in wanted]
         if not about:
             continue
+
         for fact in sorted(facts):
             others = [
                 word
@@ -46,14 +47,17 @@ def kept_from(
                 for call, (names, why) in calls.items()
                 if not names.isdisjoint(others)
             ]
+
             because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now
+
             if state is None:
                 absent = f"{operator.name} wants ({' '.join(fact)}) not to hold"
                 yield f"{absent}, which nothing makes false{because}"
                 continue
+
             things = " ".join(
                 word for word in state[1:] if isinstance(problem.values.get(word), str)
             )
@@ -76,6 +80,7 @@ def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:
                 strict=False,
             )
         )
+
         for atom in _unwanted(action.precondition):
             head = (atom.predicate, *(given.get(term, term) for term in atom.terms))
             if head == fact:
@@ -106,6 +111,7 @@ def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fa
         grown = {**dict(zip(atom.terms, fact[1:], strict=False)), **binding}
         if (atom.predicate, *(grown.get(term, term) for term in atom.terms)) != fact:
             continue
+
         others = [
             tuple(grown.get(term, term) for term in other.terms)
             for other in atoms

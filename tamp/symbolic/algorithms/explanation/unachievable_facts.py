@@ -130,6 +130,7 @@ class Missing:
         """Find the conditions that the best binding cannot have, if they are fewer than that."""
         if not conditions:
             return []
+
         atom = min(
             conditions,
             key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"),
@@ -138,6 +139,7 @@ class Missing:
         best: list[Atom] | None = None
         if atom.predicate in self._assumed or atom.predicate == "=":
             return self._lacks(rest, binding, types, fewer)
+
         for fact in self._by_predicate[atom.predicate]:
             self._looks += 1
             if self._looks > LOOKS:
@@ -150,6 +152,7 @@ class Missing:
                 best, fewer = found, len(found)
             if best == [] or grown == binding:
                 return best
+
         if fewer > 1:
             found = self._lacks(rest, binding, types, fewer - 1)
             if found is not None and len(found) + 1 < fewer:

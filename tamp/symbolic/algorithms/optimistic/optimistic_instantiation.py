@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream, substitute
+from tamp.symbolic.algorithms.optimistic.assumable_tests import atoms_of
 from tamp.symbolic.algorithms.optimistic.fact_index import FactIndex, unify
-from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula, Not, Or, Task
+from tamp.symbolic.pddl.structs import Atom, Fact, Task
 
 MARK = "#"
 """Placeholders begin with it: "#p3" stands for any pose that its stream may yield."""
@@ -148,7 +149,9 @@ def imagine(
         if fact not in level_of:
             level_of[fact] = 0
             queue.append(fact)
+
     total, growing = 0, levels if deepest is None else min(deepest, levels)
+
     by_predicate: dict[str, list[tuple[BoundStream, int]]] = defaultdict(list)
     for stream in streams:
         for position, atom in enumerate(stream.declaration.domain):
@@ -161,12 +164,14 @@ def imagine(
         if key in seen:
             return
         seen.add(key)
+
         call = named.get(key)
         domain = (
             substitute(declaration.domain, declaration.inputs, inputs)
             if call is None
             else call.domain
         )
+
         level = 1
         for fact in domain:
             if level_of[fact] >= level:
@@ -175,9 +180,11 @@ def imagine(
         if level > (levels if stream.is_test else growing):
             optimism.complete = False
             return
+
         total += 1
         if total >= enough:
             growing = max(1, min(growing, level - 1))
+
         if call is None:
             outputs: list[str] = []
             for name in declaration.outputs:
@@ -189,8 +196,10 @@ def imagine(
             call = named[key] = Named(tuple(outputs), domain, certified)
         if call.outputs:
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
+
         made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
         optimism.guesses.append(made)
+
         for fact in call.certified:
             if fact not in level_of:
                 optimism.makers[fact] = made
@@ -208,7 +217,7 @@ def imagine(
     while position < len(queue):
         fact = queue[position]
         position += 1
-        # now and not before: so a call is found with the last of its facts, and levels come in order
+        # now, not before: so a call is found with the last of its facts, and levels come in order
         index.add(fact)
         for stream, place in by_predicate.get(fact[0], ()):
             if level_of[fact] >= (levels if stream.is_test else growing):
@@ -264,62 +273,6 @@ def type_facts(task: Task) -> list[Fact]:
     return list(facts)
 
 
-def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
-    """Return the tests whose facts only lift a guard: under a negation in a derived rule.
-
-    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs
-    that predicate. It is asked of what streams give, or of types: where only given facts say what
-    it may be asked of, they are looked up.
-    """
-    everything = list(streams)
-    positive = {atom.predicate for atom, sign in _atoms(task) if sign}
-    positive |= {atom.predicate for stream in everything for atom in stream.declaration.domain}
-    makers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
-    for stream in everything:
-        for atom in stream.declaration.certified:
-            makers[atom.predicate].append((stream, atom))
-    return {
-        predicate: made[0]
-        for predicate, made in makers.items()
-        if len(made) == 1
-        and made[0][0].is_test
-        and len(made[0][0].declaration.certified) == 1
-        and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
-        and predicate not in positive
-        and all(
-            atom.predicate in makers or atom.predicate in task.domain.types
-            for atom in made[0][0].declaration.domain
-        )
-    }
-
-
 def used_predicates(task: Task) -> set[str]:
     """Return the predicates that conditions of the task mention."""
-    return {atom.predicate for atom, _ in _atoms(task)}
-
-
-def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
-    """Yield the atoms of all conditions, each with whether it helps by holding.
-
-    In an action's condition a negation counts as help, since only a derived rule's negation can
-    become a guard.
-    """
-    stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
-    stack += [(action.precondition, True, False) for action in task.domain.actions]
-    stack += [
-        (effect.condition, True, False)
-        for action in task.domain.actions
-        for effect in action.effects
-    ]
-    stack += [(rule.body, True, True) for rule in task.domain.derived]
-    while stack:
-        formula, sign, in_rule = stack.pop()
-        match formula:
-            case Atom():
-                yield formula, sign
-            case And(parts) | Or(parts):
-                stack += [(part, sign, in_rule) for part in parts]
-            case Not(body):
-                stack.append((body, sign != in_rule, in_rule))
-            case Exists(_, body) | Forall(_, body):
-                stack.append((body, sign, in_rule))
+    return {atom.predicate for atom, _ in atoms_of(task)}

@@ -9,12 +9,12 @@ from tamp.stream import Rejection
 from tamp.symbolic.algorithms.bound_stream import Objects
 from tamp.symbolic.algorithms.costs import Costs
 from tamp.symbolic.algorithms.optimistic.anything import anything
+from tamp.symbolic.algorithms.optimistic.assumable_tests import assumable
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import (
     ENOUGH,
     LEVELS,
     Named,
     Optimism,
-    assumable,
     imagine,
     relevant,
     type_facts,
@@ -48,11 +48,13 @@ class Imagination:
         )
         self.costs = Costs(problem.functions, self.objects, task.costs)
         self.task = replace(task, costs=self.costs)
+
         self.effort = Effort()
         self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
         self.given_up = False
         self.depth = 1
         self.shallow: int | None = None
+
         self.aside = self.bystanders()
         wanted = anything(task)
         useful = relevant(
@@ -63,16 +65,19 @@ class Imagination:
         self.assumed = assumable(useful, task)
         tests = {stream.name for stream, _ in self.assumed.values()}
         self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
+
         self.refused: set[Fact] = set()
         self.names: dict[tuple[str, tuple[str, ...]], Named] = {}
         self.settled: set[tuple[str, tuple[str, ...]]] = set()
         self.real: dict[Fact, None] = {}
+
         self.known = [*sorted(task.initial), *type_facts(task)]
         changing = task.domain.fluent_predicates
         shown = {
             name for stream in problem.streams for name in stream.declaration.fluents
         } - changing
         self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
+
         self.instantiator = Instantiator(self.task, frozenset(self.assumed))
         self.optimism, self.instantiated = self.imagined()
 
