@@ -28,8 +28,7 @@ class BoundFunction:
 
 
 class Costs(Mapping[Fact, float]):
-    """The costs of function facts: given, computed, and for placeholders the mean of those
-    computed.
+    """Costs of function facts: given, computed, and for placeholders the mean of the computed.
 
     Args:
         functions: Computed ones.

@@ -164,9 +164,7 @@ class Incremental(Run):
         return None
 
     def _sample(self) -> bool:
-        """Call every stream instance that known facts allow; say if any may still give
-        something.
-        """
+        """Call every stream instance that known facts allow; say if any may give more."""
         static = [stream for stream in self.useful if not stream.is_fluent]
         fresh = False
         known = [*self.known, *self.found]

@@ -36,9 +36,7 @@ class Record:
 
     @property
     def expected_failures(self) -> float:
-        """Expected failures before a success: the mean of 1/p - 1 under a flat prior, 0 when
-        untried.
-        """
+        """Expected failures before a success: the mean of 1/p - 1, flat prior, 0 if untried."""
         return max(0.0, (self.failures + 1.0) / (self.successes + 1.0) - 1.0)
 
     @property
@@ -73,23 +71,17 @@ class Experience:
     def note_nogood(
         self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str
     ) -> None:
-        """Count a failure to certify `fact` that the facts `present` in the state are to blame
-        for.
-        """
+        """Count a failure to certify `fact` for which `present` facts are to blame."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
 
     def note_exact(
         self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
     ) -> None:
-        """Note that a call gives nothing in the states that have just these facts of the
-        predicates.
-        """
+        """Note that a call gives nothing in states with just these facts of the predicates."""
         self.exact.setdefault(call, (predicates, {}))[1][state] = None
 
     def prices(self) -> dict[tuple[str, ...], float]:
-        """Return the extra cost of an action that rests on a fact, for those that cost
-        something.
-        """
+        """Return the extra cost of an action that rests on a fact, where it is not zero."""
         return {fact: record.price for fact, record in self.facts.items() if record.price > 0.0}
 
     @staticmethod
