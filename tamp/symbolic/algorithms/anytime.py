@@ -1,4 +1,4 @@
-"""Better and better plans: cheaper skeletons first, then other values for a part of the plan at a time."""
+"""Anytime planning: cheaper skeletons first, then other values for a part of the plan at a time."""
 
 from __future__ import annotations
 
@@ -44,20 +44,23 @@ def solve_anytime(
         deadline: When to end.
         progress: Told between rounds.
         better: Told every plan; what it calls better is built upon.
-        bounded: Told a lower bound of the cost, after the first plan: no plan of the optimistic task is cheaper,
-            whatever values the streams find for it.
+        bounded: Told a lower bound of the cost, after the first plan: no plan of the optimistic
+            task is cheaper, whatever values the streams find for it.
         choose: Says which part of the plan is next.
 
     Returns:
-        What ended the search for the first plan; after that nothing but the time ends it, by OutOfTime.
+        What ended the search for the first plan; after that nothing but the time ends it, by
+        OutOfTime.
     """
     run = Adaptive(problem, make_rng, deadline, progress)
     first = run.solve()
     if first.outcome is not Outcome.SOLVED:
         return first
     better(first)
+
     bound = run.lower_bound(BOUND_LIMIT)
     bounded(bound)
+
     best, vain = first, 0
     while run.bound is not None and best.actions and not deadline.passed:
         cost = sum(action.cost for action in best.actions)
@@ -65,6 +68,7 @@ def solve_anytime(
         if cost > bound + 1e-9 and vain < VAIN:
             vain += 1
             found = _cheaper(run, WEIGHTS[vain % len(WEIGHTS)], cost)
+
         skeleton, memory = run.bound[0], dict(run.bound[0].memory)
         if found is None:
             found = _redrawn(run, skeleton, choose)
@@ -82,7 +86,7 @@ _Found = tuple[Result, tuple[Skeleton, dict[int, str]]]
 
 
 def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
-    """A bound plan that costs less."""
+    """Find and bind a plan that costs less."""
     plan = run.search(weight=weight, below=cost - 1e-9).plan
     if plan is None:
         return None
@@ -93,14 +97,16 @@ def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
 
 
 def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None:
-    """The plan with other values for what a few of its actions in a row need."""
+    """Bind the plan anew with other values for what a few of its actions in a row need."""
     first = choose.randrange(1 - WINDOW, max(1, len(skeleton.steps)))
     chosen = {
         number
         for number, node in enumerate(skeleton.nodes)
         if not node.stream.is_test and first <= node.step < first + WINDOW
     }
-    return _found(run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None)
+    return _found(
+        run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None
+    )
 
 
 def _found(run: Adaptive, skeleton: Skeleton, values: dict[int, str] | None) -> _Found | None:

@@ -15,19 +15,19 @@ from tamp.symbolic.pddl.structs import Atom, Fact, Stream
 from tamp.system.deadline import Deadline, OutOfTime
 
 StreamFunction = Callable[..., Any]
-"""f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a Rejection a try, and
-ends when nothing more is to come; a test returns a bool or a Rejection."""
+"""f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a
+Rejection a try, and ends when nothing more is to come; a test returns a bool or a Rejection."""
 
 ADVISORY = "sample-"
-"""Streams of this name's beginning only take advice from their fluents: what they certify holds in any state."""
+"""Streams named so only take advice from their fluents: what they certify holds in any state."""
 
 MOST_WARNINGS = 100
-"""Different warnings that are kept: nobody reads more, and a function may fail for each of its inputs."""
+"""Different warnings that are kept: nobody reads more, and each input may fail."""
 
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function, and the types of its outputs; whether its name may make it an adviser."""
+    """A declared stream, its function and output types; whether its name may make it an adviser."""
 
     declaration: Stream
     function: StreamFunction
@@ -62,7 +62,7 @@ class Objects:
     Attributes:
         types: Name to types.
         values: Name to value; a body's value is its name.
-        by_value: Whether equal values have one name; values without a hash are told apart by identity.
+        by_value: Whether equal values have one name; those without a hash go by identity.
     """
 
     types: dict[str, tuple[str, ...]]
@@ -93,7 +93,7 @@ class Objects:
 
 
 def value_key(value: Any) -> Any:
-    """What equal values have in common: numbers are equal as numbers (1 and 1.0), other values need the same type.
+    """Return a key that equal values share: 1 and 1.0 are equal, others need the same type.
 
     Whatever has no hash is told apart by identity.
     """
@@ -108,7 +108,7 @@ def value_key(value: Any) -> Any:
 
 @dataclass
 class Instance:
-    """A stream called with real inputs (and shown real fluents): its results so far, and the means to draw more.
+    """A stream called with real inputs (and shown real fluents): its results, and how to draw more.
 
     Attributes:
         results: Names of the outputs, one tuple a success, in the order in which they were drawn.
@@ -132,8 +132,8 @@ class Streams:
     Args:
         streams: By name.
         objects: The run's objects; results are added to it.
-        make_rng: A random generator from a string that names the instance, so that what an instance draws does not
-            depend on what was drawn elsewhere.
+        make_rng: A random generator from a string that names the instance, so that what an instance
+            draws does not depend on what was drawn elsewhere.
         deadline: The run's end, handed to the functions.
     """
 
@@ -162,8 +162,10 @@ class Streams:
         """Go on with what another part of the same run has learned, and add to its warnings."""
         self.memory, self.warnings = earlier.memory, earlier.warnings
 
-    def instance(self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()) -> Instance:
-        """The instance of a stream for these inputs; the same one each time."""
+    def instance(
+        self, name: str, inputs: tuple[str, ...], fluents: frozenset[Fact] = frozenset()
+    ) -> Instance:
+        """Return the instance of a stream for these inputs; the same one each time."""
         key = (name, inputs, fluents)
         instance = self._instances.get(key)
         if instance is None:
@@ -172,22 +174,23 @@ class Streams:
         return instance
 
     def instances(self, name: str, inputs: tuple[str, ...]) -> list[Instance]:
-        """All instances of a stream for these inputs, whatever fluents they were shown."""
+        """List all instances of a stream for these inputs, whatever fluents they were shown."""
         return self._of_call.get((name, inputs), [])
 
     def called(self) -> list[Instance]:
-        """All instances that were called so far, in the order in which they were first looked at."""
+        """List all instances that were called so far, in the order in which they were first met."""
         return [made for made in self._instances.values() if made.results or made.last is not None]
 
     def false_tests(self) -> list[Instance]:
-        """The tests that were called and do not hold, in whatever state."""
-        made = (known for known in self._instances.values() if known.stream.is_test and not known.stream.is_fluent)
-        return [known for known in made if known.exhausted and not known.results]
+        """List the tests that were called and do not hold, in whatever state."""
+        ended = (one for one in self._instances.values() if one.exhausted and not one.results)
+        return [one for one in ended if one.stream.is_test and not one.stream.is_fluent]
 
     def draw(self, instance: Instance) -> tuple[str, ...] | None:
-        """One more try: the names of the outputs (none for a test), or None, with the reason in `instance.last`."""
+        """Try once more: return the outputs' names (none for a test), or None and set `last`."""
         if instance.exhausted:
             return None
+
         statistics = self.statistics[instance.stream.name]
         started = time.perf_counter()
         self.running = instance
@@ -203,15 +206,18 @@ class Streams:
                 self.wild[str(predicate).lower(), *words] = None
         except OutOfTime:
             raise
-        except Exception as error:  # a user's function may fail in any way; the plan does not hang on it
+        except Exception as error:
+            # a user's function may fail in any way; the plan does not hang on it
             instance.exhausted = True
             value, names = Rejection(f"raised {type(error).__name__}", given_up=True), ()
             _add_new(
                 self.warnings,
-                f"stream {instance.stream.name} raised {type(error).__name__}: {error}; that call is given up",
+                f"stream {instance.stream.name} raised {type(error).__name__}: {error}; "
+                "that call is given up",
             )
         finally:
             statistics.seconds += time.perf_counter() - started
+
         statistics.calls += 1
         if isinstance(value, Rejection):
             instance.last = value
@@ -228,20 +234,20 @@ class Streams:
         _add_new(self.warnings, message)
 
     def certified(self, instance: Instance, outputs: tuple[str, ...]) -> tuple[Fact, ...]:
-        """The facts that a result makes true."""
+        """Return the facts that a result makes true."""
         declaration = instance.stream.declaration
-        return substitute(
-            declaration.certified,
-            (*declaration.inputs, *declaration.outputs),
-            (*instance.inputs, *outputs),
-        )
+        variables = (*declaration.inputs, *declaration.outputs)
+        return substitute(declaration.certified, variables, (*instance.inputs, *outputs))
 
     def _advance(self, instance: Instance) -> Any:
         values = self.objects.values
         if instance.iterator is None:
             key = repr((instance.stream.name, instance.inputs, sorted(instance.fluents)))
-            shown = [tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)]
-            warn = partial(_add_new, self.warnings)  # not a method: a call that knows the streams would keep them alive
+            shown = [
+                tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)
+            ]
+            # not a method: a call that knows the streams would keep them alive
+            warn = partial(_add_new, self.warnings)
             call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
@@ -250,6 +256,7 @@ class Streams:
                     return made
                 return () if made else Rejection("does not hold")
             instance.iterator = iter(made)
+
         for value in instance.iterator:
             return value
         instance.exhausted = True
@@ -262,7 +269,10 @@ class Streams:
             return ()
         parts: Sequence[Any] = (value,) if len(outputs) == 1 else tuple(value)
         if len(parts) != len(outputs):
-            raise ValueError(f"stream {instance.stream.name} yields {len(parts)} values for {len(outputs)} outputs")
+            raise ValueError(
+                f"stream {instance.stream.name} yields {len(parts)} values "
+                f"for {len(outputs)} outputs"
+            )
         types = instance.stream.output_types
         return tuple(
             self.objects.add(part, types[i], outputs[i].lstrip("?").rstrip("0123456789") or "x")
@@ -274,10 +284,14 @@ STRANGERS = (Streams.draw.__code__,)
 """For an alarm: what calls the functions that anyone may have written."""
 
 
-def substitute(atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]) -> tuple[Fact, ...]:
-    """The facts of lifted atoms under a substitution of variables by objects."""
+def substitute(
+    atoms: Sequence[Atom], names: Sequence[str], objects: Sequence[str]
+) -> tuple[Fact, ...]:
+    """Return the facts of lifted atoms under a substitution of variables by objects."""
     table = dict(zip(names, objects, strict=True))
-    return tuple([(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms])
+    return tuple(
+        [(atom.predicate, *[table.get(term, term) for term in atom.terms]) for atom in atoms]
+    )
 
 
 def _add_new(warnings: list[str], message: str) -> None:

@@ -12,7 +12,8 @@ from tamp.symbolic.algorithms.bound_stream import Objects
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Function
 
 MARK = "#"
-"""Placeholders begin with it, as in tamp.symbolic.algorithms.optimistic.optimistic_instantiation."""
+"""Placeholders begin with it, as in
+tamp.symbolic.algorithms.optimistic.optimistic_instantiation."""
 
 UNKNOWN = 1.0
 """What a placeholder's cost is taken for until the function was asked once."""
@@ -20,14 +21,14 @@ UNKNOWN = 1.0
 
 @dataclass(frozen=True)
 class BoundFunction:
-    """A declared function and the Python function that computes it: numbers, zero or more, from values."""
+    """A declared function and the Python function that computes it: numbers, zero or more."""
 
     declaration: Function
     function: Callable[..., Any]
 
 
 class Costs(Mapping[Fact, float]):
-    """The costs of function facts: those given, those computed, and for placeholders the mean of those computed.
+    """Costs of function facts: given, computed, and for placeholders the mean of the computed.
 
     Args:
         functions: Computed ones.
@@ -35,7 +36,9 @@ class Costs(Mapping[Fact, float]):
         given: Costs that the problem states; they come first.
     """
 
-    def __init__(self, functions: tuple[BoundFunction, ...], objects: Objects, given: Mapping[Fact, float]) -> None:
+    def __init__(
+        self, functions: tuple[BoundFunction, ...], objects: Objects, given: Mapping[Fact, float]
+    ) -> None:
         self._functions = {bound.declaration.name: bound for bound in functions}
         self._objects = objects
         self._given = given
@@ -71,11 +74,15 @@ class Costs(Mapping[Fact, float]):
         return len({**self._given, **self._known})
 
     def of(self, action: Action, arguments: tuple[str, ...]) -> float:
-        """What an action costs with real arguments."""
+        """Return the cost of an action with real arguments."""
         if not isinstance(action.cost, Atom):
             return float(action.cost)
-        binding = dict(zip((parameter.name for parameter in action.parameters), arguments, strict=True))
-        return self[(action.cost.predicate, *(binding.get(term, term) for term in action.cost.terms))]
+        binding = dict(
+            zip((parameter.name for parameter in action.parameters), arguments, strict=True)
+        )
+        return self[
+            (action.cost.predicate, *(binding.get(term, term) for term in action.cost.terms))
+        ]
 
     def _ask(self, fact: Fact) -> float:
         bound = self._functions[fact[0]]
@@ -85,5 +92,7 @@ class Costs(Mapping[Fact, float]):
         except (TypeError, ValueError):
             cost = math.nan
         if not (0.0 <= cost < math.inf):
-            raise InputError(f"function '{fact[0]}' gave {value!r}: a cost is a number, zero or more")
+            raise InputError(
+                f"function '{fact[0]}' gave {value!r}: a cost is a number, zero or more"
+            )
         return cost

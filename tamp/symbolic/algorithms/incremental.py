@@ -1,7 +1,8 @@
-"""The incremental algorithm: sample everything level by level, then search over what is known. The simple reference.
+"""The incremental algorithm, a reference: sample level by level, then search over what is known.
 
-After PDDLStream's incremental algorithm (Garrett, Lozano-Perez, Kaelbling, ICAPS 2020). Streams that certify something
-about the state that they are shown cannot be called before there is a plan; they stay optimistic, and are bound last.
+After PDDLStream's incremental algorithm (Garrett, Lozano-Perez, Kaelbling, ICAPS 2020). Streams
+that certify something about the state that they are shown cannot be called before there is a plan;
+they stay optimistic, and are bound last.
 """
 
 from __future__ import annotations
@@ -96,18 +97,23 @@ class Incremental(Run):
             return self.stopped(Outcome.INTERRUPTED)
 
     def _excluded_from_the_start(self) -> bool:
-        """Whether goals exclude each other whatever the streams give: sampling would never say so.
+        """Check that goals exclude each other whatever streams give: sampling never says so.
 
-        A placeholder stands for all values of a call, which hides plans that take two of them: with a second one for
-        each call the goals have to exclude each other as well, and no condition may want such values to differ.
+        A placeholder stands for all values of a call, which hides plans that take two of them: with
+        a second one for each call the goals have to exclude each other as well, and no condition
+        may want such values to differ.
         """
-        if distinguishes(self.task, [types for stream in self.useful for types in stream.output_types]):
+        if distinguishes(
+            self.task, [types for stream in self.useful for types in stream.output_types]
+        ):
             return False
+
         twins = [
             replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN}"))
             for stream in self.useful
             if not stream.is_test
         ]
+
         imagined: list[tuple[Optimism, InstantiatedTask]] = []
         for streams in (self.useful, [*self.useful, *twins]):
             optimism = imagine(streams, self.known)
@@ -115,19 +121,23 @@ class Incremental(Run):
                 return False
             optimism.assumed = self.assumed
             types = {**self.objects.types, **optimism.types}
-            instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(list(optimism.makers), types)
+            instantiated = Instantiator(self.task, frozenset(self.assumed)).instantiate(
+                list(optimism.makers), types
+            )
             if excluded(instantiated, self.deadline) is None:
                 return False
             imagined.append((optimism, instantiated))
+
         self.optimism, self.instantiated = imagined[0]
         return True
 
     def promise(self, name: str) -> Fact | None:
-        """As of every run; the values are those found."""
-        return next((fact for fact in self.found if name in fact[1:]), None) or super().promise(name)
+        """Return a fact that certifies a name, as every run does; the values are those found."""
+        found = next((fact for fact in self.found if name in fact[1:]), None)
+        return found or super().promise(name)
 
     def _searched(self, rounds: int | None) -> Result | None:
-        """Search what is known, again with what was learned, until a plan is bound, nothing is new or rounds end."""
+        """Search, bind and learn until a plan is bound, nothing is new or rounds end."""
         dry = 0
         while rounds is None or rounds > 0:
             self.optimism, self.instantiated = self.imagined()
@@ -136,28 +146,32 @@ class Incremental(Run):
                 raise OutOfTime
             if found.plan is None:
                 return None
+
             skeleton = self.skeleton(found.plan)
             self.latest = skeleton
             before = self.binder.units
             values = self.bind(skeleton, TRIES, BUDGET)
             if values is not None:
                 return self.solved(skeleton, values)
+
             if not self.bury(skeleton):
                 dry = dry + 1 if self.binder.units == before else 0
-                if dry >= DRY:  # there are plans, whose streams fail in the states that these lead through
+                if dry >= DRY:
+                    # there are plans, whose streams fail in the states that these lead through
                     self.given_up = True
                     return None
                 rounds = None if rounds is None else rounds - 1
         return None
 
     def _sample(self) -> bool:
-        """Call every stream instance that the known facts allow; whether anything may still come of it."""
+        """Call every stream instance that known facts allow; say if any may give more."""
         static = [stream for stream in self.useful if not stream.is_fluent]
         fresh = False
         known = [*self.known, *self.found]
         for guess in imagine(static, known, levels=1).guesses:
             if all(fact in self.found for fact in guess.certified):
                 continue
+
             shown = [fact for fact in self.known if fact[0] in guess.stream.declaration.fluents]
             instance = self.streams.instance(guess.stream.name, guess.inputs, frozenset(shown))
             for _ in range(1 if guess.stream.is_test else PER_LEVEL):
@@ -173,17 +187,20 @@ class Incremental(Run):
                         self.found.setdefault(fact, instance)
                 for fact in self.streams.wild:
                     self.found.setdefault(fact, None)
-            self.given_up |= instance.exhausted and instance.last is not None and instance.last.given_up
+
+            self.given_up |= (
+                instance.exhausted and instance.last is not None and instance.last.given_up
+            )
             if instance.exhausted and not instance.results and instance.last is not None:
                 self.dead[guess.stream.name, guess.inputs] = instance.last
         return fresh
 
     def sampled(self) -> dict[Fact, Instance | None]:
-        """What was sampled so far."""
+        """Return what was sampled so far."""
         return self.found
 
     def imagined(self) -> tuple[Optimism, InstantiatedTask]:
-        """The task over real facts, only the fluent streams' outputs are placeholders."""
+        """Instantiate the task over real facts, only fluent streams' outputs are placeholders."""
         started = time.perf_counter()
         fluent = [stream for stream in self.useful if stream.is_fluent]
         optimism = imagine(fluent, [*self.known, *self.found], levels=1, names=self.names)

@@ -1,4 +1,4 @@
-"""What planning over streams ends with."""
+"""Results of planning over streams: the outcome, the plan, and what was tried."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tamp.symbolic.pddl.structs import Fact, Task
 
 
 class Outcome(Enum):
-    """How planning ended; the value is the sentence that a user reads."""
+    """An outcome of planning; the value is the sentence that a user reads."""
 
     SOLVED = "Solved"
     INFEASIBLE = "No plan: infeasible"
@@ -34,7 +34,8 @@ class StreamTask:
         values: The objects' values, where they are more than their names.
         functions: Costs that Python computes.
         by_value: Whether equal values are one object.
-        known: What earlier runs say of streams, by name; those that fail often are avoided from the start.
+        known: What earlier runs say of streams, by name; those that fail often are avoided from the
+            start.
     """
 
     task: Task
@@ -65,8 +66,10 @@ class Effort:
         draws: Stream calls.
         search_seconds: Wall-clock time in search and instantiation.
         explaining_seconds: Wall-clock time in saying why there is no plan.
-        apart_seconds: Wall-clock time of the run's other part: a second opinion, or what was tried before it.
-        refuted: Bound plans that did not hold when they were replayed, though the planner thought so.
+        apart_seconds: Wall-clock time of the run's other part: a second opinion, or what was tried
+            before it.
+        refuted: Bound plans that did not hold when they were replayed, though the planner thought
+            so.
     """
 
     searches: int = 0

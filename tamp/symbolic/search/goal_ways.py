@@ -30,7 +30,7 @@ class Part:
 
 
 def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
-    """The goal's conjuncts, universal ones taken apart, each with its ways to hold."""
+    """List the goal's conjuncts, universal ones taken apart, each with its ways to hold."""
     rules = _by_head(instantiated.axioms)
     literals = [(fact, True) for fact in sorted(instantiated.goal.positive)]
     literals += [(fact, False) for fact in sorted(instantiated.goal.negative)]
@@ -92,10 +92,12 @@ class _Opener:
         fact, wanted = literal
         if fact not in self._rules:
             return [frozenset((literal,))]
+
         self._work += 1
         if fact in above or self._work > MOST_WORK:
             return ANY
         above |= {fact}
+
         if wanted:
             ways: list[Way] = []
             for axiom in self._rules[fact]:
@@ -103,6 +105,7 @@ class _Opener:
                 if len(ways) > ALTERNATIVES:
                     return ANY
             return ways
+
         return self._product(
             [
                 [way for part, sign in _body(axiom) for way in self.ways((part, not sign), above)]

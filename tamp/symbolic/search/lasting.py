@@ -13,7 +13,7 @@ from tamp.symbolic.search.operators import Axiom, Guard, InstantiatedTask, Opera
 
 @dataclass(frozen=True)
 class Lasting:
-    """What nothing ever makes false.
+    """Facts that nothing ever makes false.
 
     Attributes:
         facts: Those of the initial state, and what follows from them by rules without negation.
@@ -29,7 +29,7 @@ class Lasting:
 
 
 def lasting(instantiated: InstantiatedTask) -> Lasting:
-    """A fixpoint: what is never deleted forbids operators, without which more is never deleted."""
+    """Compute a fixpoint: what is never deleted forbids operators, so that less is deleted."""
     alive = list(instantiated.operators)
     forbidden: list[tuple[Operator, frozenset[Fact]]] = []
     rules = [axiom for axiom in instantiated.axioms if not axiom.negative]
@@ -94,7 +94,7 @@ def _deleted(operators: Iterable[Operator]) -> set[Fact]:
 
 
 def _derive(facts: set[Fact], rules: list[Axiom]) -> dict[Fact, frozenset[Fact]]:
-    """Add what follows from the facts; why each does."""
+    """Add what follows from the facts; return why each does."""
     causes: dict[Fact, frozenset[Fact]] = {}
     grown = True
     while grown:

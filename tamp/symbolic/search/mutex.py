@@ -45,7 +45,7 @@ def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Litera
 
 
 class Mutexes:
-    """Which pairs of facts a reachable state may contain; an absence that the goal wants is a fact.
+    """Pairs of facts that a reachable state may contain; an absence the goal wants is a fact.
 
     Args:
         instantiated: The task.
@@ -70,14 +70,17 @@ class Mutexes:
             literal: i
             for i, literal in enumerate([*sorted(facts), *((head, True) for head in heads)])
         }
+
         if len(self._number) ** 2 > MOST_PAIRS:
             raise Undecided
+
         self._with = [0] * len(self._number)
         self._lasting = (1 << len(facts)) - 1
         self._absent = absent
         initial = [(fact, True) for fact in instantiated.initial] + [
             literal for literal in absent if literal[0] not in instantiated.initial
         ]
+
         start = self._mask(initial)
         for literal in initial:
             self._with[self._number[literal]] = start
@@ -93,16 +96,19 @@ class Mutexes:
         for part, ways in zip(self._parts, possible, strict=True):
             if not ways:
                 return (part.literal,)
+
         named = {part.literal for part in self._parts}
         for fact, wanted in sorted(named):
             if wanted and (fact, False) in named:
                 return ((fact, True), (fact, False))
+
         for i, j in combinations(range(len(possible)), 2):
             self._look()
             if not any(self._together(a, b) for a in possible[i] for b in possible[j]):
                 return (self._parts[i].literal, self._parts[j].literal)
         if self._all(possible):
             return None
+
         kept = list(range(len(possible)))
         for index in list(kept):
             rest = [k for k in kept if k != index]
@@ -138,10 +144,12 @@ class Mutexes:
                 move for operator in instantiated.operators for move in self._moves(operator)
             )
         )
+
         rules = [
             (self._number[a.head, True], self._body(a.positive, a.negative))
             for a in instantiated.axioms
         ]
+
         seen: list[tuple[int, ...] | None] = [None] * len(moves)
         changed = True
         while changed:
@@ -153,6 +161,7 @@ class Mutexes:
                 if (before and state == seen[index]) or not self._consistent(before):
                     continue
                 seen[index] = state
+
                 kept = self._partners(before) & self._lasting & ~removed
                 after = kept | self._bits(added)
                 for k in added:
@@ -171,7 +180,7 @@ class Mutexes:
         return any_new
 
     def _meet(self, k: int, others: int) -> bool:
-        """Note that a fact occurs with these; whether any of them is new."""
+        """Note that a fact occurs with these; say if any of them is new."""
         new = others & ~self._with[k]
         if not new:
             return False
@@ -193,14 +202,17 @@ class Mutexes:
                 gone |= {
                     fact for fact in effect.deleted if effect.positive <= operator.positive | {fact}
                 }
+
         gone -= operator.added
         perhaps = {fact for effect in operator.conditional for fact in effect.added}
+
         removed = self._bits(self._numbers((fact, True) for fact in gone - perhaps))
         removed |= self._bits(self._numbers((fact, False) for fact in operator.added))
         added = {(fact, True) for fact in operator.added} | {(fact, False) for fact in gone}
         steady = self._numbers(added)
         if steady or removed:
             yield needs, steady, removed
+
         extra: list[int] = []
         for effect in operator.conditional:
             adds = {(fact, True) for fact in effect.added}
@@ -221,7 +233,7 @@ class Mutexes:
         )
 
     def _known(self, literal: Literal) -> bool:
-        """Whether a literal is looked at: absences only where the goal wants them."""
+        """Check that a literal is looked at: absences only where the goal wants them."""
         return literal[1] or literal in self._absent
 
     def _numbers(self, literals: Iterable[Literal]) -> tuple[int, ...]:
@@ -239,14 +251,14 @@ class Mutexes:
         return mask
 
     def _partners(self, numbers: tuple[int, ...]) -> int:
-        """What goes with each of these."""
+        """Return what goes with each of these."""
         mask = self._alive
         for k in numbers:
             mask &= self._with[k]
         return mask
 
     def _consistent(self, numbers: tuple[int, ...]) -> bool:
-        """Whether these go together, pair by pair; a fact without a number never holds."""
+        """Check that these go together, pair by pair; a fact without a number never holds."""
         wanted = 0
         for k in numbers:
             if k < 0:

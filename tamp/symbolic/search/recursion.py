@@ -8,10 +8,11 @@ from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formu
 
 
 def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozenset[str]], set[str]]:
-    """Return for each derived predicate those that rest on it and it on them, and itself; and
-    which rest on themselves.
-    """
-    below = {name: {p for rule in those for p in _used(rule.body) if p in rules} for name, those in rules.items()}
+    """Return for each derived predicate those of its stratum; and which rest on themselves."""
+    below = {
+        name: {p for rule in those for p in _used(rule.body) if p in rules}
+        for name, those in rules.items()
+    }
     reached: dict[str, set[str]] = {}
     for name in below:
         seen: set[str] = set()
@@ -22,7 +23,10 @@ def strata_of(rules: Mapping[str, Sequence[Derived]]) -> tuple[dict[str, frozens
                 seen.add(at)
                 stack.extend(below[at])
         reached[name] = seen
-    kinds = {name: frozenset((name, *(other for other in reached[name] if name in reached[other]))) for name in below}
+    kinds = {
+        name: frozenset((name, *(other for other in reached[name] if name in reached[other])))
+        for name in below
+    }
     return kinds, {name for name in below if name in reached[name]}
 
 

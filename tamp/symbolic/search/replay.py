@@ -23,10 +23,18 @@ from tamp.symbolic.pddl.structs import (
     Task,
 )
 from tamp.symbolic.search.recursion import strata_of
+from tamp.symbolic.search.replay_formulas import (
+    Binding,
+    conjunct_atoms,
+    formula_words,
+    ground,
+    guard_atoms,
+)
 
-Binding = Mapping[str, str]
-
-REFUTED = "a plan was dropped that did not hold when it was replayed, a mistake of the planner's: please report it"
+REFUTED = (
+    "a plan was dropped that did not hold when it was replayed, "
+    "a mistake of the planner's: please report it"
+)
 """How the reason is told to people."""
 
 
@@ -37,7 +45,7 @@ def violation(
     objects: Mapping[str, tuple[str, ...]] | None = None,
     shown: Callable[[frozenset[Fact]], Iterable[Fact]] | None = None,
 ) -> str | None:
-    """What is wrong with a plan; None where it leads from the initial state to the goal.
+    """Replay a plan and say what is wrong; None where it leads from the start to the goal.
 
     Args:
         task: Gives actions, rules, the initial state and the goal.
@@ -51,25 +59,33 @@ def violation(
     """
     there = {**task.domain.constants, **task.objects, **(objects or {})}
     lifted = {action.name: action for action in task.domain.actions}
+
     static = {*task.initial, *facts}
     changing = task.domain.fluent_predicates
     state = frozenset(fact for fact in static if fact[0] in changing)
     static.difference_update(state)
+
     world = _World(task, there, static)
+
     for number, (name, arguments) in enumerate(actions):
         step = f"step {number + 1}, ({' '.join((name, *arguments))})"
         action = lifted.get(name)
         if action is None or len(arguments) != len(action.parameters):
             return f"{step}: there is no such action"
+
         for parameter, word in zip(action.parameters, arguments, strict=True):
             if not world.fits(word, parameter):
                 return f"{step}: '{word}' is no {' or '.join(parameter.types)}"
         world.enter(state, shown(state) if shown else ())
-        binding = {parameter.name: word for parameter, word in zip(action.parameters, arguments, strict=True)}
+        binding = {
+            parameter.name: word
+            for parameter, word in zip(action.parameters, arguments, strict=True)
+        }
         failed = world.failing(action.precondition, binding)
         if failed is not None:
             return f"{step}: the precondition does not hold, {failed}"
         state = world.after(action, binding, state)
+
     world.enter(state, shown(state) if shown else ())
     failed = world.failing(task.goal, {})
     return None if failed is None else f"the goal does not hold in the end, {failed}"
@@ -83,9 +99,11 @@ def _by_predicate(facts: Iterable[Fact]) -> dict[str, set[Fact]]:
 
 
 class _World:
-    """What holds in one state after the other."""
+    """The facts that hold in one state after the other."""
 
-    def __init__(self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]) -> None:
+    def __init__(
+        self, task: Task, objects: Mapping[str, tuple[str, ...]], static: Iterable[Fact]
+    ) -> None:
         self._task, self._objects, self._kinds_there = task, objects, set(objects.values())
         self._rules: dict[str, list[Derived]] = defaultdict(list)
         for rule in task.domain.derived:
@@ -106,7 +124,7 @@ class _World:
             self._rows[predicate] = facts | self._static.get(predicate, set())
 
     def fits(self, word: str, parameter: Parameter) -> bool:
-        """Whether an object is there and of one of the parameter's types."""
+        """Check that an object is there and of one of the parameter's types."""
         return word in self._fitting(parameter.types)
 
     def _fitting(self, types: tuple[str, ...]) -> dict[str, None]:
@@ -118,17 +136,17 @@ class _World:
         return found
 
     def failing(self, formula: Formula, binding: Binding) -> str | None:
-        """The part of a conjunction that does not hold, in words."""
+        """Return the part of a conjunction that does not hold, in words."""
         if isinstance(formula, And):
             said = (self.failing(part, binding) for part in formula.parts)
             return next((one for one in said if one is not None), None)
-        return None if self.holds(formula, binding) else _words(formula, binding)
+        return None if self.holds(formula, binding) else formula_words(formula, binding)
 
     def holds(self, formula: Formula, binding: Binding) -> bool:
-        """Whether a condition holds."""
+        """Check that a condition holds."""
         match formula:
             case Atom():
-                return self._fact(_ground(formula, binding))
+                return self._fact(ground(formula, binding))
             case Not(body):
                 return not self.holds(body, binding)
             case And(parts):
@@ -137,31 +155,48 @@ class _World:
                 return any(self.holds(part, binding) for part in parts)
             case Exists(parameters, body):
                 return any(
-                    self.holds(body, full) for full in self._bindings(parameters, self._where(body, True), binding)
+                    self.holds(body, full)
+                    for full in self._bindings(parameters, self._where(body, True), binding)
                 )
             case Forall(parameters, body):
                 where = self._where(body, False)
-                return all(self.holds(body, full) for full in self._bindings(parameters, where, binding))
+                return all(
+                    self.holds(body, full) for full in self._bindings(parameters, where, binding)
+                )
 
     def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
-        """The atoms that are facts of the state wherever the formula holds, or wherever it does not."""
+        """Return the atoms that are facts wherever the formula holds, or wherever it does not."""
         known = self._plain.get(id(formula))
         if known is None:
-            atoms = _atoms(formula) if sign else _guards(formula)
-            kept = (atom for atom in atoms if atom.predicate not in self._rules and atom.predicate not in self._types)
+            atoms = conjunct_atoms(formula) if sign else guard_atoms(formula)
+            kept = (
+                atom
+                for atom in atoms
+                if atom.predicate not in self._rules and atom.predicate not in self._types
+            )
             known = self._plain[id(formula)] = tuple(kept)
         return known
 
-    def _bindings(self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding) -> Iterator[Binding]:
-        """Values for the parameters for which the atoms hold, as far as these are no derived ones."""
+    def _bindings(
+        self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding
+    ) -> Iterator[Binding]:
+        """Yield the parameters' values for which the atoms hold, as far as none is derived."""
         names = {parameter.name: parameter for parameter in parameters}
         outer = {name: word for name, word in binding.items() if name not in names}
-        yield from self._join([atom for atom in atoms if not names.keys().isdisjoint(atom.terms)], names, outer)
+        yield from self._join(
+            [atom for atom in atoms if not names.keys().isdisjoint(atom.terms)], names, outer
+        )
 
-    def _join(self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding) -> Iterator[Binding]:
+    def _join(
+        self, atoms: Sequence[Atom], names: Mapping[str, Parameter], binding: Binding
+    ) -> Iterator[Binding]:
         if atoms:
             atom = min(
-                atoms, key=lambda one: (sum(self._open(t, names, binding) for t in one.terms), len(self._of(one)))
+                atoms,
+                key=lambda one: (
+                    sum(self._open(t, names, binding) for t in one.terms),
+                    len(self._of(one)),
+                ),
             )
             rest = [one for one in atoms if one is not atom]
             for fact in self._of(atom):
@@ -169,6 +204,7 @@ class _World:
                 if grown is not None:
                     yield from self._join(rest, names, grown)
             return
+
         left = [name for name in names if name not in binding]
         if not left:
             yield binding
@@ -183,7 +219,9 @@ class _World:
     def _open(term: str, names: Mapping[str, Parameter], binding: Binding) -> bool:
         return term in names and term not in binding
 
-    def _matched(self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding) -> Binding | None:
+    def _matched(
+        self, atom: Atom, fact: Fact, names: Mapping[str, Parameter], binding: Binding
+    ) -> Binding | None:
         grown = dict(binding)
         for term, word in zip(atom.terms, fact[1:], strict=True):
             if self._open(term, names, grown):
@@ -204,9 +242,10 @@ class _World:
         return fact[0] in self._rules and self._derived(fact)
 
     def _derived(self, fact: Fact) -> bool:
-        """Whether a rule gives the fact.
+        """Check that a rule gives the fact.
 
-        Where its predicate rests on itself: the least fixpoint over what is asked for of its kind on the way to it.
+        Where its predicate rests on itself: the least fixpoint over what is asked for of its kind
+        on the way to it.
         """
         if fact in self._known:
             return self._known[fact]
@@ -233,53 +272,22 @@ class _World:
                 binding.setdefault(term, word) == word if term.startswith("?") else term == word
                 for term, word in zip(rule.head.terms, fact[1:], strict=True)
             )
-            fits = same and all(self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding)
+            fits = same and all(
+                self.fits(binding[one.name], one) for one in rule.parameters if one.name in binding
+            )
             if fits and self.holds(rule.body, binding):
                 return True
         return False
 
     def after(self, action: Action, binding: Binding, state: frozenset[Fact]) -> frozenset[Fact]:
-        """The state after an action; adding wins over deleting."""
+        """Return the state after an action; adding wins over deleting."""
         added: set[Fact] = set()
         deleted: set[Fact] = set()
         for effect in action.effects:
             changed = added if effect.adds else deleted
-            for full in self._bindings(effect.parameters, self._where(effect.condition, True), binding):
+            for full in self._bindings(
+                effect.parameters, self._where(effect.condition, True), binding
+            ):
                 if self.holds(effect.condition, full):
-                    changed.add(_ground(effect.atom, full))
+                    changed.add(ground(effect.atom, full))
         return (state - deleted) | added
-
-
-def _ground(atom: Atom, binding: Binding) -> Fact:
-    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
-
-
-def _atoms(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that hold where a conjunction does."""
-    if isinstance(formula, Atom):
-        return (formula,)
-    return tuple(part for part in formula.parts if isinstance(part, Atom)) if isinstance(formula, And) else ()
-
-
-def _guards(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that hold where a disjunction may fail."""
-    if isinstance(formula, Not):
-        return _atoms(formula.body)
-    if isinstance(formula, Or):
-        return tuple(atom for part in formula.parts if isinstance(part, Not) for atom in _atoms(part.body))
-    return ()
-
-
-def _words(formula: Formula, binding: Binding) -> str:
-    match formula:
-        case Atom():
-            return f"({' '.join(_ground(formula, binding))})"
-        case Not(body):
-            return f"(not {_words(body, binding)})"
-        case And(parts) | Or(parts):
-            head = "and" if isinstance(formula, And) else "or"
-            return f"({' '.join((head, *(_words(part, binding) for part in parts)))})"
-        case Exists(parameters, body) | Forall(parameters, body):
-            head = "exists" if isinstance(formula, Exists) else "forall"
-            names = " ".join(parameter.name for parameter in parameters)
-            return f"({head} ({names}) {_words(body, binding)})"

@@ -1,4 +1,4 @@
-"""Finding values for a skeleton: draw, test, and jump back to a choice that the failure depends on."""
+"""Binding a skeleton: draw, test, and jump back to a choice that the failure depends on."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RECENT = 3
 
 @dataclass
 class _Level:
-    """One node on the way down: where its candidates come from, and which earlier levels its failure depends on."""
+    """One node on the way down: its candidates, and the levels that its failure depends on."""
 
     candidates: Iterator[tuple[str, ...]]
     conflict: set[int]
@@ -29,10 +29,10 @@ class _Level:
 
 
 class Binder:
-    """Backtracking with conflict-directed backjumping (Prosser 1993) over the stream calls of a skeleton.
+    """Backtracking with conflict-directed backjumping (Prosser 1993) over a skeleton's calls.
 
-    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest level in it. Every
-    failure is noted in `experience` under the symbolic fact that it concerns.
+    A level whose candidates run out after `tries` new draws hands its conflict set to the deepest
+    level in it. Every failure is noted in `experience` under the symbolic fact that it concerns.
     """
 
     def __init__(self, streams: Streams, experience: Experience, deadline: Deadline) -> None:
@@ -51,10 +51,11 @@ class Binder:
         *,
         holds: Callable[[dict[int, str]], bool] | None = None,
     ) -> dict[int, str] | None:
-        """Values for all variables, or None when none were found within the budget.
+        """Find values for all variables, or None when none were found within the budget.
 
         Args:
-            skeleton: What to bind; it remembers the values that worked, to be tried first next time.
+            skeleton: What to bind; it remembers the values that worked, to be tried first next
+                time.
             tries: New draws a visit of a node.
             budget: Draws in all.
             fresh: The nodes that are to take new values before those that worked.
@@ -64,9 +65,11 @@ class Binder:
         makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
         values: dict[int, str] = {}
         levels: list[_Level] = []
+
         spent_before = self.units
         self._met.clear()
         refusals = 0
+
         while True:
             index = len(levels)
             if index < len(nodes):
@@ -85,18 +88,21 @@ class Binder:
                 if outputs is not None:
                     values.update(zip(nodes[index].outputs, outputs, strict=True))
                     break
+
                 levels.pop()
                 for variable in nodes[index].outputs:
                     values.pop(variable, None)
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
                 if not conflict or self.units - spent_before > budget:
-                    if self.units == spent_before:  # nothing is left to draw: what is known to fail failed once more
+                    if self.units == spent_before:
+                        # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
                     if not conflict:
                         self._settle(nodes, index)
                     return None
+
                 target = max(conflict)
                 for dropped in range(target + 1, len(levels)):
                     for variable in nodes[dropped].outputs:
@@ -107,7 +113,7 @@ class Binder:
                     raise OutOfTime
 
     def _settle(self, nodes: Sequence[Node], failed: int) -> None:
-        """Ask the later tests of real values too, once one failed for good: the next search learns from all.
+        """Ask the later tests of real values too, once one failed for good: search learns from all.
 
         Not those that rest on what a test of this skeleton has yet to certify.
         """
@@ -116,7 +122,9 @@ class Binder:
         for node in nodes[failed + 1 :]:
             declaration = node.stream.declaration
             words = [term for term in node.inputs if isinstance(term, str)]
-            asks = node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            asks = (
+                node.stream.is_test and not declaration.fluents and len(words) == len(node.inputs)
+            )
             if not asks or any(atom.predicate in pending for atom in declaration.domain):
                 continue
             instance = self._streams.instance(node.stream.name, tuple(words))
@@ -144,7 +152,9 @@ class Binder:
         )
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
-        return _Level(self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict)
+        return _Level(
+            self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict
+        )
 
     def _candidates(
         self,
@@ -156,13 +166,16 @@ class Binder:
         tries: int,
         fresh: bool,
     ) -> Iterator[tuple[str, ...]]:
-        """The value that was taken last time and a few recent ones, then new draws, then the earliest results.
+        """Yield the last value and a few recent ones, then new draws, then the earliest results.
 
-        New draws come before most earlier results, since what failed once often fails again; the earliest ones come
-        back so that, with growing `tries`, every pair of values meets.
+        New draws come before most earlier results, since what failed once often fails again; the
+        earliest ones come back so that, with growing `tries`, every pair of values meets.
         """
         node = skeleton.nodes[index]
-        key: tuple[object, ...] = (instance.inputs, frozenset[Fact]() if node.stream.is_advisory else instance.fluents)
+        key: tuple[object, ...] = (
+            instance.inputs,
+            frozenset[Fact]() if node.stream.is_advisory else instance.fluents,
+        )
         offered: set[tuple[str, ...]] = set()
 
         def offer(outputs: tuple[str, ...]) -> bool:
@@ -175,10 +188,12 @@ class Binder:
         remembered = skeleton.memory.get(index)
         if not fresh and remembered is not None and remembered[0] == key and offer(remembered[1]):
             yield remembered[1]
+
         earlier = list(instance.results)
         for outputs in () if fresh else reversed(earlier[-RECENT:]):
             if offer(outputs):
                 yield outputs
+
         if instance.exhausted and not instance.results:
             self._met.append((node, instance))
         draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
@@ -192,6 +207,7 @@ class Binder:
             self._note(node, instance, outputs is not None)
             if outputs is not None and offer(outputs):
                 yield outputs
+
         for outputs in earlier[:draws]:
             if offer(outputs):
                 yield outputs
@@ -217,8 +233,10 @@ class Binder:
                 self._experience.note_nogood(node.fact, present, instance.last.reason)
         self._experience.note(node.fact, instance.last.reason)
 
-    def _blame(self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]) -> None:
-        """The levels that placed the bodies that stood in the way share the blame of a failed fluent stream."""
+    def _blame(
+        self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]
+    ) -> None:
+        """Add to the conflict the levels that placed what a failed fluent stream met."""
         if not node.stream.is_fluent:
             return
         blockers = instance.last.blockers if instance.last is not None else ()
@@ -228,15 +246,15 @@ class Binder:
 
 
 def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
-    """The symbolic state facts about the blockers."""
+    """Return the symbolic state facts about the blockers."""
     return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
 
 
 def value_of(term: Term, values: Mapping[int, str]) -> str:
-    """A term's value."""
+    """Return a term's value."""
     return term if isinstance(term, str) else values[term]
 
 
 def substitute(fact: LiftedFact, values: Mapping[int, str]) -> Fact:
-    """A lifted fact with its variables' values."""
+    """Return a lifted fact with its variables' values."""
     return (fact[0], *(value_of(term, values) for term in fact[1]))

@@ -1,4 +1,4 @@
-"""Whether a bound plan holds: replayed by the book on what the streams really certified."""
+"""Replay of a bound plan by the book, on what the streams really certified."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from tamp.symbolic.search.replay import violation
 
 @dataclass(frozen=True)
 class Fault:
-    """Why a bound plan does not hold.
+    """A reason why a bound plan does not hold.
 
     Attributes:
         reason: In words.
-        expected: Whether nobody could know it before the values were there: something found besides forbids it, or
-            values that were imagined as different are the same. Otherwise the planner has made a mistake.
+        expected: Whether nobody could know it before the values were there: something found besides
+            forbids it, or values that were imagined as different are the same. Otherwise the
+            planner has made a mistake.
     """
 
     reason: str
@@ -33,14 +34,14 @@ Shown = tuple[tuple[str, ...], frozenset[Fact]]
 
 @dataclass
 class _Certified:
-    """What streams that look at the state gave: facts of those states that have what they were shown."""
+    """Facts by streams that look at the state: they hold in states that have what was shown."""
 
     shown: dict[Shown, dict[frozenset[Fact], list[Fact]]] = field(
         default_factory=dict[Shown, dict[frozenset[Fact], list[Fact]]]
     )
 
     def of(self, state: frozenset[Fact]) -> Iterable[Fact]:
-        """Those that hold in a state because its facts were shown."""
+        """Yield those that hold in a state because its facts were shown."""
         for (predicates, given), made in self.shown.items():
             yield from made.get(given.union(fact for fact in state if fact[0] in predicates), ())
 
@@ -60,16 +61,22 @@ class Standing:
 
     def __init__(self, task: Task, streams: Streams) -> None:
         self._task, self._streams = task, streams
-        made = {atom.predicate for stream in streams.streams.values() for atom in stream.declaration.certified}
-        asked = {atom.predicate for atom, sign in atoms_of_conditions(task.domain, task.goal) if not sign}
+        made = {
+            atom.predicate
+            for stream in streams.streams.values()
+            for atom in stream.declaration.certified
+        }
+        asked = {
+            atom.predicate for atom, sign in atoms_of_conditions(task.domain, task.goal) if not sign
+        }
         self._absent = made & asked
 
     def fault(self, skeleton: Skeleton, values: Mapping[int, str]) -> Fault | None:
-        """What is wrong with a bound plan, if anything is.
+        """Find what is wrong with a bound plan, if anything is.
 
-        Preconditions, derived predicates, effects and the goal are evaluated on the initial facts and those that the
-        plan says it rests on; each of these must have been certified with these values, of the state at that step
-        where its stream was shown one.
+        Preconditions, derived predicates, effects and the goal are evaluated on the initial facts
+        and those that the plan says it rests on; each of these must have been certified with these
+        values, of the state at that step where its stream was shown one.
         """
         given = _Certified()
         for node in skeleton.nodes:
@@ -78,16 +85,25 @@ class Standing:
             reason = self._take(node, values, given)
             if reason is not None:
                 return Fault(reason, False)
-        known = {substitute(fact, values) for fact in skeleton.certified} - given.of_states - self._task.initial
+
+        known = (
+            {substitute(fact, values) for fact in skeleton.certified}
+            - given.of_states
+            - self._task.initial
+        )
         facts = known & self._streams.certain
         for fact in sorted(known - facts):
             if fact not in self._streams.wild:
                 return Fault(f"({' '.join(fact)}) was not certified", False)
             facts.add(fact)
-        actions = [(name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions]
+
+        actions = [
+            (name, substitute((name, terms), values)[1:]) for name, terms in skeleton.actions
+        ]
         reason = self._replayed(actions, facts, given)
         if reason is not None:
             return Fault(reason, self._coincide(skeleton, values))
+
         wild = set(self._streams.wild)
         if self._absent:  # what was found out about the plan's values, for this plan or another
             names = {*self._task.objects, *self._task.domain.constants}
@@ -99,26 +115,32 @@ class Standing:
         return None if reason is None else Fault(reason, True)
 
     def _coincide(self, skeleton: Skeleton, values: Mapping[int, str]) -> bool:
-        """Whether a variable has the value of another one, or of an object that the task or the plan names."""
+        """Check that a variable's value is another one's, or an object that task or plan names."""
         named = {*self._task.objects, *self._task.domain.constants}
         lifted = (*skeleton.actions, *skeleton.certified)
         named.update(term for _, terms in lifted for term in terms if isinstance(term, str))
         return len(set(values.values())) < len(values) or not named.isdisjoint(values.values())
 
     def _take(self, node: Node, values: Mapping[int, str], given: _Certified) -> str | None:
-        """Add what a call certified of a state; what is wrong if it never gave these values."""
+        """Add what a call certified of a state; say what is wrong if it never gave these values."""
         inputs = tuple(value_of(term, values) for term in node.inputs)
         outputs = tuple(values[variable] for variable in node.outputs)
         seen = node.given.union(substitute(fact, values) for fact, _ in node.fluents)
         called = self._streams.instances(node.stream.name, inputs)
-        gave = [instance for instance in called if instance.fluents == seen and outputs in instance.results]
+        gave = [
+            instance
+            for instance in called
+            if instance.fluents == seen and outputs in instance.results
+        ]
         if not gave:
             return f"{node.stream.name}({', '.join(inputs)}) never gave ({', '.join(outputs)})"
         made = given.shown.setdefault((node.stream.declaration.fluents, node.given), {})
         made.setdefault(seen, []).extend(self._streams.certified(gave[0], outputs))
         return None
 
-    def _replayed(self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified) -> str | None:
+    def _replayed(
+        self, actions: list[tuple[str, tuple[str, ...]]], facts: set[Fact], given: _Certified
+    ) -> str | None:
         used = {word for _, arguments in actions for word in arguments}
         used.update(word for fact in facts for word in fact[1:])
         used.update(word for fact in given.of_states for word in fact[1:])

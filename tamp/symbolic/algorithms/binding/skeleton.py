@@ -29,7 +29,8 @@ class Step:
         name: The action's.
         arguments: Real objects or placeholders.
         state: The fluent facts before it.
-        read: The fluent facts that it rests on, those behind derived ones and effects that take place among them.
+        read: The fluent facts that it rests on, those behind derived ones and effects that take
+            place among them.
         added: The facts that it makes true.
         deleted: The facts of the state that it makes false.
         static: The static facts that it rests on.
@@ -56,7 +57,8 @@ class Node:
 
     Attributes:
         stream: Whose call it is.
-        guess: The symbolic inputs and outputs that stand behind the variables, as (inputs, outputs).
+        guess: The symbolic inputs and outputs that stand behind the variables, as (inputs,
+            outputs).
         inputs: Terms.
         outputs: Variables.
         step: The first step that needs it.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from heapq import heapify, heappop, heappush
 
+from tamp.symbolic.algorithms.binding.call_order import ordered
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Step, Term
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
 from tamp.symbolic.pddl.structs import Fact
@@ -22,16 +22,18 @@ def build_skeleton(
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
-    A placeholder that two parts of the plan use without handing it over in a fluent fact becomes two variables: the
-    grasp of a second pick need not be the grasp of the first.
+    A placeholder that two parts of the plan use without handing it over in a fluent fact becomes
+    two variables: the grasp of a second pick need not be the grasp of the first.
 
     Args:
         steps: The plan.
         end: The final state, and what the goal rests on in it.
         maker: Who certifies an optimistic fact; None for known ones.
-        promise: What the call that gives a placeholder, or a value, certifies of it; None for the task's own objects.
+        promise: What the call that gives a placeholder, or a value, certifies of it; None for the
+            task's own objects.
         given: Facts that no action changes: they are shown to the streams that ask for them.
-        chosen: For a step's number and a fact that it rests on who certifies that there, where several may.
+        chosen: For a step's number and a fact that it rests on who certifies that there, where
+            several may.
     """
     builder = _Builder(maker, promise, given, chosen or {})
     for number, step in enumerate(steps):
@@ -41,7 +43,7 @@ def build_skeleton(
 
 
 class _Builder:
-    """Walks through the plan, keeping for each fluent fact of the state which variables stand in it."""
+    """Walks through the plan and keeps for each fluent fact which variables stand in it."""
 
     def __init__(
         self,
@@ -61,7 +63,8 @@ class _Builder:
         self._certified: list[LiftedFact] = []
         self._shown: dict[int, dict[Fact, tuple[Term, ...]]] = {}
 
-    # Variables, merged as they turn out to be the same (congruence closure over the calls that produce them).
+    # Variables, merged as they turn out to be the same (congruence closure over the calls that
+    # produce them).
 
     def _find(self, variable: int) -> int:
         while self._parent[variable] != variable:
@@ -76,6 +79,7 @@ class _Builder:
         if a == b:
             return
         self._parent[b] = a
+
         first, second = self._producer.get(a), self._producer.pop(b, None)
         if second is None:
             return
@@ -84,6 +88,7 @@ class _Builder:
             return
         if first is second:
             return
+
         keep, drop = sorted((first, second), key=lambda node: node.step)
         self._nodes.remove(drop)
         self._kept[id(drop)] = keep
@@ -94,7 +99,7 @@ class _Builder:
             self._union(x, y)
 
     def _last(self, node: Node) -> Node:
-        """The node that a node was merged into."""
+        """Return the node that a node was merged into."""
         while id(node) in self._kept:
             node = self._kept[id(node)]
         return node
@@ -108,29 +113,33 @@ class _Builder:
     # The walk.
 
     def take(self, number: int, step: Step) -> None:
-        """One action: bind its arguments through the facts that it reads, then require what it rests on."""
+        """Take one action: bind its arguments through what it reads, require what it rests on."""
         for fact in step.state:
             self._state.setdefault(fact, fact[1:])
         self._shown[number] = {fact: self._state[fact] for fact in step.state}
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
             self._require(fact, local, number)
-        for argument in step.arguments:  # no condition says what it is: any value of the stream that gives it will do
+
+        for argument in step.arguments:
+            # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
                 self._anything(argument, local, number)
+
         for usage in step.usages:
             around = dict(local)
             for fact in sorted(usage.present):
                 self._adopt(fact, around)
             self._require(usage.fact, around, number)
             self._certify((usage.fact,), around)
+
         self._actions.append((step.name, self._lift(step.arguments, local)))
         self._certify(step.static, local)
         for fact in step.added:
             self._state[fact] = self._lift(fact[1:], local)
 
     def finish(self, number: int, end: End) -> None:
-        """What the goal rests on in the final state."""
+        """Require what the goal rests on in the final state."""
         self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in end.state}
         local = self._read(end.read, end.state, end.derived)
         for fact in sorted(end.static):
@@ -138,7 +147,7 @@ class _Builder:
         self._certify(end.static, local)
 
     def skeleton(self, steps: tuple[Step, ...]) -> Skeleton:
-        """The result, every term resolved."""
+        """Build the skeleton, every term resolved."""
         for node in self._nodes:
             node.inputs = tuple(self._resolve(term) for term in node.inputs)
             node.outputs = tuple(self._find(variable) for variable in node.outputs)
@@ -152,20 +161,33 @@ class _Builder:
                 )
                 node.given = frozenset(fact for fact in self._given if fact[0] in shown)
             node.needs = [self._last(needed) for needed in node.needs]
-        actions = tuple((name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions)
-        certified = dict.fromkeys((p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified)
-        return Skeleton(steps, actions, _ordered(self._nodes), tuple(certified))
 
-    def _read(self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]) -> dict[str, Term]:
-        """The terms of the placeholders that are read in a state.
+        actions = tuple(
+            (name, tuple(self._resolve(term) for term in terms)) for name, terms in self._actions
+        )
+        certified = dict.fromkeys(
+            (p, tuple(self._resolve(t) for t in terms)) for p, terms in self._certified
+        )
+        return Skeleton(steps, actions, ordered(self._nodes), tuple(certified))
 
-        Besides those in the facts read, derivations may rest on a test for something that the state has: nothing stands
-        there, *or* it is clear of it.
+    def _read(
+        self, read: Iterable[Fact], state: Iterable[Fact], derived: Iterable[Fact]
+    ) -> dict[str, Term]:
+        """Return the terms of the placeholders that are read in a state.
+
+        Besides those in the facts read, derivations may rest on a test for something that the state
+        has: nothing stands there, *or* it is clear of it.
         """
         local: dict[str, Term] = {}
         for fact in sorted(read):
             self._adopt(fact, local)
-        open_ = {name for fact in derived for name in fact[1:] if name.startswith(MARK) and name not in local}
+
+        open_ = {
+            name
+            for fact in derived
+            for name in fact[1:]
+            if name.startswith(MARK) and name not in local
+        }
         if open_:
             for fact in sorted(state):
                 if not open_.isdisjoint(fact[1:]):
@@ -200,23 +222,28 @@ class _Builder:
         guess = self._chosen.get((number, fact)) or self._maker(fact)
         if guess is None:
             return None
+
         node = None
         for name in guess.outputs:
             if name in local:
                 candidate = self._producer.get(self._find(_variable(local[name])))
                 if candidate is not None:
                     node = candidate
+
         if node is None:
             needs = [self._require(needed, local, number) for needed in guess.domain]
             inputs = self._lift(guess.inputs, local)
-            outputs = tuple(_variable(local.setdefault(name, self._new())) for name in guess.outputs)
+            outputs = tuple(
+                _variable(local.setdefault(name, self._new())) for name in guess.outputs
+            )
             node = Node(guess.stream, (guess.inputs, guess.outputs), inputs, outputs, number, fact)
             node.needs = [one for one in needs if one is not None]
-            self._nodes.append(node)  # the same test may be asked for again; `_ordered` keeps one
+            self._nodes.append(node)  # the same test may be asked for again; `ordered` keeps one
             for variable in outputs:
                 self._producer[self._find(variable)] = node
             for certified in guess.certified:
                 self._certified.append((certified[0], self._lift(certified[1:], local)))
+
         symbols = (*guess.inputs, *guess.outputs)
         for name, term in zip(symbols, (*node.inputs, *node.outputs), strict=True):
             if name.startswith(MARK):
@@ -235,41 +262,3 @@ def _variable(term: Term) -> int:
     if isinstance(term, str):
         raise TypeError(f"{term} is not a variable")
     return term
-
-
-def _ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
-    """An order that fails early: tests as soon as their inputs are known, generators step by step, motions last."""
-    merged: dict[tuple[object, ...], Node] = {}
-    same: dict[int, Node] = {}
-    for node in nodes:
-        key: tuple[object, ...] = (node.stream.name, node.inputs, node.outputs, node.fluents)
-        same[id(node)] = merged.setdefault(key, node)
-    calls = list(merged.values())
-    places = {id(node): position for position, node in enumerate(calls)}
-    makers = {variable: position for position, node in enumerate(calls) for variable in node.outputs}
-    waits: list[set[int]] = []
-    users: dict[int, list[int]] = {}
-    for position, node in enumerate(calls):
-        terms: list[Term] = [*node.inputs, *(term for (_, shown), _ in node.fluents for term in shown)]
-        waits.append({makers[term] for term in terms if isinstance(term, int)})
-        waits[-1] |= {places[id(same[id(needed)])] for needed in node.needs} - {position}
-        for maker in waits[-1]:
-            users.setdefault(maker, []).append(position)
-    ready = [(*_rank(node), position) for position, node in enumerate(calls) if not waits[position]]
-    heapify(ready)
-    order: list[Node] = []
-    while ready:
-        position = heappop(ready)[-1]
-        order.append(calls[position])
-        for user in users.get(position, ()):
-            waits[user].discard(position)
-            if not waits[user]:
-                heappush(ready, (*_rank(calls[user]), user))
-    if len(order) < len(calls):
-        raise ValueError("the plan's stream calls depend on each other in a circle")
-    return tuple(order)
-
-
-def _rank(node: Node) -> tuple[int, int]:
-    """Tests, then generators, then what depends on the whole state; each in the order of the steps."""
-    return (0 if node.stream.is_test else 2 if node.stream.is_fluent else 1, node.step)

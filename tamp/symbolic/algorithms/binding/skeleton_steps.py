@@ -16,8 +16,10 @@ NOGOOD = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
 
 
-def with_nogoods(instantiated: InstantiatedTask, experience: Experience) -> tuple[InstantiatedTask, dict[Fact, float]]:
-    """The task with a guard for everything that was learned to be in the way, and the guards' prices."""
+def with_nogoods(
+    instantiated: InstantiatedTask, experience: Experience
+) -> tuple[InstantiatedTask, dict[Fact, float]]:
+    """Guard the task by all nogoods that were learned; return it and the guards' prices."""
     if not experience.nogoods:
         return instantiated, {}
     guards: dict[Fact, list[Guard]] = {}
@@ -27,7 +29,9 @@ def with_nogoods(instantiated: InstantiatedTask, experience: Experience) -> tupl
         prices[name] = record.price
         guards.setdefault(fact, []).append(Guard(present, name))
     operators = tuple(
-        _guarded(operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())])
+        _guarded(
+            operator, [guard for fact in sorted(operator.static) for guard in guards.get(fact, ())]
+        )
         for operator in instantiated.operators
     )
     return replace(instantiated, operators=operators), prices
@@ -42,7 +46,7 @@ def _guarded(operator: Operator, guards: list[Guard]) -> Operator:
 def to_steps(
     instantiated: InstantiatedTask, plan: Plan, prices: Mapping[Fact, float]
 ) -> tuple[tuple[Step, ...], Trace]:
-    """The plan's steps, and the trace that they come from."""
+    """Return the plan's steps, and the trace that they come from."""
     traced = trace(instantiated, plan.operators, prices)
     steps: list[Step] = []
     for step in traced.steps:
@@ -52,6 +56,7 @@ def to_steps(
             for guard in step.guards
             if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
         ]
+
         steps.append(
             Step(
                 name=operator.name,
@@ -66,4 +71,5 @@ def to_steps(
                 cost=operator.cost,
             )
         )
+
     return tuple(steps), traced

@@ -16,17 +16,22 @@ WORST = 5.0
 """Expected failures that earlier runs can charge for at most: another problem may be kinder."""
 
 
-def doubts(optimism: Optimism, experience: Experience, earlier: Mapping[str, Posterior]) -> dict[Fact, float]:
-    """A price for what is not tried yet.
+def doubts(
+    optimism: Optimism, experience: Experience, earlier: Mapping[str, Posterior]
+) -> dict[Fact, float]:
+    """Price what is not tried yet, as exploration asks.
 
-    For each test of placeholders, since a generator that certifies the same goes first; and for the calls of streams
-    that earlier runs know, by the failures to expect.
+    For each test of placeholders, since a generator that certifies the same goes first; and for the
+    calls of streams that earlier runs know, by the failures to expect.
     """
     known, makers = experience.facts, optimism.makers
     prices = {
         fact: UNTRIED
         for fact, guess in makers.items()
-        if guess.stream.is_test and guess.level > 1 and fact[0] not in optimism.assumed and fact not in known
+        if guess.stream.is_test
+        and guess.level > 1
+        and fact[0] not in optimism.assumed
+        and fact not in known
     }
     expected = {name: SCALE * min(p.expected_failures, WORST) for name, p in earlier.items()}
     if expected:

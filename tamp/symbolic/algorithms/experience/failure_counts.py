@@ -1,4 +1,4 @@
-"""What was tried for each action of the plans that were tried, and why it failed."""
+"""Counts of the tries and failures of each action in the plans that were tried, and the reasons."""
 
 from __future__ import annotations
 
@@ -45,23 +45,28 @@ class Tally:
         return self.tries > 0 and self.successes == 0
 
     def text(self) -> str:
-        """One line."""
+        """Describe it in one line."""
         reasons = ", ".join(f"{count} {reason}" for reason, count in self.reasons.most_common(3))
         how = "never worked" if self.never else f"worked {self.successes} times"
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
 
 
-def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]) -> tuple[Tally, ...]:
-    """What was tried by action and stream: what never worked first, then by failures.
+def tallies(
+    skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]
+) -> tuple[Tally, ...]:
+    """Count what was tried by action and stream: what never worked first, then by failures.
 
     Args:
         skeletons: The plans that were tried, in order.
         experience: What binding them has taught.
         names: The values of the problem's objects: those that are their own names stand for things.
     """
-    records: dict[Fact, list[Record]] = {fact: [record] for fact, record in experience.facts.items()}
+    records: dict[Fact, list[Record]] = {
+        fact: [record] for fact, record in experience.facts.items()
+    }
     for (fact, _), record in experience.nogoods.items():
         records.setdefault(fact, []).append(record)
+
     made: dict[tuple[str, str], Tally] = {}
     counted: set[tuple[str, str, Fact]] = set()
     for skeleton in skeletons[-LATEST:]:
@@ -81,12 +86,13 @@ def tallies(skeletons: Sequence[Skeleton], experience: Experience, names: Mappin
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
+
     rows = [tally for tally in made.values() if tally.tries]
     return tuple(sorted(rows, key=lambda row: (not row.never, -row.failures)))
 
 
 def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
-    """The things of the problem that reasons name as hit or blocking, and how often; most first."""
+    """Count the things of the problem that reasons name as hit or blocking; most first."""
     counts: Counter[str] = Counter()
     for row in rows:
         for reason, count in row.reasons.items():
@@ -97,7 +103,7 @@ def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tupl
 
 
 def _users(skeleton: Skeleton) -> list[int]:
-    """For each call the step with which it has most objects in common; the first of those that need it."""
+    """Find for each call the step that shares most objects with it; the first of those."""
     steps: dict[str, list[int]] = defaultdict(list)
     for number, step in enumerate(skeleton.steps):
         for word in dict.fromkeys(step.arguments):
@@ -108,12 +114,16 @@ def _users(skeleton: Skeleton) -> list[int]:
         for word in {*node.guess[0], *node.guess[1]}:
             for number in steps.get(word, ()):
                 shared[number] = shared.get(number, 0) + 1
-        users.append(min(shared, key=lambda number: (-shared[number], number)) if shared else node.step)
+        users.append(
+            min(shared, key=lambda number: (-shared[number], number)) if shared else node.step
+        )
     return users
 
 
-def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]) -> str:
-    """An action with the things that it concerns: those among its arguments, and where its values come from."""
+def _label(
+    skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]
+) -> str:
+    """Describe an action with the things that it and its values' sources concern."""
     if number >= len(skeleton.steps):
         return "the goal"
     step = skeleton.steps[number]
@@ -124,7 +134,11 @@ def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping
             further = [thing for thing in _things(node.guess[0], names) if thing not in things]
             if further:
                 relation = node.stream.name.removeprefix(ADVISORY)
-                text += f" {relation} {' '.join(further)}" if relation != node.stream.name else f" {' '.join(further)}"
+                text += (
+                    f" {relation} {' '.join(further)}"
+                    if relation != node.stream.name
+                    else f" {' '.join(further)}"
+                )
                 things += further
     if things or number + 1 >= len(skeleton.steps):
         return text
@@ -132,4 +146,6 @@ def _label(skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping
 
 
 def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:
-    return [word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)]
+    return [
+        word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)
+    ]

@@ -1,4 +1,4 @@
-"""What was tried, what it cost, and why it failed: the record that explanations and efforts read."""
+"""Stream statistics and experience: what was tried, what it cost, and why it failed."""
 
 from __future__ import annotations
 
@@ -36,25 +36,27 @@ class Record:
 
     @property
     def expected_failures(self) -> float:
-        """Failures to expect before the next success: the mean of 1/p - 1 under a flat prior, 0 when untried."""
+        """Expected failures before a success: the mean of 1/p - 1, flat prior, 0 if untried."""
         return max(0.0, (self.failures + 1.0) / (self.successes + 1.0) - 1.0)
 
     @property
     def price(self) -> float:
-        """What relying on it costs, in units of the actions' costs."""
+        """Price of relying on it, in units of the actions' costs."""
         return SCALE * self.expected_failures
 
 
 SCALE = 0.4
-"""An expected failure costs this much of an action of cost 1: about ten failures outweigh moving a body away."""
+"""An expected failure costs this much of an action of cost 1: about ten failures outweigh moving a
+body away."""
 
 
 class Experience:
-    """What binding learned about the symbolic facts of the optimistic task, priced for the next search.
+    """Lessons of binding about the optimistic task's symbolic facts, priced for the next search.
 
-    A test that fails blocks exactly the facts it read: `facts` prices the optimistic static facts that need it, and
-    `nogoods` prices a static fact in the presence of named fluent facts. `exact` is final: to each call the predicates
-    of the state that it is shown, and their facts in the states in which it gave nothing.
+    A test that fails blocks exactly the facts it read: `facts` prices the optimistic static facts
+    that need it, and `nogoods` prices a static fact in the presence of named fluent facts. `exact`
+    is final: to each call the predicates of the state that it is shown, and their facts in the
+    states in which it gave nothing.
     """
 
     def __init__(self) -> None:
@@ -66,16 +68,20 @@ class Experience:
         """Count a try of whatever certifies `fact`: a success, or a failure for a reason."""
         self._count(self.facts.setdefault(fact, Record()), reason)
 
-    def note_nogood(self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str) -> None:
-        """Count a failure to certify `fact` that the facts `present` in the state are to blame for."""
+    def note_nogood(
+        self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str
+    ) -> None:
+        """Count a failure to certify `fact` for which `present` facts are to blame."""
         self._count(self.nogoods.setdefault((fact, present), Record()), reason)
 
-    def note_exact(self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]) -> None:
-        """Note that a call gives nothing in the states that have just these facts of the predicates."""
+    def note_exact(
+        self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
+    ) -> None:
+        """Note that a call gives nothing in states with just these facts of the predicates."""
         self.exact.setdefault(call, (predicates, {}))[1][state] = None
 
     def prices(self) -> dict[tuple[str, ...], float]:
-        """The extra cost of an action that rests on a fact, for those that cost something."""
+        """Return the extra cost of an action that rests on a fact, where it is not zero."""
         return {fact: record.price for fact, record in self.facts.items() if record.price > 0.0}
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""What earlier runs say about a stream: a Beta posterior of its success."""
+"""A Beta posterior of a stream's success, from earlier runs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Posterior:
-    """Successes and failures of a stream's tries under a flat prior, Beta(1, 1), and the time that they took.
+    """Successes and failures of a stream's tries under a flat prior, Beta(1, 1), and their time.
 
     Attributes:
         successes: Tries that gave a value (for a test: that held).
@@ -26,9 +26,13 @@ class Posterior:
 
     @property
     def expected_failures(self) -> float:
-        """Failures to expect before a success: the posterior's mean of 1/p - 1, (failures + 1) / successes."""
+        """Expected failures before a success: the posterior's mean of 1/p - 1."""
         return (self.failures + 1) / max(self.successes, 1)
 
     def __add__(self, other: Posterior) -> Posterior:
-        """Both together."""
-        return Posterior(self.successes + other.successes, self.failures + other.failures, self.seconds + other.seconds)
+        """Add the tries of both."""
+        return Posterior(
+            self.successes + other.successes,
+            self.failures + other.failures,
+            self.seconds + other.seconds,
+        )

@@ -1,4 +1,4 @@
-"""Why there is no plan, in words that name objects."""
+"""Explanations of why there is no plan, in words that name objects."""
 
 from __future__ import annotations
 
@@ -22,22 +22,29 @@ from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
 SOON = 3.0
-"""Seconds in which goals that exclude each other are looked for once it is proven that there is no plan."""
+"""Seconds in which goals that exclude each other are looked for once it is proven that there is no
+plan."""
 
 SELDOM = 0.05
-"""What never worked is the cause where it failed at least so often, as a share of the failures of what failed most."""
+"""What never worked is the cause where it failed at least so often, as a share of the failures of
+what failed most."""
 
 LINES = 6
 """How many causes are worth reading."""
 
 
 def explain_attempts(
-    problem: StreamTask, skeletons: Sequence[Skeleton], experience: Experience, bound: Skeleton | None
+    problem: StreamTask,
+    skeletons: Sequence[Skeleton],
+    experience: Experience,
+    bound: Skeleton | None,
 ) -> tuple[Attempt, ...]:
-    """What was tried, in the order in which it was found, and what failed in it."""
+    """List what was tried, in the order in which it was found, and what failed in it."""
     return tuple(
         Attempt(
-            actions=tuple(" ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps),
+            actions=tuple(
+                " ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps
+            ),
             rounds=skeleton.rounds,
             bound=skeleton is bound,
             failures=tuple(_failed(experience, skeleton)),
@@ -54,7 +61,7 @@ def explain_infeasible(
     deadline: Deadline,
     instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
-    """The goal facts that nothing can make true, and what they lack; or the goals that exclude each other.
+    """Name the unreachable goal facts and what they lack; or the goals that exclude each other.
 
     Args:
         problem: The task and its streams.
@@ -78,15 +85,26 @@ def explain_infeasible(
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
         causes = causes or [missing.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
-    lines += [f"{_call(problem, *key)}: {reason.reason}" for key, reason in dead.items() if key not in blamed]
+
+    lines += [
+        f"{_call(problem, *key)}: {reason.reason}"
+        for key, reason in dead.items()
+        if key not in blamed
+    ]
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
+
     soon = Deadline(min(SOON, deadline.left()))
     goals = conflict(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
+
     what = goals[0] if goals else "the goal"
-    calls = {_call(problem, *key): (frozenset(_names(problem, key[1])), why.reason) for key, why in dead.items()}
+    calls = {
+        _call(problem, *key): (frozenset(_names(problem, key[1])), why.reason)
+        for key, why in dead.items()
+    }
+
     forbidding = kept_from(problem, instantiated, calls, what)
     kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
     if kept:
@@ -96,11 +114,14 @@ def explain_infeasible(
 
 def _exclusive(goals: Sequence[str]) -> str:
     both = "both hold" if len(goals) == 2 else "hold together"
-    return f"{' and '.join(goals)} cannot {both} at the end: each way to one of them excludes the others"
+    said = f"{' and '.join(goals)} cannot {both} at the end"
+    return f"{said}: each way to one of them excludes the others"
 
 
-def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool) -> tuple[str, ...]:
-    """The call that did not end, what never worked or else failed most, and what was in the way.
+def explain_failures(
+    problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool
+) -> tuple[str, ...]:
+    """Name the call that did not end, what never worked or failed most, and what was in the way.
 
     Args:
         problem: The task and its streams.
@@ -109,10 +130,15 @@ def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally
         tried: Whether there was a plan to be tried.
     """
     running = streams.running
-    endless = [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    least = SELDOM * max((row.failures for row in rows), default=0)  # one that failed once or twice is no cause
+    endless = (
+        [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
+    )
+    # one that failed once or twice is no cause
+    least = SELDOM * max((row.failures for row in rows), default=0)
     never = [row for row in rows if row.never and row.failures >= least]
-    mostly = sorted((row for row in rows if row.failures > row.successes), key=lambda row: -row.failures)
+    mostly = sorted(
+        (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
+    )
     lines = [row.text() for row in never or mostly]
     blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
     lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
@@ -122,7 +148,7 @@ def explain_failures(problem: StreamTask, streams: Streams, rows: Sequence[Tally
 
 
 def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
-    """Kinds of calls, by the objects of the problem among their inputs, that failed whatever else was tried."""
+    """List the kinds of calls, by the problem's objects in them, that failed whatever was tried."""
     failed: dict[str, Counter[str]] = {}
     worked: set[str] = set()
     for instance in streams.called():
@@ -133,8 +159,14 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
             failed.setdefault(kind, Counter())[instance.last.reason] += 1
     never = [(kind, reasons) for kind, reasons in failed.items() if kind not in worked]
     never.sort(key=lambda row: -row[1].total())
-    texts = (", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3)) for _, reasons in never)
-    return [f"{kind} never worked: {text}" for (kind, _), text in zip(never[:LINES], texts, strict=False)]
+    texts = (
+        ", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3))
+        for _, reasons in never
+    )
+    return [
+        f"{kind} never worked: {text}"
+        for (kind, _), text in zip(never[:LINES], texts, strict=False)
+    ]
 
 
 def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
@@ -142,7 +174,11 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
     seen: set[Fact] = set()
     for node in skeleton.nodes:
         records = [(frozenset[Fact](), experience.facts.get(node.fact))]
-        records += [(present, record) for (fact, present), record in experience.nogoods.items() if fact == node.fact]
+        records += [
+            (present, record)
+            for (fact, present), record in experience.nogoods.items()
+            if fact == node.fact
+        ]
         if node.fact in seen:
             continue
         seen.add(node.fact)
@@ -157,8 +193,14 @@ def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Recor
     objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
     reasons = ", ".join(f"{count} {reason}" for reason, count in record.reasons.most_common(3))
     tries = record.failures + record.successes
-    place = " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present)) if present else ""
-    return f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+    place = (
+        " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present))
+        if present
+        else ""
+    )
+    return (
+        f"{node.stream.name}({objects}) failed {record.failures} of {tries} times{place}: {reasons}"
+    )
 
 
 def _kinds(problem: StreamTask, words: tuple[str, ...]) -> str:
@@ -172,5 +214,5 @@ def _names(problem: StreamTask, inputs: tuple[str, ...]) -> list[str]:
 
 
 def _call(problem: StreamTask, name: str, inputs: tuple[str, ...]) -> str:
-    """The call with the objects that the user knows: those of the problem."""
+    """Write the call with the objects that the user knows: those of the problem."""
     return f"{name}({', '.join([x for x in inputs if x in problem.task.objects] or inputs)})"

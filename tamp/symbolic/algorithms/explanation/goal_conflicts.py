@@ -16,7 +16,8 @@ from tamp.symbolic.search.search import Reason, search
 from tamp.system.deadline import Deadline
 
 LIMIT = 5000
-"""States that a search may expand in the attempt to prove that some of the goals alone are too many."""
+"""States that a search may expand in the attempt to prove that some of the goals alone are too
+many."""
 
 PAIRS = 200
 """Pairs of conjuncts looked at where the goal is one formula with variables."""
@@ -28,10 +29,11 @@ InstantiateGoal = Callable[[Formula], InstantiatedTask]
 def conflict(
     instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
 ) -> tuple[str, ...]:
-    """The goals of an unsolvable task without those that its being unsolvable does not depend on, as texts.
+    """Find a minimal conflict: goals that cannot be reached together, as texts.
 
-    Pairs of facts that exclude each other say it at once. Where they do not, one goal after the other is left out; it
-    stays out when the others are proven unsolvable without it, within LIMIT and the time.
+    Pairs of facts that exclude each other say it at once. Where they do not, one goal after the
+    other is left out; it stays out when the others are proven unsolvable without it, within LIMIT
+    and the time.
 
     Args:
         instantiated: The task.
@@ -46,12 +48,12 @@ def conflict(
 
 
 def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
-    """Whether nobody wrote it so: an auxiliary fact, or one about a placeholder."""
+    """Check that nobody wrote it so: an auxiliary fact, or one about a placeholder."""
     return fact[0] in instantiated.meanings or any(word.startswith(MARK) for word in fact)
 
 
 def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) -> tuple[str, ...]:
-    """The fewest conjuncts of a goal with variables that pairs of facts show to be too many; none if they do not."""
+    """Find the fewest conjuncts of a goal with variables that exclude each other; else all."""
     parts = goal.parts if isinstance(goal, And) else (goal,)
     denied = {part.body for part in parts if isinstance(part, Not)}
     for part in parts:
@@ -68,9 +70,8 @@ def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) 
 
 def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple[Fact, bool], ...]:
     kept = [part.literal for part in goal_parts(instantiated)]
-    for literal in sorted(
-        kept, key=lambda one: one[0][0] not in instantiated.meanings
-    ):  # the parts say more than the whole
+    # the parts say more than the whole
+    for literal in sorted(kept, key=lambda one: one[0][0] not in instantiated.meanings):
         rest = [other for other in kept if other != literal]
         if not rest or deadline.passed:
             break
@@ -86,12 +87,15 @@ def _goal(goal: Goal, literals: Iterable[tuple[Fact, bool]]) -> Goal:
     return Goal(positive, frozenset(fact for fact, wanted in literals if not wanted), goal.static)
 
 
-def _texts(instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]) -> tuple[str, ...]:
+def _texts(
+    instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]
+) -> tuple[str, ...]:
     texts: list[str] = []
     for fact, wanted in literals:
         meaning = instantiated.meanings.get(fact[0])
         text = meaning or f"({' '.join(fact)})"
-        # what an auxiliary universal fact stands for is the formula that holds where the fact does not
+        # what an auxiliary universal fact stands for is the formula that holds where the fact does
+        # not
         negated = not wanted and not (meaning is not None and fact[0].startswith("forall "))
         texts.append(f"(not {text})" if negated else text)
     return tuple(sorted(texts))

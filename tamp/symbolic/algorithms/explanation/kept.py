@@ -1,4 +1,4 @@
-"""What stays as it is for good and keeps actions from being taken: "can stays loaded with crate"."""
+"""Facts that stay for good and keep actions from being taken: "can stays loaded with crate"."""
 
 from __future__ import annotations
 
@@ -15,14 +15,18 @@ CALLS = 2
 
 
 def kept_from(
-    problem: StreamTask, instantiated: InstantiatedTask, calls: Mapping[str, tuple[frozenset[str], str]], goal: str
+    problem: StreamTask,
+    instantiated: InstantiatedTask,
+    calls: Mapping[str, tuple[frozenset[str], str]],
+    goal: str,
 ) -> Iterator[str]:
-    """For each action about the goal's objects that something forbids for good: the action, what it is, and why.
+    """Yield the actions about the goal's objects that are forbidden for good: by what, and why.
 
     Args:
         problem: The task, whose rules say what a fact means.
         instantiated: The optimistic task.
-        calls: The calls that ended without a value, each with the objects that it is about and its reason.
+        calls: The calls that ended without a value, each with the objects that it is about and its
+            reason.
         goal: As text.
     """
     wanted = set(goal.replace("(", " ").replace(")", " ").split())
@@ -31,35 +35,60 @@ def kept_from(
         about = [word for word in operator.arguments if word in wanted]
         if not about:
             continue
+
         for fact in sorted(facts):
-            others = [word for word in fact[1:] if isinstance(problem.values.get(word), str) and word not in about]
-            reasons = [f"{call}: {why}" for call, (names, why) in calls.items() if not names.isdisjoint(others)]
+            others = [
+                word
+                for word in fact[1:]
+                if isinstance(problem.values.get(word), str) and word not in about
+            ]
+            reasons = [
+                f"{call}: {why}"
+                for call, (names, why) in calls.items()
+                if not names.isdisjoint(others)
+            ]
+
             because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now
+
             if state is None:
-                yield f"{operator.name} wants ({' '.join(fact)}) not to hold, which nothing makes false{because}"
+                absent = f"{operator.name} wants ({' '.join(fact)}) not to hold"
+                yield f"{absent}, which nothing makes false{because}"
                 continue
-            things = " ".join(word for word in state[1:] if isinstance(problem.values.get(word), str))
+
+            things = " ".join(
+                word for word in state[1:] if isinstance(problem.values.get(word), str)
+            )
             with_others = f" with {' and '.join(others)}" if others else ""
             never = f", so that {operator.name} is never possible" if for_good else ""
-            yield f"{things} {'stays' if for_good else 'is'} {state[0]}{with_others}{never}{because}"
+            stays = "stays" if for_good else "is"
+            yield f"{things} {stays} {state[0]}{with_others}{never}{because}"
 
 
 def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:
-    """The derived fact that the operator wants not to hold, and that holds because of a fluent one."""
+    """Find the derived fact that the operator wants not to hold, which a fluent one makes hold."""
     domain = problem.task.domain
     for action in domain.actions:
         if action.name != operator.name:
             continue
-        given = dict(zip((parameter.name for parameter in action.parameters), operator.arguments, strict=False))
+        given = dict(
+            zip(
+                (parameter.name for parameter in action.parameters),
+                operator.arguments,
+                strict=False,
+            )
+        )
+
         for atom in _unwanted(action.precondition):
             head = (atom.predicate, *(given.get(term, term) for term in atom.terms))
             if head == fact:
                 return None
             for rule in domain.derived:
-                if rule.head.predicate == atom.predicate and _follows(problem, rule.head, rule.body, head, fact):
+                if rule.head.predicate == atom.predicate and _follows(
+                    problem, rule.head, rule.body, head, fact
+                ):
                     return head
     return None
 
@@ -73,7 +102,7 @@ def _unwanted(formula: Formula) -> Iterator[Atom]:
 
 
 def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fact: Fact) -> bool:
-    """Whether the rule derives the head from the fact, as far as its other plain conditions hold at the start."""
+    """Check that the rule derives the head from the fact, given what plainly holds at the start."""
     binding = dict(zip(rule_head.terms, head[1:], strict=False))
     atoms = plain_atoms(body)
     for atom in atoms:
@@ -82,8 +111,16 @@ def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fa
         grown = {**dict(zip(atom.terms, fact[1:], strict=False)), **binding}
         if (atom.predicate, *(grown.get(term, term) for term in atom.terms)) != fact:
             continue
-        others = [tuple(grown.get(term, term) for term in other.terms) for other in atoms if other is not atom]
+
+        others = [
+            tuple(grown.get(term, term) for term in other.terms)
+            for other in atoms
+            if other is not atom
+        ]
         names = [other.predicate for other in atoms if other is not atom]
-        if all((name, *terms) in problem.task.initial for name, terms in zip(names, others, strict=True)):
+        if all(
+            (name, *terms) in problem.task.initial
+            for name, terms in zip(names, others, strict=True)
+        ):
             return True
     return False

@@ -1,4 +1,4 @@
-"""What a fact that nothing can make true lacks: the precondition at which the nearest way to it ends."""
+"""Reasons why a fact is unachievable: the precondition at which the nearest way to it ends."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Binding = dict[str, str]
 
 @dataclass(frozen=True)
 class _Way:
-    """An action, rule or stream that could make a fact true: its name, its conditions, its variables' types."""
+    """An action, rule or stream that could make a fact true: name, conditions, variables' types."""
 
     name: str
     conditions: tuple[Atom, ...]
@@ -47,7 +47,8 @@ class Missing:
         types: Mapping[str, tuple[str, ...]],
         assumed: Iterable[str] = (),
     ) -> None:
-        self._task, self._streams, self._types, self._assumed = task, streams, types, frozenset(assumed)
+        self._task, self._streams, self._types = task, streams, types
+        self._assumed = frozenset(assumed)
         self._known = frozenset(facts)
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
         for fact in sorted(self._known):
@@ -55,7 +56,9 @@ class Missing:
         self._looks = 0
 
     def reason(self, fact: Fact) -> str:
-        """In words why nothing makes the fact true: "cook needs (hot stove), which nothing makes true"."""
+        """Say why nothing makes the fact true: "cook needs (hot stove), which nothing makes
+        true".
+        """
         said: list[str] = []
         seen = {fact}
         for _ in range(DEEPEST):
@@ -73,11 +76,13 @@ class Missing:
         return f"{', and '.join(said)}, which nothing makes true"
 
     def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
-        """The way to a fact that lacks least, and what it lacks; None when there is no way or none lacks anything."""
+        """Find the way to a fact that lacks least, and what; None if no way lacks anything."""
         best: tuple[str, list[Atom]] | None = None
         for way in self._ways(fact):
             self._looks = 0
-            lacks = self._lacks(list(way.conditions), way.binding, way.types, len(way.conditions) + 1)
+            lacks = self._lacks(
+                list(way.conditions), way.binding, way.types, len(way.conditions) + 1
+            )
             if lacks and (best is None or len(lacks) < len(best[1])):
                 best = way.name, lacks
         return best
@@ -89,17 +94,26 @@ class Missing:
                 if effect.adds:
                     conditions = (*plain_atoms(action.precondition), *plain_atoms(effect.condition))
                     parameters = (*action.parameters, *effect.parameters)
-                    yield from self._way(action.name, effect.atom, conditions, _typed(parameters), fact)
+                    yield from self._way(
+                        action.name, effect.atom, conditions, _typed(parameters), fact
+                    )
         for rule in domain.derived:
             types = {**_typed(rule.parameters), **_inner(rule.body)}
-            yield from self._way(f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact)
+            yield from self._way(
+                f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact
+            )
         for stream in self._streams:
             declared = stream.declaration
             for atom in declared.certified:
                 yield from self._way(stream.name, atom, declared.domain, {}, fact)
 
     def _way(
-        self, name: str, head: Atom, conditions: Iterable[Atom], types: Mapping[str, tuple[str, ...]], fact: Fact
+        self,
+        name: str,
+        head: Atom,
+        conditions: Iterable[Atom],
+        types: Mapping[str, tuple[str, ...]],
+        fact: Fact,
     ) -> Iterator[_Way]:
         if head.predicate == fact[0]:
             binding = self._matched(head, fact, {}, types)
@@ -107,16 +121,25 @@ class Missing:
                 yield _Way(name, tuple(conditions), types, binding)
 
     def _lacks(
-        self, conditions: list[Atom], binding: Binding, types: Mapping[str, tuple[str, ...]], fewer: int
+        self,
+        conditions: list[Atom],
+        binding: Binding,
+        types: Mapping[str, tuple[str, ...]],
+        fewer: int,
     ) -> list[Atom] | None:
-        """The conditions that cannot be had in the best binding, if they are fewer than that."""
+        """Find the conditions that the best binding cannot have, if they are fewer than that."""
         if not conditions:
             return []
-        atom = min(conditions, key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"))
+
+        atom = min(
+            conditions,
+            key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"),
+        )
         rest = [one for one in conditions if one is not atom]
         best: list[Atom] | None = None
         if atom.predicate in self._assumed or atom.predicate == "=":
             return self._lacks(rest, binding, types, fewer)
+
         for fact in self._by_predicate[atom.predicate]:
             self._looks += 1
             if self._looks > LOOKS:
@@ -129,10 +152,14 @@ class Missing:
                 best, fewer = found, len(found)
             if best == [] or grown == binding:
                 return best
+
         if fewer > 1:
             found = self._lacks(rest, binding, types, fewer - 1)
             if found is not None and len(found) + 1 < fewer:
-                best = [Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)), *found]
+                best = [
+                    Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)),
+                    *found,
+                ]
         return best
 
     def _matched(
@@ -147,7 +174,9 @@ class Missing:
             if not term.startswith("?"):
                 if term != word:
                     return None
-            elif grown.setdefault(term, word) != word or not self._fits(word, types.get(term, ("object",))):
+            elif grown.setdefault(term, word) != word or not self._fits(
+                word, types.get(term, ("object",))
+            ):
                 return None
         return grown
 
@@ -156,7 +185,7 @@ class Missing:
 
 
 def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
-    """The atoms that must hold for a formula to hold, as far as they are plain."""
+    """List the atoms that must hold for a formula to hold, as far as they are plain."""
     if isinstance(formula, Atom):
         return (formula,)
     if isinstance(formula, And):
@@ -167,7 +196,11 @@ def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
 def _inner(formula: Formula) -> dict[str, tuple[str, ...]]:
     if isinstance(formula, And):
         return {name: types for part in formula.parts for name, types in _inner(part).items()}
-    return {**_typed(formula.parameters), **_inner(formula.body)} if isinstance(formula, Exists) else {}
+    return (
+        {**_typed(formula.parameters), **_inner(formula.body)}
+        if isinstance(formula, Exists)
+        else {}
+    )
 
 
 def _typed(parameters: Iterable[Parameter]) -> dict[str, tuple[str, ...]]:
@@ -175,5 +208,6 @@ def _typed(parameters: Iterable[Parameter]) -> dict[str, tuple[str, ...]]:
 
 
 def _shown(atom: Atom) -> str:
-    """A fact to read; of what is not known yet there is "some"."""
-    return f"({' '.join([atom.predicate, *(f'some {t[1:]}' if t[:1] == '?' else t for t in atom.terms)])})"
+    """Write a fact to read; of what is not known yet there is "some"."""
+    terms = (f"some {term[1:]}" if term[:1] == "?" else term for term in atom.terms)
+    return f"({' '.join([atom.predicate, *terms])})"

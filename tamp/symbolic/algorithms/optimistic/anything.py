@@ -1,4 +1,4 @@
-"""Of which types a task asks for anything at all: a variable of which no condition says what has to hold of it."""
+"""Types of which a task asks for anything at all: its conditions say nothing of such a variable."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ Types = tuple[str, ...]
 
 
 def anything(task: Task) -> set[Types]:
-    """The types of parameters and quantified variables that some disjunct of their condition names in no fact.
+    """Return the types of variables that some disjunct of their condition names in no fact.
 
-    Any object of such a type will do, so every stream that gives one is of use, whatever it certifies.
+    Any object of such a type will do, so every stream that gives one is of use, whatever it
+    certifies.
     """
     domain = task.domain
     found = set(_unnamed((), task.goal))
@@ -25,7 +26,7 @@ def anything(task: Task) -> set[Types]:
 
 
 def distinguishes(task: Task, kinds: Iterable[Types] | None = None) -> bool:
-    """Whether a condition wants two things to differ.
+    """Check that a condition wants two things to differ.
 
     Args:
         task: Gives the conditions.
@@ -36,18 +37,25 @@ def distinguishes(task: Task, kinds: Iterable[Types] | None = None) -> bool:
     conditions += [(rule.parameters, rule.body) for rule in domain.derived]
     for action in domain.actions:
         conditions.append((action.parameters, action.precondition))
-        conditions += [((*action.parameters, *effect.parameters), effect.condition) for effect in action.effects]
+        conditions += [
+            ((*action.parameters, *effect.parameters), effect.condition)
+            for effect in action.effects
+        ]
 
     own = None if kinds is None else list(kinds)
 
     def matters(types: Types) -> bool:
         return own is None or any(domain.fits(kind, types) for kind in own)
 
-    return any(matters(types) for parameters, one in conditions for types in _differing(one, True, parameters))
+    return any(
+        matters(types)
+        for parameters, one in conditions
+        for types in _differing(one, True, parameters)
+    )
 
 
 def _differing(formula: Formula, sign: bool, scope: tuple[Parameter, ...]) -> Iterator[Types]:
-    """The types of the variables that are to differ from something."""
+    """Yield the types of the variables that are to differ from something."""
     match formula:
         case Atom(predicate, terms):
             if predicate == "=" and not sign:
@@ -68,7 +76,7 @@ def _unnamed(parameters: Iterable[Parameter], condition: Formula) -> Iterator[Ty
 
 
 def _inside(formula: Formula, sign: bool) -> Iterator[Types]:
-    """Those of the variables that are quantified existentially within."""
+    """Yield the types of those variables that are quantified existentially within."""
     match formula:
         case Atom():
             return
@@ -85,7 +93,7 @@ def _inside(formula: Formula, sign: bool) -> Iterator[Types]:
 
 
 def _named(formula: Formula, sign: bool) -> frozenset[str]:
-    """The terms that a fact which has to hold names, whichever disjunct it is that holds."""
+    """Return the terms that a fact which has to hold names, whichever disjunct holds."""
     match formula:
         case Atom(predicate, terms):
             return frozenset(terms) if sign and predicate != "=" else frozenset()

@@ -22,7 +22,7 @@ class FactIndex:
             self._by_object[(fact[0], position, fact[position])].append(fact)
 
     def join(self, atoms: Sequence[Atom], binding: dict[str, str]) -> Iterator[dict[str, str]]:
-        """All extensions of the binding under which every atom is a known fact."""
+        """Yield all extensions of the binding under which every atom is a known fact."""
         if not atoms:
             yield binding
             return
@@ -46,7 +46,7 @@ class FactIndex:
 
 
 def unify(atom: Atom, fact: Fact, binding: dict[str, str]) -> dict[str, str] | None:
-    """The binding extended so that the atom is the fact, or None."""
+    """Return the binding extended so that the atom is the fact, or None."""
     if len(fact) != len(atom.terms) + 1 or fact[0] != atom.predicate:
         return None
     extended = dict(binding)

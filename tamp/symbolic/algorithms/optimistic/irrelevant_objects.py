@@ -1,4 +1,4 @@
-"""Bodies that no way to the goal need touch: nothing is imagined of them until something says that they matter."""
+"""Irrelevant bodies, which no way to the goal need touch: nothing is imagined of them at first."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula,
 
 
 def bystanders(task: Task) -> frozenset[str]:
-    """The objects that the state speaks of and the goal does not, where it names another one of their kind.
+    """Return the objects of the state that the goal does not name, though others of their kind.
 
     Objects are of a kind when their types and the unary static facts about them are the same.
     """
@@ -22,15 +22,19 @@ def bystanders(task: Task) -> frozenset[str]:
             moved.update(fact[1:])
         elif len(fact) == 2 and fact[1] in static:
             static[fact[1]].add(fact[0])
-    kinds = {name: (frozenset(task.objects[name]), frozenset(facts)) for name, facts in static.items()}
+    kinds = {
+        name: (frozenset(task.objects[name]), frozenset(facts)) for name, facts in static.items()
+    }
     wanted = {kinds[name] for name in named if name in kinds}
     return frozenset(
-        name for name, kind in kinds.items() if name in moved and name not in named and kind in wanted
-    )  # fmt: skip
+        name
+        for name, kind in kinds.items()
+        if name in moved and name not in named and kind in wanted
+    )
 
 
 def blamed(objects: frozenset[str], experience: Experience) -> frozenset[str]:
-    """Those of the objects that something failed at."""
+    """Return those of the objects that something failed at."""
     failed: list[Fact] = [fact for fact, record in experience.facts.items() if record.failures]
     for fact, present in experience.nogoods:
         failed += [fact, *present]

@@ -1,15 +1,16 @@
-"""Streams instantiated optimistically: every call is assumed to succeed, its outputs are placeholders."""
+"""Optimistic instantiation of streams: every call succeeds, its outputs are placeholders."""
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream, substitute
+from tamp.symbolic.algorithms.optimistic.assumable_tests import atoms_of
 from tamp.symbolic.algorithms.optimistic.fact_index import FactIndex, unify
-from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula, Not, Or, Task
+from tamp.symbolic.pddl.structs import Atom, Fact, Task
 
 MARK = "#"
 """Placeholders begin with it: "#p3" stands for any pose that its stream may yield."""
@@ -67,24 +68,28 @@ class Optimism:
 
     Attributes:
         makers: Fact to the guess that certifies it, the first one of several.
-        several: Fact to all guesses that certify it, where one of them looks at the state: one may fail in a state in
-            which another does not.
+        several: Fact to all guesses that certify it, where one of them looks at the state: one may
+            fail in a state in which another does not.
         guesses: All of them.
         types: Placeholder to its types.
-        assumed: The predicates of tests that are taken to hold wherever they are asked for, instead of being imagined
-            one by one: there are as many as pairs of poses. Each with its stream and the atom that it certifies.
-        complete: Whether nothing was left out for being deep or one too many: what is not here cannot become true.
+        assumed: The predicates of tests that are taken to hold wherever they are asked for, instead
+            of being imagined one by one: there are as many as pairs of poses. Each with its stream
+            and the atom that it certifies.
+        complete: Whether nothing was left out for being deep or one too many: what is not here
+            cannot become true.
     """
 
     makers: dict[Fact, Guess] = field(default_factory=dict[Fact, Guess])
     several: dict[Fact, list[Guess]] = field(default_factory=dict[Fact, list[Guess]])
     guesses: list[Guess] = field(default_factory=list[Guess])
     types: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
-    assumed: Mapping[str, tuple[BoundStream, Atom]] = field(default_factory=dict[str, tuple[BoundStream, Atom]])
+    assumed: Mapping[str, tuple[BoundStream, Atom]] = field(
+        default_factory=dict[str, tuple[BoundStream, Atom]]
+    )
     complete: bool = True
 
     def maker(self, fact: Fact) -> Guess | None:
-        """The call that certifies a fact; that of an assumed one is made up when it is asked for."""
+        """Return the call that certifies a fact; of an assumed one it is made up when asked for."""
         known = self.makers.get(fact)
         if known is not None or fact[0] not in self.assumed:
             return known
@@ -98,8 +103,12 @@ class Optimism:
         return made
 
     def promise(self, placeholder: str) -> Fact:
-        """A fact that the call which gives a placeholder certifies of it."""
-        return next(fact for fact, guess in self.makers.items() if placeholder in guess.outputs and placeholder in fact)
+        """Return a fact that the call which gives a placeholder certifies of it."""
+        return next(
+            fact
+            for fact, guess in self.makers.items()
+            if placeholder in guess.outputs and placeholder in fact
+        )
 
 
 def imagine(
@@ -112,10 +121,11 @@ def imagine(
     enough: int = ENOUGH,
     names: dict[tuple[str, tuple[str, ...]], Named] | None = None,
 ) -> Optimism:
-    """Instantiate streams from known facts and from each other's promises, to a fixpoint or `levels` deep.
+    """Instantiate streams from facts and each other's promises, to a fixpoint or `levels` deep.
 
-    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there are no more of the
-    level that was reached then, nor of deeper ones, but for tests, which feed nothing.
+    Where every output feeds ten more calls, a few levels are too many: with `enough` guesses there
+    are no more of the level that was reached then, nor of deeper ones, but for tests, which feed
+    nothing.
 
     Args:
         streams: Those worth instantiating (see `relevant`).
@@ -123,9 +133,10 @@ def imagine(
         dead: Calls (stream, inputs) that are known to yield nothing.
         levels: Greatest depth of guesses resting on guesses.
         deepest: The same for those with outputs, which others rest on; by default as many.
-        enough: Number of guesses from which on they become shallower. The first level is always complete.
-        names: The placeholders of calls imagined before, and the facts about them, kept and added to: what was learned
-            is kept under their names, so a name must always mean the same.
+        enough: Number of guesses from which on they become shallower. The first level is always
+            complete.
+        names: The placeholders of calls imagined before, and the facts about them, kept and added
+            to: what was learned is kept under their names, so a name must always mean the same.
     """
     optimism = Optimism()
     index = FactIndex()
@@ -138,7 +149,9 @@ def imagine(
         if fact not in level_of:
             level_of[fact] = 0
             queue.append(fact)
+
     total, growing = 0, levels if deepest is None else min(deepest, levels)
+
     by_predicate: dict[str, list[tuple[BoundStream, int]]] = defaultdict(list)
     for stream in streams:
         for position, atom in enumerate(stream.declaration.domain):
@@ -151,8 +164,14 @@ def imagine(
         if key in seen:
             return
         seen.add(key)
+
         call = named.get(key)
-        domain = substitute(declaration.domain, declaration.inputs, inputs) if call is None else call.domain
+        domain = (
+            substitute(declaration.domain, declaration.inputs, inputs)
+            if call is None
+            else call.domain
+        )
+
         level = 1
         for fact in domain:
             if level_of[fact] >= level:
@@ -161,9 +180,11 @@ def imagine(
         if level > (levels if stream.is_test else growing):
             optimism.complete = False
             return
+
         total += 1
         if total >= enough:
             growing = max(1, min(growing, level - 1))
+
         if call is None:
             outputs: list[str] = []
             for name in declaration.outputs:
@@ -175,14 +196,18 @@ def imagine(
             call = named[key] = Named(tuple(outputs), domain, certified)
         if call.outputs:
             optimism.types.update(zip(call.outputs, stream.output_types, strict=True))
+
         made = Guess(stream, inputs, call.outputs, domain, call.certified, level)
         optimism.guesses.append(made)
+
         for fact in call.certified:
             if fact not in level_of:
                 optimism.makers[fact] = made
                 level_of[fact] = level
                 queue.append(fact)
-            elif fact in optimism.makers and (stream.is_fluent or optimism.makers[fact].stream.is_fluent):
+            elif fact in optimism.makers and (
+                stream.is_fluent or optimism.makers[fact].stream.is_fluent
+            ):
                 optimism.several.setdefault(fact, [optimism.makers[fact]]).append(made)
 
     for stream in streams:
@@ -192,7 +217,8 @@ def imagine(
     while position < len(queue):
         fact = queue[position]
         position += 1
-        index.add(fact)  # now and not before: so a call is found with the last of its facts, and levels come in order
+        # now, not before: so a call is found with the last of its facts, and levels come in order
+        index.add(fact)
         for stream, place in by_predicate.get(fact[0], ()):
             if level_of[fact] >= (levels if stream.is_test else growing):
                 optimism.complete = False
@@ -207,14 +233,17 @@ def imagine(
 
 
 def relevant(
-    streams: Iterable[BoundStream], predicates: Iterable[str], asked: Callable[[tuple[str, ...]], bool] | None = None
+    streams: Iterable[BoundStream],
+    predicates: Iterable[str],
+    asked: Callable[[tuple[str, ...]], bool] | None = None,
 ) -> list[BoundStream]:
-    """The streams whose certified facts the given predicates, or other relevant streams, can use.
+    """List the streams whose certified facts the predicates or other relevant streams can use.
 
     Args:
         streams: Those to choose from.
         predicates: Those that conditions mention.
-        asked: Whether something of these types is asked for, whatever is certified of it (see `anything`).
+        asked: Whether something of these types is asked for, whatever is certified of it (see
+            `anything`).
     """
     needed = set(predicates)
     remaining = list(streams)
@@ -234,7 +263,7 @@ def relevant(
 
 
 def type_facts(task: Task) -> list[Fact]:
-    """Types as unary facts, an object's own and those above: (movable mug), (body mug), (object mug)."""
+    """List types as unary facts, inherited ones too: (movable mug), (body mug), (object mug)."""
     facts: dict[Fact, None] = {}
     domain = task.domain
     for name, types in {**domain.constants, **task.objects}.items():
@@ -244,55 +273,6 @@ def type_facts(task: Task) -> list[Fact]:
     return list(facts)
 
 
-def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
-    """The test streams whose facts are only asked for in order to lift a guard: under a negation in a derived rule.
-
-    Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs that predicate. It
-    is asked of what streams give, or of types: where only given facts say what it may be asked of, they are looked up.
-    """
-    everything = list(streams)
-    positive = {atom.predicate for atom, sign in _atoms(task) if sign}
-    positive |= {atom.predicate for stream in everything for atom in stream.declaration.domain}
-    makers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
-    for stream in everything:
-        for atom in stream.declaration.certified:
-            makers[atom.predicate].append((stream, atom))
-    return {
-        predicate: made[0]
-        for predicate, made in makers.items()
-        if len(made) == 1
-        and made[0][0].is_test
-        and len(made[0][0].declaration.certified) == 1
-        and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
-        and predicate not in positive
-        and all(
-            atom.predicate in makers or atom.predicate in task.domain.types for atom in made[0][0].declaration.domain
-        )
-    }
-
-
 def used_predicates(task: Task) -> set[str]:
-    """The predicates that conditions of the task mention."""
-    return {atom.predicate for atom, _ in _atoms(task)}
-
-
-def _atoms(task: Task) -> Iterator[tuple[Atom, bool]]:
-    """The atoms of all conditions, each with whether it helps by holding.
-
-    In an action's condition a negation counts as help, since only a derived rule's negation can become a guard.
-    """
-    stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
-    stack += [(action.precondition, True, False) for action in task.domain.actions]
-    stack += [(effect.condition, True, False) for action in task.domain.actions for effect in action.effects]
-    stack += [(rule.body, True, True) for rule in task.domain.derived]
-    while stack:
-        formula, sign, in_rule = stack.pop()
-        match formula:
-            case Atom():
-                yield formula, sign
-            case And(parts) | Or(parts):
-                stack += [(part, sign, in_rule) for part in parts]
-            case Not(body):
-                stack.append((body, sign != in_rule, in_rule))
-            case Exists(_, body) | Forall(_, body):
-                stack.append((body, sign, in_rule))
+    """Return the predicates that conditions of the task mention."""
+    return {atom.predicate for atom, _ in atoms_of(task)}
