@@ -94,7 +94,9 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
 
 
 class _Run:
-    def __init__(self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer) -> None:
+    def __init__(
+        self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer
+    ) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
         with unquoted(stored.plan.file, plan_hashes(stored.plan)):
@@ -108,7 +110,9 @@ class _Run:
         )  # fmt: skip
         self._own = own_relations(stored, self._domain, self._goal, chosen.own)
         self._rng = np.random.default_rng(chosen.seed)
-        self._scheduled = schedule(chosen.disturbance, stored.plan, self._rng) if chosen.disturbance else None
+        self._scheduled = (
+            schedule(chosen.disturbance, stored.plan, self._rng) if chosen.disturbance else None
+        )
         self._done: list[Done] = []
         self._replans = self._kept = 0
         self._explanation: tuple[str, ...] = ()
@@ -129,7 +133,9 @@ class _Run:
         """Return the execution's outcome."""
         self._world.wait(SETTLE)
         truth = self._look()
-        goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own)
+        goal = judged(
+            self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own
+        )
         reached = all(part.holds for part in goal)
         return Execution(
             name=self._stored.loaded.scene.name,
@@ -154,12 +160,20 @@ class _Run:
         before = {name: world.pose(name) for name in world.scene.movable}
         world.attend(active)
         watch = Watch(world, active)
-        due = self._scheduled if self._scheduled and self._scheduled.action == len(self._done) else None
+        due = (
+            self._scheduled
+            if self._scheduled and self._scheduled.action == len(self._done)
+            else None
+        )
         for number, segment in enumerate(action.segments):
             body = self._scene_name(segment.attach.body) if segment.attach else None
             happens = due is not None and due.segment == number
             event, at = (partial(self._disturb, due), due.share) if happens and due else (None, 0.0)
-            guard = self._scene_name(segment.holding) if segment.holding and self._chosen.replanner else None
+            guard = (
+                self._scene_name(segment.holding)
+                if segment.holding and self._chosen.replanner
+                else None
+            )
             if not self._player.play(segment, body, watch, event, at, guard):
                 break
         self._player.finish()
@@ -184,7 +198,9 @@ class _Run:
         self._event = due.happen(Happening(self._world, self._player, self._expected, self._rng))
 
     def _active(self, action: TimedAction) -> str | None:
-        named = [segment.attach.body if segment.attach else segment.detach for segment in action.segments]
+        named = [
+            segment.attach.body if segment.attach else segment.detach for segment in action.segments
+        ]
         named += [segment.holding for segment in action.segments]
         return next((self._scene_name(name) for name in named if name is not None), None)
 
@@ -213,7 +229,9 @@ class _Run:
         for first, second in world.touches():
             if first in world.finger_links:
                 touching.setdefault(second, set()).add(first)
-        return next((name for name in world.scene.movable if len(touching.get(name, ())) == 2), None)
+        return next(
+            (name for name in world.scene.movable if len(touching.get(name, ())) == 2), None
+        )
 
     def _look(self) -> Truth:
         world = self._world
@@ -227,7 +245,9 @@ class _Run:
         seen = Seen(poses, self._held(), world.tool(), truth.facts)
         new = frozenset(world.scene.bodies) - self._known
         known = {name: T for name, T in expected.poses.items() if name in self._known}
-        facts = frozenset(fact for fact in expected.facts if fact[1] in {name.lower() for name in known})
+        facts = frozenset(
+            fact for fact in expected.facts if fact[1] in {name.lower() for name in known}
+        )
         facts |= self._own.missed(truth, self._held(), expected)
         return list(deviations(known, expected.held, facts, seen, active, new))
 
@@ -255,11 +275,15 @@ class _Run:
             self._player.let_go()
             world.wait(CLOSING)
         else:
-            grasp = replanner.grasp(held, np.linalg.inv(world.tool()) @ world.pose(held), world.width())
+            grasp = replanner.grasp(
+                held, np.linalg.inv(world.tool()) @ world.pose(held), world.width()
+            )
         if self._replans >= MOST:
             self._explanation = (f"planned anew {MOST} times, and still it comes differently",)
             return self._explanation[0]
-        mended = replanner.mend(self._look(), grasp, self._plan, self._queue, done.deviations, self._expected)
+        mended = replanner.mend(
+            self._look(), grasp, self._plan, self._queue, done.deviations, self._expected
+        )
         if mended.keeps:
             self._kept += 1
             self._known = frozenset(world.scene.bodies)

@@ -14,7 +14,10 @@ BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 BASE_MASS = 100.0
 """Kilograms: heavy enough for an arm's swing not to shake it."""
 
-_INERTIAL = '<inertial><mass value="{}"/><inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
+_INERTIAL = (
+    '<inertial><mass value="{}"/>'
+    '<inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
+)
 _LIMIT = '<limit lower="-200000" upper="200000" effort="100000" velocity="10"/>'
 
 
@@ -45,6 +48,6 @@ def mobile_urdf(robot: Robot) -> str:
   </joint>
   <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.links[1].name}"/>
     <origin xyz="{foot}"/></joint>
-"""
+"""  # noqa: E501 - the robot's file says so
     text = robot.urdf.read_text(encoding="utf-8").replace("package://", f"{robot.urdf.parent}/")
     return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, text, count=1)
