@@ -80,6 +80,7 @@ def deviations(
     """
     for name in sorted(new):
         yield Deviation("new", name, f"{name} was not there when the plan was made")
+
     told: set[str] = set()
     for name, T in ({**poses, held[0]: None} if held else dict(poses)).items():
         if name not in seen.poses:
@@ -94,6 +95,7 @@ def deviations(
             if moved > FAR or turned > TURNED:
                 told.add(name)
                 yield _elsewhere(name, T, seen.poses[name], name == active)
+
     if held is not None:
         told.add(held[0])
     for fact in sorted(facts - seen.facts):

@@ -150,17 +150,20 @@ def _slip(now: Happening) -> str:
     held = world.bound or _carried(now)
     if held is None:
         return "nothing was in the hand"
+
     tool, T, bound = world.tool(), world.pose(held), world.bound is not None
     turn = float(rng.uniform(*TILT)) * (1.0 if rng.random() < 0.5 else -1.0)
     turned = Pose((0.0, 0.0, 0.0), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
     down = float(rng.uniform(*SLIP))
     world.unbind()
+
     for share in (1.0, 0.75, 0.5, 0.25, 0.0):
         slipped = tool @ turned @ np.linalg.inv(tool) @ T
         slipped[2, 3] -= share * down
         world.put(held, slipped)
         if world.near_fingers(held):  # else it would be a drop
             break
+
     if bound:
         world.bind(held)
     far = f"{1000 * share * down:.0f} mm and {math.degrees(abs(turn)):.0f}°"
@@ -189,7 +192,9 @@ def _block(now: Happening) -> str:
         for name, value in expected.plan.values.items()
         if value.type == "pose" and not any(name in fact for fact in expected.plan.initial)
     ]
+
     height = OBSTACLE_SIZE[2]
+
     with Room(world) as room:
         for index in now.rng.permutation(len(wanted)):
             pose = wanted[int(index)][0]
@@ -201,9 +206,11 @@ def _block(now: Happening) -> str:
                 ),
                 None,
             )
+
             low = room.lowest(body, wanted[int(index)][1]) if body else None
             if low is None:
                 continue
+
             for _ in range(TRIES):
                 x, y = wanted[int(index)][1][:2, 3] + now.rng.uniform(-0.04, 0.04, 2)
                 T = Pose.from_xyz_yaw(
@@ -216,14 +223,12 @@ def _block(now: Happening) -> str:
                     movable=False,
                     colour=(0.2, 0.2, 0.2, 1.0),
                 )
+
                 if room.free(box):
-                    world.become(
-                        replace(
-                            world.scene,
-                            bodies=MappingProxyType({**world.scene.bodies, OBSTACLE: box}),
-                        )
-                    )
+                    bodies = MappingProxyType({**world.scene.bodies, OBSTACLE: box})
+                    world.become(replace(world.scene, bodies=bodies))
                     return f"a box is put where {body} should go"
+
     return "there was no room for a box"
 
 

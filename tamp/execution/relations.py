@@ -95,10 +95,12 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
     )
     if streams is None:
         return Own({})
+
     asked: dict[str, tuple[Relation, str, Classifier]] = {}
     trusted: list[str] = []
     bare = replace(domain, actions=())
     rests = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
+
     for name in _own_names(stored, streams, classifiers):
         relation = relation_of(streams, domain, name)
         if relation is None:
@@ -112,6 +114,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
                     name, f"({' '.join((atom.predicate, *atom.terms))})", stored.loaded.path
                 )
             trusted.append(name)
+
     return Own(asked, tuple(sorted(trusted)))
 
 

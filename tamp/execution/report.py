@@ -115,10 +115,12 @@ class Execution:
             for number, action in enumerate(self.actions, 1)
             for line in _action(number, action)
         ]
+
         lines.append("")
         lines += [_goal(fact) for fact in self.goal]
         lines += [f"  {line}" for line in self.explanation]
         lines += [f"  note: {line}" for line in self.notes]
+
         facts = [
             f"{len(self.actions)} actions",
             f"{self.simulated:.1f} s in physics",
@@ -126,15 +128,12 @@ class Execution:
         ]
         facts += [f"planned anew {self.replans}x"] if self.replans else []
         facts += [f"went on after {self.kept} deviations"] if self.kept else []
-        facts += (
-            [", ".join(f"{count} {kind}" for kind, count in self.kinds.items())]
-            if self.kinds
-            else []
-        )
+        kinds = ", ".join(f"{count} {kind}" for kind, count in self.kinds.items())
+        facts += [kinds] if kinds else []
+
         verdict = "Goal reached" if self.reached else "Goal not reached"
-        verdict += (
-            f", on trust: {', '.join(self.on_trust)}" if self.reached and self.on_trust else ""
-        )
+        if self.reached and self.on_trust:
+            verdict += f", on trust: {', '.join(self.on_trust)}"
         lines.append(f"{verdict}: {', '.join(facts)}, in {self.seconds:.1f} s")
         return "\n".join(lines)
 

@@ -64,6 +64,7 @@ class Actuated(World):
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
         for name in scene.movable:
             self._let_roll(name)
+
         with scratch_folder() as folder:
             urdf = Path(folder) / "mobile.urdf"
             urdf.write_text(mobile_urdf(robot), encoding="utf-8")
@@ -72,6 +73,7 @@ class Actuated(World):
                 self._mover = bullet.loadURDF(
                     str(urdf), useFixedBase=True, flags=flags, physicsClientId=client
                 )
+
         joint: dict[str, int] = {}
         link: dict[str, int] = {}
         for number in range(bullet.getNumJoints(self._mover, physicsClientId=client)):
@@ -81,12 +83,14 @@ class Actuated(World):
                 self._mover, number, linearDamping=0, angularDamping=0, physicsClientId=client
             )
             self._owners[self._mover, number] = info[12].decode()
+
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
         self._fingers = [joint[finger.name] for finger in robot.fingers]
         self._hand = link[robot.links[-3].name]
         self.robot_links = frozenset(link)
         self.hand_link = robot.links[-3].name
         self.finger_links = tuple(one.name for one in robot.links[-2:])
+
         # One motor drives both fingers; without the gear they would wander off to one side, the
         # body between them.
         gear = bullet.createConstraint(
@@ -96,11 +100,13 @@ class Actuated(World):
         bullet.changeConstraint(
             gear, gearRatio=-1, erp=0.5, maxForce=10 * force, physicsClientId=client
         )
+
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
         self.opening = self.widest = robot.opening
         self.squeezing = False
         self.bound: str | None = None
         self._constraint = -1
+
         for number, value in zip(self._driven, self.conf, strict=True):
             bullet.resetJointState(self._mover, number, float(value), physicsClientId=client)
         for number in self._fingers:

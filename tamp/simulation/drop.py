@@ -166,6 +166,7 @@ class Drops:
             Sphere: bullet.GEOM_SPHERE,
             Hull: bullet.GEOM_MESH,
         }
+
         arrays: dict[str, list[Any]] = {
             "shapeTypes": [],
             "radii": [],
@@ -173,6 +174,7 @@ class Drops:
             "halfExtents": [],
             "fileNames": [],
         }
+
         with scratch_folder() as folder:  # an array of shapes takes its meshes from files only
             for number, part in enumerate(item.parts):
                 shape = part.shape
@@ -187,8 +189,10 @@ class Drops:
                 arrays["fileNames"].append(
                     str(Path(folder) / f"{number}.obj") if isinstance(shape, Hull) else ""
                 )
+
                 if isinstance(shape, Hull):
                     Path(arrays["fileNames"][-1]).write_text(obj(shape))
+
             return bullet.createCollisionShapeArray(
                 **arrays,
                 meshScales=[[1.0, 1.0, 1.0]] * len(item.parts),

@@ -31,10 +31,12 @@ def mobile_urdf(robot: Robot) -> str:
     base = robot.links[0]
     if len(base.parts) != 1 or not isinstance(base.parts[0].shape, Box):
         raise InputError(f"the base of the robot '{robot.name}' must be one box")
+
     size = " ".join(map(str, base.parts[0].shape.size))
     at = " ".join(map(str, base.parts[0].pose.position))
     foot = " ".join(map(str, robot.T_base_arm.position))
     x, y, yaw = BASE_JOINTS
+
     links = f"""
   <link name="ground"/>
   <link name="{x}_slide">{_INERTIAL.format(20)}</link>
@@ -48,6 +50,7 @@ def mobile_urdf(robot: Robot) -> str:
   </joint>
   <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.links[1].name}"/>
     <origin xyz="{foot}"/></joint>
-"""  # noqa: E501 - the robot's file says so
+"""  # noqa: E501 (XML, as a URDF has it)
+
     text = robot.urdf.read_text(encoding="utf-8").replace("package://", f"{robot.urdf.parent}/")
     return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, text, count=1)

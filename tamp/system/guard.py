@@ -134,16 +134,19 @@ def guarded(module: str, function: str = "main") -> NoReturn:
     parent = os.getpid()
     # before there is anybody who may end first and leave somebody behind
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
+
     try:
         child = os.fork()
     except OSError:  # no room for another process: it goes without
         child = 0
     if child:
         _watch(child)
+
     _ASKED.guarded = _ASKED.at_once = True
     listen()
     signal.pthread_sigmask(signal.SIG_UNBLOCK, WATCHED)
     sys.unraisablehook = _unraisable
+
     if os.getpid() != parent:
         _die_with(parent)
     command = getattr(importlib.import_module(module), function)
@@ -196,31 +199,38 @@ def _watch(child: int) -> NoReturn:
     did.
     """
     number, since, waited, killed = 0, 0.0, 0.0, False
+
     while True:
         found, status = os.waitpid(child, os.WNOHANG)
         if found:
             break
+
         came = signal.sigtimedwait(WATCHED, 0.05 if number else 3600.0)
         if came is not None and came.si_signo in ENDING and not number:
             number, since, waited = came.si_signo, time.monotonic(), _waited(child)
             os.kill(child, number)
+
         if number and not killed:
             passed = time.monotonic() - since
             if passed > PATIENCE_AT_MOST or passed - (_waited(child) - waited) > PATIENCE:
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()
+
     # a terminal asks both at once, and the one who works may have left before this one looked
     if not number:
         came = signal.sigtimedwait(ENDING, 0.0)
         number = came.si_signo if came is not None else 0
+
     if number:
         _end_orphans()
+
     if os.WIFEXITED(status):
         code = os.WEXITSTATUS(status)
         os._exit(128 + number if number and code else code)
     if number:
         os._exit(128 + number)
+
     deadly = os.WTERMSIG(status)
     if deadly != signal.SIGKILL:
         signal.signal(deadly, signal.SIG_DFL)

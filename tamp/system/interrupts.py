@@ -91,6 +91,7 @@ class Alarm:
         """
         if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
             return work()
+
         timed = self._deadline.seconds < threading.TIMEOUT_MAX
         ends = [
             number
@@ -98,10 +99,12 @@ class Alarm:
             if signal.getsignal(number) is guard.hear
             or (number == signal.SIGINT and signal.getsignal(number) is signal.default_int_handler)
         ]  # not those that an outer alarm hears, nor those of the user
+
         began = counted()
         left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0) if timed else (0.0, 0.0)
         mine = [*([signal.SIGALRM] if timed else []), *([signal.SIGVTALRM, *ends] if ends else [])]
         before: dict[int, Any] = {}
+
         try:
             for number in mine:
                 before[number] = signal.signal(number, self._end if number in ends else self._ring)
@@ -165,15 +168,18 @@ class Alarm:
         """Handle the alarm: raise, if this is a place for it."""
         if self._deadline.ended or not self._is_inside(frame):
             return
+
         timed = number == signal.SIGALRM
         # kernels were compiled, or still are
         if timed and (STANDSTILL.depth or self._deadline.left() > 0.0):
             self._set()
             return
+
         if _swallows(frame):
             again = self._again if timed else INTERRUPT_AGAIN
             signal.setitimer(signal.ITIMER_REAL if timed else signal.ITIMER_VIRTUAL, SOON, again)
             return
+
         error = OutOfTime if timed else KeyboardInterrupt
         if self._swallowed:
             called = self._called(frame)

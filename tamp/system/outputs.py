@@ -75,6 +75,7 @@ def check_writable(path: Path, option: str = "--out") -> None:
         InputError: A folder, no regular file, or no place where one can write.
     """
     elsewhere = f"Choose another place with {option}"
+
     try:
         if path.is_dir():
             raise InputError(
@@ -84,10 +85,12 @@ def check_writable(path: Path, option: str = "--out") -> None:
             )
         if _is_device(path):
             return
+
         if path.exists():
             if not path.is_file():
                 raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
             _check_mode(path)
+
         folder = Path(os.path.realpath(path)).parent
         while not folder.exists():
             folder = folder.parent
@@ -219,8 +222,10 @@ def _replace(path: Path, content: bytes) -> None:
             raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
         _check_mode(path)
         mode = stat.S_IMODE(path.stat().st_mode)
+
     _remove_unfinished(path.parent)
     temporary, descriptor = _unfinished(path.parent)
+
     try:
         with os.fdopen(descriptor, "wb") as stream:
             stream.write(content)

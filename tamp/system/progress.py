@@ -124,11 +124,13 @@ class Progress:
                 if self.quiet or now - self._last < (often if terminal else SILENCE):
                     return
                 self._last = now
+
                 skeletons, draws = self._counted
                 counts = (
                     f"{skeletons} skeletons · {draws:,} samples · " if skeletons or draws else ""
                 )
                 text = f"  {self.phase:<11} {counts}{now - self._started:.1f} s"
+
                 print(
                     f"\r{text}\x1b[K" if terminal else text,
                     end="" if terminal else "\n",

@@ -79,6 +79,7 @@ def race(
     processes: list[Any] = []
     open_: dict[Connection, int] = {}
     answers: dict[int, Answer] = {}
+
     try:
         for number, run in enumerate(runs):
             ours, theirs = context.Pipe(duplex=False)
@@ -90,10 +91,12 @@ def race(
             theirs.close()
             processes.append(process)
             open_[ours] = number
+
         while open_ and deadline.elapsed() < deadline.seconds + LATE:
             if guard.asked():
                 # what it raised was dropped, as in a fork or while an answer was read
                 raise KeyboardInterrupt
+
             left = deadline.seconds + LATE - deadline.elapsed()
             ready = set(wait(list(open_), min(left, LOOK)))
             for pipe, number in [item for item in open_.items() if item[0] in ready]:
@@ -120,6 +123,7 @@ def race(
                 process.join()
         os.close(lifeline)
         os.close(held)
+
     if answers:
         number = min(answers)
         return First(number, answers[number])

@@ -112,6 +112,7 @@ def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
         _fill()
         plain = any(word in ("-h", "--help") for word in (*sys.argv[1:], *_words(args)))
         out, err = Shown(sys.stdout, plain=plain), Shown(sys.stderr, "\n\t\r", plain=plain)
+
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
                 code = command(*args, **kwargs) or 0
@@ -126,6 +127,7 @@ def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
                 ) or "there is not enough memory"
                 err.write(f"error: {one_line(f'{place}{reason}')}\n")
                 code = UNPRINTED
+
             out.flush()
             # interrupted; a help that nobody reads to its end
             excused = code > 128 or (plain and out.broken)
