@@ -1,4 +1,4 @@
-"""A stored plan carried out in physics, watched, and mended where things come differently."""
+"""Execution of a stored plan in physics: monitored, and mended where things come differently."""
 
 from __future__ import annotations
 

@@ -190,11 +190,13 @@ class Replanner:
                     name, Pose.from_matrix(segment.attach.T_tool_body), segment.attach.opening
                 )
                 poses.pop(name)
+
             elif segment.detach is not None and held is not None:
                 tool = Pose.from_matrix(context.kinematics.tool(context.conf(base, arm)))
                 poses[held.body] = tool @ held.T_tool_body
                 should.pop(held.body, None)
                 held = None
+
             elif segment.part != "gripper":
                 attachment = None if held is None else context.attachment(held)
                 arrangement = context.collisions.arrangement(poses, attachment)

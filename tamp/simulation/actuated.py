@@ -1,4 +1,4 @@
-"""A scene under gravity with a robot on motors: what a plan is carried out in."""
+"""Physics of a scene under gravity with a robot on motors: what a plan is carried out in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The only file that knows pybullet: bodies and the robot in an engine of their own.
+"""Rigid-body simulation in pybullet: bodies and the robot in an engine of their own.
 
 Measured (tests/simulation/test_physics.py): distances of boxes, cylinders and spheres are exact;
 hulls are padded by 1 mm, added back here. (With a pad of zero, penetration is measured wrongly.)

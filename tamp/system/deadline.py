@@ -1,4 +1,4 @@
-"""The time that a computation may still take, passed down as an argument."""
+"""Deadlines: the time that a computation may still take, passed down as an argument."""
 
 from __future__ import annotations
 

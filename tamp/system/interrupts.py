@@ -1,4 +1,4 @@
-"""A hard end for computations that do not look at the clock."""
+"""Hard timeouts: an alarm ends computations that do not look at the clock."""
 
 from __future__ import annotations
 
@@ -118,6 +118,7 @@ class Alarm:
                 signal.setitimer(signal.ITIMER_REAL, 0.0)
             for number, handler in before.items():
                 signal.signal(number, handler)
+
             if self._swallowed:
                 sys.settrace(None)
             if left > 0.0:

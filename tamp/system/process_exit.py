@@ -1,4 +1,4 @@
-"""The end of a command."""
+"""Exit of a command's process."""
 
 from __future__ import annotations
 

@@ -105,16 +105,19 @@ def race(
                 except EOFError:  # it broke down, and has said so itself
                     del open_[pipe]
                     continue
+
                 if kind == "news":
                     if news is not None:
                         news(number, content)
                     continue
+
                 del open_[pipe]
                 if kind == "wrong":
                     raise content
                 if ends(number, content):
                     return First(number, content)
                 answers[number] = content
+
     finally:
         with guard.Held():
             for process in processes:
