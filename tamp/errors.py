@@ -1,4 +1,4 @@
-"""What is wrong with an input, said once and clearly."""
+"""Input errors: the place, the offending word and the valid choices, in one line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ LONGEST_WORD = 100
 """Characters of a word that may be a typing error."""
 
 HIDDEN = frozenset(("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"))
-"""Unicode's categories of what a terminal obeys or hides: controls, bidirectional marks, halves of characters."""
+"""Unicode's categories of what a terminal obeys or hides: controls, bidirectional marks, halves of
+characters.
+"""
 
 
 class InputError(Exception):
@@ -57,7 +59,7 @@ class InputError(Exception):
         super().__init__(self._text())
 
     def at(self, file: str | Path | None, line: int | None = None) -> InputError:
-        """The same error with the place filled in where it was missing."""
+        """Return the same error with the place filled in where it was missing."""
         placed = InputError(
             self.message, file=self.file or file, line=self.line or line, column=self.column,
             choices=self.choices, remedy=self.remedy,
@@ -80,17 +82,18 @@ class InputError(Exception):
 
 
 def one_line(text: str) -> str:
-    """A message as one line of bounded length, harmless wherever it is shown."""
+    """Sanitize a message: one line of bounded length, harmless wherever it is shown."""
     shown = printable(re.sub(r"[\r\n]+", " ", text))
     return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]} ..."
 
 
 def printable(text: str, kept: str = "") -> str:
-    """The text with what a terminal would obey or hide written as Python writes it, in backslashes.
+    """Escape what a terminal would obey or hide, as Python writes it, in backslashes.
 
     Args:
         text: Anything, names out of files among it.
-        kept: Control characters that stay: line breaks and tabulators where a text has several lines.
+        kept: Control characters that stay: line breaks and tabulators where a text has several
+            lines.
     """
     if text.isprintable():
         return text
@@ -99,7 +102,7 @@ def printable(text: str, kept: str = "") -> str:
 
 
 def closest(word: str, choices: Iterable[str]) -> str | None:
-    """The choice that `word` was probably meant to be, or None when nothing is near."""
+    """Return the closest match of a word among the choices, or None when nothing is near."""
     if len(word) > LONGEST_WORD:
         return None
     matches = difflib.get_close_matches(word, list(choices), n=1, cutoff=0.6)

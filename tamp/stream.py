@@ -1,7 +1,8 @@
-"""The contract of a stream: what its function is given and what it gives. All that the two wings know of each other.
+"""The contract of a stream: what its function is given and what it gives. All that the two wings
+know of each other.
 
-The symbolic wing calls stream functions and moves names and facts; the geometric wing writes them and moves poses and
-paths. Both import this file, and neither imports the other.
+The symbolic wing calls stream functions and moves names and facts; the geometric wing writes them
+and moves poses and paths. Both import this file, and neither imports the other.
 """
 
 from __future__ import annotations
@@ -26,15 +27,18 @@ class Call:
     """The circumstances of one stream call: what a stream's function is given beside its inputs.
 
     Attributes:
-        rng: A numpy.random.Generator of this stream instance's own, seeded by the run's seed and the instance.
+        rng: A numpy.random.Generator of this stream instance's own, seeded by the run's seed and
+            the instance.
         deadline: When the run ends; long computations give up before.
-        fluents: The state's facts of the predicates that the stream names in `:fluents`, with values in the place of
-            objects: ("at-pose", "mug", Pose(...)).
-        memory: The run's: what streams of one run have learned so far, each under a name of its own.
-        ahead: Whether values are drawn ahead of their use, so that being asked for another one says nothing about the
-            last; else it was tried, and did not serve.
+        fluents: The state's facts of the predicates that the stream names in `:fluents`, with
+            values in the place of objects: ("at-pose", "mug", Pose(...)).
+        memory: The run's: what streams of one run have learned so far, each under a name of its
+            own.
+        ahead: Whether values are drawn ahead of their use, so that being asked for another one says
+            nothing about the last; else it was tried, and did not serve.
         warn: Tells the user something, once.
-        refused: Told of each proposal that the stream looked at and did not take, and why; for recordings.
+        refused: Told of each proposal that the stream looked at and did not take, and why; for
+            recordings.
     """
 
     rng: Any
@@ -52,9 +56,10 @@ class Rejection:
 
     Attributes:
         reason: In a few words, fit to be counted and printed: "out of reach", "hits cereal".
-        blockers: Objects whose present fluent facts caused it, by name; the search learns to move them first.
-            Empty when nothing that could be moved is to blame.
-        given_up: Whether the stream ends here without having tried everything: that it ended then proves nothing.
+        blockers: Objects whose present fluent facts caused it, by name; the search learns to move
+            them first. Empty when nothing that could be moved is to blame.
+        given_up: Whether the stream ends here without having tried everything: that it ended then
+            proves nothing.
     """
 
     reason: str
@@ -64,10 +69,12 @@ class Rejection:
 
 @dataclass(frozen=True, slots=True)
 class Wild:
-    """One try of a stream, and further facts that it found to be true: what PDDLStream calls a wild output.
+    """One try of a stream, and further facts that it found to be true: what PDDLStream calls a wild
+    output.
 
     Attributes:
-        value: What the function would have yielded without them: outputs, a test's answer, a Rejection.
+        value: What the function would have yielded without them: outputs, a test's answer, a
+            Rejection.
         facts: Static facts with values in the place of objects: ("Near", conf_a, conf_b).
     """
 

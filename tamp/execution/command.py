@@ -71,7 +71,9 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         _check_options(stored, names)
     circumstances = Circumstances(
         grasp=options.grasp,
-        replanner=Replanner(stored, registry, options.time, options.seed, names, objects) if options.replan else None,
+        replanner=Replanner(stored, registry, options.time, options.seed, names, objects)
+        if options.replan
+        else None,
         disturbance=options.disturb,
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
@@ -90,5 +92,7 @@ def _check_options(stored: Stored, named: Mapping[str, str]) -> None:
         raise InputError(what, file=stored.plan.file, found=algorithm, choices=ALGORITHMS)
     for relation, text in stored.plan.samplers.items():
         if is_given(text) and relation not in named and relation not in SAMPLERS:
-            what = f"to plan anew, '{relation}' needs the object in Python that the plan was made with"
+            what = (
+                f"to plan anew, '{relation}' needs the object in Python that the plan was made with"
+            )
             raise InputError(what, remedy=f"Name its file: --sampler {relation}=FILE.py")

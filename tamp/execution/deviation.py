@@ -80,6 +80,7 @@ def deviations(
     """
     for name in sorted(new):
         yield Deviation("new", name, f"{name} was not there when the plan was made")
+
     told: set[str] = set()
     for name, T in ({**poses, held[0]: None} if held else dict(poses)).items():
         if name not in seen.poses:
@@ -94,11 +95,14 @@ def deviations(
             if moved > FAR or turned > TURNED:
                 told.add(name)
                 yield _elsewhere(name, T, seen.poses[name], name == active)
+
     if held is not None:
         told.add(held[0])
     for fact in sorted(facts - seen.facts):
         if not {name.lower() for name in told} & {*fact[1:]}:
-            yield Deviation("fact", fact[1] if fact[1:] else "", f"({' '.join(fact)}) does not hold")
+            yield Deviation(
+                "fact", fact[1] if fact[1:] else "", f"({' '.join(fact)}) does not hold"
+            )
 
 
 def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:
@@ -107,16 +111,32 @@ def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:
         return
     moved, turned = apart(T_tool_body, np.linalg.inv(seen.tool) @ seen.poses[name])
     if moved > FAR or turned > TURNED:
-        yield Deviation("slipped", name, f"{name} is {_off(moved, turned)} from where the hand held it", moved, turned)
+        yield Deviation(
+            "slipped",
+            name,
+            f"{name} is {_off(moved, turned)} from where the hand held it",
+            moved,
+            turned,
+        )
 
 
 def _elsewhere(name: str, T_expected: Array, T_seen: Array, active: bool) -> Deviation:
     moved, turned = apart(T_expected, T_seen)
-    up = float(np.clip((T_expected[:3, :3].T @ [0.0, 0.0, 1.0]) @ (T_seen[:3, :3].T @ [0.0, 0.0, 1.0]), -1.0, 1.0))
+    up = float(
+        np.clip(
+            (T_expected[:3, :3].T @ [0.0, 0.0, 1.0]) @ (T_seen[:3, :3].T @ [0.0, 0.0, 1.0]),
+            -1.0,
+            1.0,
+        )
+    )
     if math.acos(up) > TOPPLED:
-        return Deviation("toppled", name, f"{name} has fallen over, {1000 * moved:.0f} mm away", moved, turned)
+        return Deviation(
+            "toppled", name, f"{name} has fallen over, {1000 * moved:.0f} mm away", moved, turned
+        )
     kind = "misplaced" if active else "displaced"
-    return Deviation(kind, name, f"{name} is {_off(moved, turned)} from where it should be", moved, turned)
+    return Deviation(
+        kind, name, f"{name} is {_off(moved, turned)} from where it should be", moved, turned
+    )
 
 
 def _off(moved: float, turned: float) -> str:

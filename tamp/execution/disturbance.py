@@ -96,12 +96,16 @@ def _any(plan: PlanFile) -> Iterator[Moment]:
 
 def _carrying(plan: PlanFile) -> Iterator[Moment]:
     """Yield the moments while the base drives with a body in hand."""
-    return (moment for moment, segment in _moving(plan) if segment.part == "base" and segment.holding)
+    return (
+        moment for moment, segment in _moving(plan) if segment.part == "base" and segment.holding
+    )
 
 
 def _before_a_place(plan: PlanFile) -> Iterator[Moment]:
     """Yield the moments while there is still something to be put down, in actions before."""
-    last = max((number for number, action in enumerate(plan.actions) if _puts(action.segments)), default=0)
+    last = max(
+        (number for number, action in enumerate(plan.actions) if _puts(action.segments)), default=0
+    )
     return (moment for moment, _ in _moving(plan) if moment[0] < last)
 
 
@@ -122,7 +126,9 @@ def _move(now: Happening) -> str:
                 moved = T.copy()
                 way, turn = rng.uniform(*SHIFT), rng.uniform(-math.pi, math.pi)
                 moved[:2, 3] += way * np.array([math.cos(turn), math.sin(turn)])
-                moved[:3, :3] = Pose.from_xyz_yaw(0, 0, 0, rng.uniform(-1.0, 1.0)).rotation @ T[:3, :3]
+                moved[:3, :3] = (
+                    Pose.from_xyz_yaw(0, 0, 0, rng.uniform(-1.0, 1.0)).rotation @ T[:3, :3]
+                )
                 if room.fits(name, moved):
                     world.put(name, moved)
                     return f"{name} is moved by {100 * way:.0f} cm"
@@ -144,20 +150,24 @@ def _slip(now: Happening) -> str:
     held = world.bound or _carried(now)
     if held is None:
         return "nothing was in the hand"
+
     tool, T, bound = world.tool(), world.pose(held), world.bound is not None
     turn = float(rng.uniform(*TILT)) * (1.0 if rng.random() < 0.5 else -1.0)
     turned = Pose((0.0, 0.0, 0.0), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
     down = float(rng.uniform(*SLIP))
     world.unbind()
+
     for share in (1.0, 0.75, 0.5, 0.25, 0.0):
         slipped = tool @ turned @ np.linalg.inv(tool) @ T
         slipped[2, 3] -= share * down
         world.put(held, slipped)
         if world.near_fingers(held):  # else it would be a drop
             break
+
     if bound:
         world.bind(held)
-    return f"{held} slips by {1000 * share * down:.0f} mm and {math.degrees(abs(turn)):.0f}° in the hand"
+    far = f"{1000 * share * down:.0f} mm and {math.degrees(abs(turn)):.0f}°"
+    return f"{held} slips by {far} in the hand"
 
 
 def _remove(now: Happening) -> str:
@@ -182,21 +192,43 @@ def _block(now: Happening) -> str:
         for name, value in expected.plan.values.items()
         if value.type == "pose" and not any(name in fact for fact in expected.plan.initial)
     ]
+
     height = OBSTACLE_SIZE[2]
+
     with Room(world) as room:
         for index in now.rng.permutation(len(wanted)):
             pose = wanted[int(index)][0]
-            body = next((fact[1] for fact in expected.plan.certified if fact[0] == "pose" and fact[2] == pose), None)
+            body = next(
+                (
+                    fact[1]
+                    for fact in expected.plan.certified
+                    if fact[0] == "pose" and fact[2] == pose
+                ),
+                None,
+            )
+
             low = room.lowest(body, wanted[int(index)][1]) if body else None
             if low is None:
                 continue
+
             for _ in range(TRIES):
                 x, y = wanted[int(index)][1][:2, 3] + now.rng.uniform(-0.04, 0.04, 2)
-                T = Pose.from_xyz_yaw(float(x), float(y), low + height / 2, now.rng.uniform(-1.5, 1.5))
-                box = Body(OBSTACLE, (Part(Box(OBSTACLE_SIZE)),), T, movable=False, colour=(0.2, 0.2, 0.2, 1.0))
+                T = Pose.from_xyz_yaw(
+                    float(x), float(y), low + height / 2, now.rng.uniform(-1.5, 1.5)
+                )
+                box = Body(
+                    OBSTACLE,
+                    (Part(Box(OBSTACLE_SIZE)),),
+                    T,
+                    movable=False,
+                    colour=(0.2, 0.2, 0.2, 1.0),
+                )
+
                 if room.free(box):
-                    world.become(replace(world.scene, bodies=MappingProxyType({**world.scene.bodies, OBSTACLE: box})))
+                    bodies = MappingProxyType({**world.scene.bodies, OBSTACLE: box})
+                    world.become(replace(world.scene, bodies=bodies))
                     return f"a box is put where {body} should go"
+
     return "there was no room for a box"
 
 
@@ -205,7 +237,9 @@ def _carried(now: Happening) -> str | None:
     return held[0] if held is not None and now.world.near_fingers(held[0]) else None
 
 
-DISTURBANCES: dict[str, tuple[Callable[[PlanFile], Iterator[Moment]], Callable[[Happening], str]]] = {
+DISTURBANCES: dict[
+    str, tuple[Callable[[PlanFile], Iterator[Moment]], Callable[[Happening], str]]
+] = {
     "object-moved": (_any, _move),
     "object-dropped": (_carrying, _drop),
     "grasp-slips": (_carrying, _slip),

@@ -1,4 +1,4 @@
-"""A stored plan carried out in physics, watched, and mended where things come differently."""
+"""Execution of a stored plan in physics: monitored, and mended where things come differently."""
 
 from __future__ import annotations
 
@@ -94,21 +94,28 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
 
 
 class _Run:
-    def __init__(self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer) -> None:
+    def __init__(
+        self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer
+    ) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
         with unquoted(stored.plan.file, plan_hashes(stored.plan)):
             self._domain = parse_domain(read_pddl(file), file)
+
         self._player = Player(world, chosen.grasp)
         self._begin(stored.plan)
+
         loaded = stored.loaded
         self._goal = parse_goal(
             loaded.goal.text, self._domain, self._expected.semantics.objects, loaded.path,
             line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
         )  # fmt: skip
         self._own = own_relations(stored, self._domain, self._goal, chosen.own)
+
         self._rng = np.random.default_rng(chosen.seed)
-        self._scheduled = schedule(chosen.disturbance, stored.plan, self._rng) if chosen.disturbance else None
+        disturbance = chosen.disturbance
+        self._scheduled = schedule(disturbance, stored.plan, self._rng) if disturbance else None
+
         self._done: list[Done] = []
         self._replans = self._kept = 0
         self._explanation: tuple[str, ...] = ()
@@ -129,8 +136,10 @@ class _Run:
         """Return the execution's outcome."""
         self._world.wait(SETTLE)
         truth = self._look()
-        goal = judged(self._goal, self._expected, truth, self._held(), self._chosen.classifiers, self._own)
+        held, classifiers = self._held(), self._chosen.classifiers
+        goal = judged(self._goal, self._expected, truth, held, classifiers, self._own)
         reached = all(part.holds for part in goal)
+
         return Execution(
             name=self._stored.loaded.scene.name,
             grasp=self._chosen.grasp,
@@ -154,18 +163,24 @@ class _Run:
         before = {name: world.pose(name) for name in world.scene.movable}
         world.attend(active)
         watch = Watch(world, active)
-        due = self._scheduled if self._scheduled and self._scheduled.action == len(self._done) else None
+        due = self._scheduled
+        if due is not None and due.action != len(self._done):
+            due = None
+
         for number, segment in enumerate(action.segments):
             body = self._scene_name(segment.attach.body) if segment.attach else None
             happens = due is not None and due.segment == number
             event, at = (partial(self._disturb, due), due.share) if happens and due else (None, 0.0)
-            guard = self._scene_name(segment.holding) if segment.holding and self._chosen.replanner else None
+            carried = segment.holding if self._chosen.replanner else None
+            guard = self._scene_name(carried) if carried else None
             if not self._player.play(segment, body, watch, event, at, guard):
                 break
+
         self._player.finish()
         self._world.wait(SETTLE)
         self._come_to_rest()
         self._expected.apply(action)
+
         truth = self._look()
         return Done(
             name=action.name,
@@ -184,8 +199,9 @@ class _Run:
         self._event = due.happen(Happening(self._world, self._player, self._expected, self._rng))
 
     def _active(self, action: TimedAction) -> str | None:
-        named = [segment.attach.body if segment.attach else segment.detach for segment in action.segments]
-        named += [segment.holding for segment in action.segments]
+        segments = action.segments
+        named = [one.attach.body if one.attach else one.detach for one in segments]
+        named += [one.holding for one in segments]
         return next((self._scene_name(name) for name in named if name is not None), None)
 
     def _scene_name(self, word: str) -> str | None:
@@ -213,7 +229,8 @@ class _Run:
         for first, second in world.touches():
             if first in world.finger_links:
                 touching.setdefault(second, set()).add(first)
-        return next((name for name in world.scene.movable if len(touching.get(name, ())) == 2), None)
+        between = (name for name in world.scene.movable if len(touching.get(name, ())) == 2)
+        return next(between, None)
 
     def _look(self) -> Truth:
         world = self._world
@@ -227,7 +244,8 @@ class _Run:
         seen = Seen(poses, self._held(), world.tool(), truth.facts)
         new = frozenset(world.scene.bodies) - self._known
         known = {name: T for name, T in expected.poses.items() if name in self._known}
-        facts = frozenset(fact for fact in expected.facts if fact[1] in {name.lower() for name in known})
+        words = {name.lower() for name in known}
+        facts = frozenset(fact for fact in expected.facts if fact[1] in words)
         facts |= self._own.missed(truth, self._held(), expected)
         return list(deviations(known, expected.held, facts, seen, active, new))
 
@@ -255,21 +273,27 @@ class _Run:
             self._player.let_go()
             world.wait(CLOSING)
         else:
-            grasp = replanner.grasp(held, np.linalg.inv(world.tool()) @ world.pose(held), world.width())
+            T_tool_body = np.linalg.inv(world.tool()) @ world.pose(held)
+            grasp = replanner.grasp(held, T_tool_body, world.width())
+
         if self._replans >= MOST:
             self._explanation = (f"planned anew {MOST} times, and still it comes differently",)
             return self._explanation[0]
-        mended = replanner.mend(self._look(), grasp, self._plan, self._queue, done.deviations, self._expected)
+
+        truth, found = self._look(), done.deviations
+        mended = replanner.mend(truth, grasp, self._plan, self._queue, found, self._expected)
         if mended.keeps:
             self._kept += 1
             self._known = frozenset(world.scene.bodies)
             self._expected.accept({name: world.pose(name) for name in world.scene.movable})
             return "the rest of the plan still holds"
+
         if mended.plan is None and all(one.kind == "slipped" for one in done.deviations):
             return f"no plan from here, so it goes on: {'; '.join(mended.explanation)}"
         if mended.plan is None:
             self._explanation = mended.explanation
             return f"no plan from here: {'; '.join(mended.explanation)}"
+
         self._replans += 1
         self._known = frozenset(world.scene.bodies)
         self._begin(mended.plan)

@@ -32,7 +32,9 @@ class Expected:
     def __post_init__(self) -> None:
         values = {name: (value.type,) if value.type in self.domain.types else ("object",)
                   for name, value in self.plan.values.items()}  # fmt: skip
-        self.semantics = Semantics(self.domain, {**self.domain.constants, **values, **self.plan.objects})
+        self.semantics = Semantics(
+            self.domain, {**self.domain.constants, **values, **self.plan.objects}
+        )
         self.state = State.of((*self.plan.initial, *self.plan.certified))
         self._accepted: dict[str, tuple[str, Array]] = {}
         self._bodies = {name.lower(): name for name in self.scene.bodies}
@@ -56,7 +58,12 @@ class Expected:
         found: dict[str, Array] = {}
         for terms in self.state.all("at-pose"):
             value = self.plan.values.get(terms[-1])
-            if len(terms) == 2 and terms[0] in self._bodies and value is not None and value.type == "pose":
+            if (
+                len(terms) == 2
+                and terms[0] in self._bodies
+                and value is not None
+                and value.type == "pose"
+            ):
                 name = self._bodies[terms[0]]
                 pose, T = self._accepted.get(name, (None, value.data))
                 found[name] = T if pose in (None, terms[1]) else value.data
@@ -67,7 +74,12 @@ class Expected:
         """Return the body in the hand and its T_tool_body."""
         for terms in self.state.all("holding"):
             value = self.plan.values.get(terms[-1])
-            if len(terms) == 2 and terms[0] in self._bodies and value is not None and isinstance(value.data, Hold):
+            if (
+                len(terms) == 2
+                and terms[0] in self._bodies
+                and value is not None
+                and isinstance(value.data, Hold)
+            ):
                 return self._bodies[terms[0]], value.data.T_tool_body
         return None
 
@@ -77,14 +89,19 @@ class Expected:
         PDDL's names.
         """
         found: set[Fact] = set()
-        for predicate, places in zip(RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True):
-            if predicate not in self.domain.predicates or len(self.domain.predicates[predicate].parameters) != 2:
+        for predicate, places in zip(
+            RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True
+        ):
+            if (
+                predicate not in self.domain.predicates
+                or len(self.domain.predicates[predicate].parameters) != 2
+            ):
                 continue
             for body in self.scene.movable:
                 for place in places:
                     atom = Atom(predicate, (body.lower(), place.lower()))
-                    if all(term in self.semantics.objects for term in atom.terms) and self.semantics.holds(
-                        atom, self.state
-                    ):
+                    if all(
+                        term in self.semantics.objects for term in atom.terms
+                    ) and self.semantics.holds(atom, self.state):
                         found.add((predicate, *atom.terms))
         return frozenset(found)

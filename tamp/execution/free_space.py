@@ -29,7 +29,9 @@ class Room:
         touched = {second for first, second in world.touches() if first in world.robot_links}
         for name in world.scene.movable:
             self._copy.place(name, _lifted(world.pose(name)))
-        self.untouched = [name for name in world.scene.movable if name not in touched and name != world.bound]
+        self.untouched = [
+            name for name in world.scene.movable if name not in touched and name != world.bound
+        ]
         self._supports = Supports(self._copy)
 
     def __enter__(self) -> Room:
@@ -51,15 +53,21 @@ class Room:
     def free(self, body: Body) -> bool:
         """Check whether a new body would be apart from all others, but for what is under it."""
         lifted = replace(body, pose=replace(body.pose, position=_up(body.pose.position)))
-        scene = replace(self._scene, bodies=MappingProxyType({**self._scene.bodies, body.name: lifted}))
+        scene = replace(
+            self._scene, bodies=MappingProxyType({**self._scene.bodies, body.name: lifted})
+        )
         with World(scene) as world:
             for name in self._scene.movable:
                 world.place(name, self._copy.pose(name))
             stand = Supports(world).stand(body.name)
             others = [name for name in self._scene.bodies if name not in stand.on]
             clear = all(world.body_distance(body.name, name, APART) >= APART for name in others)
-            return stand.why is None and clear and all(world.body_distance(body.name, one) > 0 for one in stand.on
-                                                       if one in world.solids)  # fmt: skip
+            under = (one for one in stand.on if one in world.solids)
+            return (
+                stand.why is None
+                and clear
+                and all(world.body_distance(body.name, one) > 0 for one in under)
+            )
 
     def lowest(self, word: str, T_world_body: Array) -> float | None:
         """Compute the height of the lowest point of the body of a PDDL name at a pose, less the
@@ -68,7 +76,10 @@ class Room:
         name = next((one for one in self._scene.bodies if one.lower() == word), None)
         if name is None:
             return None
-        points = body_points(self._scene.bodies[name].parts) @ T_world_body[:3, :3].T + T_world_body[:3, 3]
+        points = (
+            body_points(self._scene.bodies[name].parts) @ T_world_body[:3, :3].T
+            + T_world_body[:3, 3]
+        )
         return float(np.min(points[:, 2])) - CONTACT_GAP
 
     def _apart(self, name: str, on: frozenset[str]) -> bool:

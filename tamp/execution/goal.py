@@ -40,18 +40,33 @@ def judged(
     Classifiers of the user's own relations decide about these. Others than them, `on` and `inside`
     hold as the plan has them for bodies that are where the plan put them.
     """
-    facts = {(name, *row) for name, rows in expected.state.facts.items() for row in rows if name not in FLUENTS}
+    facts = {
+        (name, *row)
+        for name, rows in expected.state.facts.items()
+        for row in rows
+        if name not in FLUENTS
+    }
     facts |= {("hand-empty",)} if held is None else set()
-    facts |= {fact for fact in expected.state.facts.get("holding", set()) if held and fact[0] == held.lower()}
+    facts |= {
+        fact
+        for fact in expected.state.facts.get("holding", set())
+        if held and fact[0] == held.lower()
+    }
+
     there = dict(_in_place(expected, truth, held))
     standing = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
     at = {body: f"{body} seen" for body in standing} | there
     facts |= {("at-pose", body, pose) for body, pose in at.items()}
     for seen in own.observe(truth, held, expected, at).values():
         facts = (facts - seen.fails) | seen.holds
+
     state = State.of(facts | truth.facts)
     semantics = _with_poses(expected.semantics, at).without(RELATIONS)
-    said = {**classifiers, **{name: (called, classifier) for name, (_, called, classifier) in own.asked.items()}}
+    said = {
+        **classifiers,
+        **{name: (called, classifier) for name, (_, called, classifier) in own.asked.items()},
+    }
+
     found: list[GoalFact] = []
     for part in flat(goal):
         holds = semantics.holds(part, state)

@@ -67,7 +67,10 @@ class Watch:
         found: list[Touch] = []
         for (first, second), force in sorted(self.touches.items()):
             if first in robot:
-                fine = second == self.active and first in (*self.world.finger_links, self.world.hand_link)
+                fine = second == self.active and first in (
+                    *self.world.finger_links,
+                    self.world.hand_link,
+                )
             else:
                 fine = (first, second) in resting or first == FLOOR == second
             if not fine and force >= FELT:

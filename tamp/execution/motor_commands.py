@@ -79,16 +79,24 @@ class Player:
             world.pass_through(body, False)
         world.squeezing, world.opening = False, world.widest
 
-    def _follow(self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None) -> bool:
+    def _follow(
+        self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None
+    ) -> bool:
         world = self._world
         first = 0 if segment.part == "base" else 3
         columns = range(first, first + segment.positions.shape[1])
+
         lasts = float(segment.times[-1])
         count = max(1, math.ceil(lasts * RATE))
         moments = np.linspace(1 / count, 1.0, count) * lasts
-        rows = np.stack([np.interp(moments, segment.times, segment.positions[:, k - first]) for k in columns], axis=1)
+        rows = np.stack(
+            [np.interp(moments, segment.times, segment.positions[:, k - first]) for k in columns],
+            axis=1,
+        )
+
         happens = min(int(at * count), count - 1)
         before = world.conf.copy()
+
         for step, row in enumerate(rows):
             if event is not None and step == happens:
                 event()
@@ -100,6 +108,7 @@ class Player:
                 if guard is not None and not self._between(guard):
                     world.conf[:3] = world.actual()[:3]
                     break
+
         self._wait(REST, watch)
         return step == count - 1
 

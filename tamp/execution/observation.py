@@ -113,14 +113,19 @@ class Observer:
                 rise = float(np.clip(CONTACT_GAP - stand.gap, -LIFTED, LIFTED))
                 self._world.place(name, _raised(self._world.pose(name), rise))
 
-    def _feel(self, name: str, stand: Stand, facts: set[Fact], reasons: dict[Fact, str]) -> str | None:
+    def _feel(
+        self, name: str, stand: Stand, facts: set[Fact], reasons: dict[Fact, str]
+    ) -> str | None:
         """Add what is so about a body; what it stands on as the scene has it, None for the floor
         and for nothing.
         """
         support: str | None = None
         scene, supports = self._scene, self._supports
         asked = [("on", one.name, supports.on(name, one, stand)) for one in scene.surfaces.values()]
-        asked += [("inside", one.name, supports.inside(name, one, stand)) for one in scene.cavities.values()]
+        asked += [
+            ("inside", one.name, supports.inside(name, one, stand))
+            for one in scene.cavities.values()
+        ]
         for predicate, place, why in asked:
             fact = (predicate, name.lower(), place.lower())
             if why is None:

@@ -26,11 +26,15 @@ def without_pauses(plan: PlanFile) -> tuple[PlanFile, float]:
     actions = []
     for action in plan.actions:
         segments = [_shortened(segment, plan) for segment in action.segments]
-        cut += sum(float(a.times[-1] - b.times[-1]) for a, b in zip(action.segments, segments, strict=True))
+        cut += sum(
+            float(a.times[-1] - b.times[-1]) for a, b in zip(action.segments, segments, strict=True)
+        )
         moving += sum(float(segment.times[-1]) for segment in segments)
         actions.append(replace(action, segments=tuple(segments)))
     if moving > MOST_SECONDS:
-        what = f"its motions last {moving:,.0f} s; physics carries out at most {MOST_SECONDS:,.0f} s"
+        what = (
+            f"its motions last {moving:,.0f} s; physics carries out at most {MOST_SECONDS:,.0f} s"
+        )
         raise InputError(what, file=plan.file)
     return (replace(plan, actions=tuple(actions)), cut) if cut else (plan, 0.0)
 

@@ -47,7 +47,9 @@ class Own:
         scene = moved(truth.scene, {}, held)
         facts = expected.plan.initial
         return {
-            name: observe(relation, classifier, scene, expected.domain, expected.plan.objects, facts, at)
+            name: observe(
+                relation, classifier, scene, expected.domain, expected.plan.objects, facts, at
+            )
             for name, (relation, _, classifier) in self.asked.items()
         }
 
@@ -67,7 +69,9 @@ class Own:
             and answer < LIKELY
             and all(
                 fact in expected.state
-                for fact in relation.substitute(dict(zip(relation.arguments, words, strict=True)), there)
+                for fact in relation.substitute(
+                    dict(zip(relation.arguments, words, strict=True)), there
+                )
             )
         )
 
@@ -85,14 +89,18 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
         InputError: The goal needs to know that a relation does not hold, and it has no classifier.
     """
     streams = read_streams(
-        stored.plan, streams_file(stored.plan, None, source_file(stored.plan, "domain", None)), domain
+        stored.plan,
+        streams_file(stored.plan, None, source_file(stored.plan, "domain", None)),
+        domain,
     )
     if streams is None:
         return Own({})
+
     asked: dict[str, tuple[Relation, str, Classifier]] = {}
     trusted: list[str] = []
     bare = replace(domain, actions=())
     rests = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
+
     for name in _own_names(stored, streams, classifiers):
         relation = relation_of(streams, domain, name)
         if relation is None:
@@ -102,8 +110,11 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
         elif relation.predicates & rests:
             atom = needed_false(bare, goal, relation.predicates)
             if atom is not None:
-                raise _unknown(name, f"({' '.join((atom.predicate, *atom.terms))})", stored.loaded.path)
+                raise _unknown(
+                    name, f"({' '.join((atom.predicate, *atom.terms))})", stored.loaded.path
+                )
             trusted.append(name)
+
     return Own(asked, tuple(sorted(trusted)))
 
 
@@ -158,5 +169,10 @@ def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Itera
 
 
 def _unknown(name: str, said: str, file: Path) -> InputError:
-    what = f"whether {said} does not hold has to be known at the end, and '{name}' has no classifier here"
-    return InputError(what, file=file, remedy=f"Name its file: --sampler {name}=FILE.py, or FILE.safetensors")
+    what = (
+        f"whether {said} does not hold has to be known at the end, "
+        f"and '{name}' has no classifier here"
+    )
+    return InputError(
+        what, file=file, remedy=f"Name its file: --sampler {name}=FILE.py, or FILE.safetensors"
+    )

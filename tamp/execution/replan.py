@@ -97,17 +97,30 @@ class Replanner:
         """
         loaded = self._stored.loaded
         asked = set(re.findall(r"[^\s()]+", loaded.goal.text.lower()))
-        gone = sorted(name for name in loaded.scene.bodies.keys() - truth.scene.bodies.keys() if name.lower() in asked)
+        gone = sorted(
+            name
+            for name in loaded.scene.bodies.keys() - truth.scene.bodies.keys()
+            if name.lower() in asked
+        )
+
         if gone:
-            return Mended(explanation=tuple(f"{name} is gone, and the goal needs it" for name in gone))
+            return Mended(
+                explanation=tuple(f"{name} is gone, and the goal needs it" for name in gone)
+            )
+
         try:
             problem = self._problem(truth, grasp)
         except InputError as error:  # the robot touches something where it stands
             return Mended(explanation=(error.message,))
+
         if self._holds(problem, truth, plan, rest, found, expected):
             return Mended(keeps=True)
+
         seed, self._seed = self._seed, self._seed + 1
-        solution = solve(problem, max_time=self._max_time, seed=seed, algorithm=self._stored.plan.algorithm)
+        solution = solve(
+            problem, max_time=self._max_time, seed=seed, algorithm=self._stored.plan.algorithm
+        )
+
         if not solution.solved:
             return Mended(explanation=(solution.outcome.value, *solution.explanation))
         return Mended(plan=read_plan(json.loads(plan_text(solution))))
@@ -138,22 +151,34 @@ class Replanner:
         """Check whether what is still to be done can be done among the bodies as they stand, and
         leads to the goal.
         """
-        if any(one.kind not in ("misplaced", "displaced", "toppled", "new", "gone") for one in found):
+        moved = ("misplaced", "displaced", "toppled", "new", "gone")
+        if any(one.kind not in moved for one in found):
             return False
+
         there = {name.lower() for name in truth.scene.bodies}
         if any(fact[1] in there for fact in expected.facts - truth.facts):
             return False
-        later = {segment.attach.body.lower() for action in rest for segment in action.segments if segment.attach}
-        if {one.body.lower() for one in found} & _placed_so(problem.stream_task.task.goal, there) - later:
+
+        later = {
+            segment.attach.body.lower()
+            for action in rest
+            for segment in action.segments
+            if segment.attach
+        }
+        placed = _placed_so(problem.stream_task.task.goal, there)
+        if {one.body.lower() for one in found} & placed - later:
             return False
+
         context = problem.context
         poses = {name: body.pose for name, body in truth.scene.bodies.items() if body.movable}
         held = context.holding
         if held is not None:
             poses.pop(held.body, None)
+
         base, arm = np.array(truth.scene.robot.base), context.home
         names = {name.lower(): name for name in truth.scene.bodies}
         should = expected.poses
+
         for segment in (segment for action in rest for segment in action.segments):
             if segment.attach is not None:
                 name = names.get(segment.attach.body)
@@ -161,21 +186,28 @@ class Replanner:
                     return False
                 if name in should and not _same(poses[name].matrix, should[name]):
                     return False
-                held = Grasp(name, Pose.from_matrix(segment.attach.T_tool_body), segment.attach.opening)
+                held = Grasp(
+                    name, Pose.from_matrix(segment.attach.T_tool_body), segment.attach.opening
+                )
                 poses.pop(name)
+
             elif segment.detach is not None and held is not None:
                 tool = Pose.from_matrix(context.kinematics.tool(context.conf(base, arm)))
                 poses[held.body] = tool @ held.T_tool_body
                 should.pop(held.body, None)
                 held = None
+
             elif segment.part != "gripper":
                 attachment = None if held is None else context.attachment(held)
                 arrangement = context.collisions.arrangement(poses, attachment)
-                rows = [context.conf(row, arm) if segment.part == "base" else context.conf(base, row)
-                        for row in segment.positions]  # fmt: skip
+                rows = [
+                    context.conf(row, arm) if segment.part == "base" else context.conf(base, row)
+                    for row in segment.positions
+                ]
                 if arrangement.path_hits(np.array(rows), step=0.01) is not None:
                     return False
                 base, arm = rows[-1][:3], rows[-1][3:]
+
         return True
 
 
@@ -183,7 +215,12 @@ def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
     """Return the bodies, in PDDL's names, of which the goal asks what another pose may not give;
     all of them for a variable.
     """
-    terms = {term for atom, _ in signed_atoms(goal) if atom.predicate not in RELATIONS for term in atom.terms}
+    terms = {
+        term
+        for atom, _ in signed_atoms(goal)
+        if atom.predicate not in RELATIONS
+        for term in atom.terms
+    }
     return {*bodies} if any(term.startswith("?") for term in terms) else terms
 
 

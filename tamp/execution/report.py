@@ -110,17 +110,30 @@ class Execution:
 
     def text(self) -> str:
         """Format the report for people: a line an action, the goal, and a summary."""
-        lines = [line for number, action in enumerate(self.actions, 1) for line in _action(number, action)]
+        lines = [
+            line
+            for number, action in enumerate(self.actions, 1)
+            for line in _action(number, action)
+        ]
+
         lines.append("")
         lines += [_goal(fact) for fact in self.goal]
         lines += [f"  {line}" for line in self.explanation]
         lines += [f"  note: {line}" for line in self.notes]
-        facts = [f"{len(self.actions)} actions", f"{self.simulated:.1f} s in physics", f"{self.grasp} grasp"]
+
+        facts = [
+            f"{len(self.actions)} actions",
+            f"{self.simulated:.1f} s in physics",
+            f"{self.grasp} grasp",
+        ]
         facts += [f"planned anew {self.replans}x"] if self.replans else []
         facts += [f"went on after {self.kept} deviations"] if self.kept else []
-        facts += [", ".join(f"{count} {kind}" for kind, count in self.kinds.items())] if self.kinds else []
+        kinds = ", ".join(f"{count} {kind}" for kind, count in self.kinds.items())
+        facts += [kinds] if kinds else []
+
         verdict = "Goal reached" if self.reached else "Goal not reached"
-        verdict += f", on trust: {', '.join(self.on_trust)}" if self.reached and self.on_trust else ""
+        if self.reached and self.on_trust:
+            verdict += f", on trust: {', '.join(self.on_trust)}"
         lines.append(f"{verdict}: {', '.join(facts)}, in {self.seconds:.1f} s")
         return "\n".join(lines)
 
@@ -134,7 +147,9 @@ def _action(number: int, action: Done) -> list[str]:
     lag = f"lags {1000 * action.base:.1f} mm, {math.degrees(action.arm):.2f}°"
     lines = [f"  {number:2d}  {what:<34} {action.seconds:5.1f} s   {lag}"]
     lines += [f"        ! {action.event}"] if action.event else []
-    lines += [f"        touches: {one.first} - {one.second}, {one.force:.0f} N" for one in action.touches]
+    lines += [
+        f"        touches: {one.first} - {one.second}, {one.force:.0f} N" for one in action.touches
+    ]
     lines += [
         f"        moved: {one.body} by {1000 * one.moved:.0f} mm, {math.degrees(one.turned):.0f}°"
         for one in action.displaced
@@ -145,6 +160,10 @@ def _action(number: int, action: Done) -> list[str]:
 
 
 def _goal(fact: GoalFact) -> str:
-    classified = "" if fact.classifier is None else f"   {fact.classifier} says {fact.probability:.2f}"
+    classified = (
+        "" if fact.classifier is None else f"   {fact.classifier} says {fact.probability:.2f}"
+    )
     why = f": {fact.why}" if fact.why else ""
-    return f"  {printable(fact.fact)} {'holds' if fact.holds else 'does not hold' + why}{classified}"
+    return (
+        f"  {printable(fact.fact)} {'holds' if fact.holds else 'does not hold' + why}{classified}"
+    )

@@ -1,4 +1,4 @@
-"""A scene under gravity with a robot on motors: what a plan is carried out in."""
+"""Physics of a scene under gravity with a robot on motors: what a plan is carried out in."""
 
 from __future__ import annotations
 
@@ -64,36 +64,49 @@ class Actuated(World):
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
         for name in scene.movable:
             self._let_roll(name)
+
         with scratch_folder() as folder:
             urdf = Path(folder) / "mobile.urdf"
             urdf.write_text(mobile_urdf(robot), encoding="utf-8")
             flags = bullet.URDF_IGNORE_VISUAL_SHAPES
             with silence():  # it remarks on links without mass
-                self._mover = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=client)
+                self._mover = bullet.loadURDF(
+                    str(urdf), useFixedBase=True, flags=flags, physicsClientId=client
+                )
+
         joint: dict[str, int] = {}
         link: dict[str, int] = {}
         for number in range(bullet.getNumJoints(self._mover, physicsClientId=client)):
             info = bullet.getJointInfo(self._mover, number, physicsClientId=client)
             joint[info[1].decode()], link[info[12].decode()] = number, number
-            bullet.changeDynamics(self._mover, number, linearDamping=0, angularDamping=0, physicsClientId=client)
+            bullet.changeDynamics(
+                self._mover, number, linearDamping=0, angularDamping=0, physicsClientId=client
+            )
             self._owners[self._mover, number] = info[12].decode()
+
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
         self._fingers = [joint[finger.name] for finger in robot.fingers]
         self._hand = link[robot.links[-3].name]
         self.robot_links = frozenset(link)
         self.hand_link = robot.links[-3].name
         self.finger_links = tuple(one.name for one in robot.links[-2:])
-        # One motor drives both fingers; without the gear they would wander off to one side, the body between them.
+
+        # One motor drives both fingers; without the gear they would wander off to one side, the
+        # body between them.
         gear = bullet.createConstraint(
-            self._mover, self._fingers[0], self._mover, self._fingers[1], bullet.JOINT_GEAR, [1, 0, 0], [0, 0, 0],
-            [0, 0, 0], physicsClientId=client,
+            self._mover, self._fingers[0], self._mover, self._fingers[1], bullet.JOINT_GEAR,
+            [1, 0, 0], [0, 0, 0], [0, 0, 0], physicsClientId=client,
         )  # fmt: skip
-        bullet.changeConstraint(gear, gearRatio=-1, erp=0.5, maxForce=10 * force, physicsClientId=client)
+        bullet.changeConstraint(
+            gear, gearRatio=-1, erp=0.5, maxForce=10 * force, physicsClientId=client
+        )
+
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
         self.opening = self.widest = robot.opening
         self.squeezing = False
         self.bound: str | None = None
         self._constraint = -1
+
         for number, value in zip(self._driven, self.conf, strict=True):
             bullet.resetJointState(self._mover, number, float(value), physicsClientId=client)
         for number in self._fingers:
@@ -108,13 +121,14 @@ class Actuated(World):
         bullet, client = self._bullet, self.client
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
-            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10, velocityGains=[1.0] * 10,
-            physicsClientId=client,
+            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10,
+            velocityGains=[1.0] * 10, physicsClientId=client,
         )  # fmt: skip
         for finger in self._fingers:
             bullet.setJointMotorControl2(
-                self._mover, finger, bullet.POSITION_CONTROL, force=self._force, maxVelocity=FINGER_SPEED,
-                targetPosition=0.0 if self.squeezing else self.opening / 2, physicsClientId=client,
+                self._mover, finger, bullet.POSITION_CONTROL, force=self._force,
+                targetPosition=0.0 if self.squeezing else self.opening / 2,
+                maxVelocity=FINGER_SPEED, physicsClientId=client,
             )  # fmt: skip
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
@@ -138,7 +152,9 @@ class Actuated(World):
 
     def width(self) -> float:
         """Return how far the fingers are apart, metres."""
-        states = self._bullet.getJointStates(self._mover, self._fingers, physicsClientId=self.client)
+        states = self._bullet.getJointStates(
+            self._mover, self._fingers, physicsClientId=self.client
+        )
         return float(sum(state[0] for state in states))
 
     def tool(self) -> Array:
@@ -151,7 +167,9 @@ class Actuated(World):
 
     def speed(self, body: str) -> tuple[float, float]:
         """Return the speed of a movable body: metres and radians a second."""
-        moving = self._bullet.getBaseVelocity(self.solids[body][0].handle, physicsClientId=self.client)
+        moving = self._bullet.getBaseVelocity(
+            self.solids[body][0].handle, physicsClientId=self.client
+        )
         return float(np.linalg.norm(moving[0])), float(np.linalg.norm(moving[1]))
 
     def touches(self) -> dict[tuple[str, str], float]:
@@ -175,7 +193,9 @@ class Actuated(World):
         """Check whether both fingers are this near to a body, metres."""
         handle = self.solids[body][0].handle
         return all(
-            self._bullet.getClosestPoints(self._mover, handle, reach, finger, -1, physicsClientId=self.client)
+            self._bullet.getClosestPoints(
+                self._mover, handle, reach, finger, -1, physicsClientId=self.client
+            )
             for finger in self._fingers
         )
 
@@ -185,13 +205,18 @@ class Actuated(World):
         """Fix a body to the hand where it is; the robot passes through it from now on."""
         self.unbind()
         bullet, client, handle = self._bullet, self.client, self.solids[body][0].handle
-        state = bullet.getLinkState(self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client)
-        T_world_hand = Pose(tuple(state[0]), tuple(state[1]))  # of the centres of mass, as the engine wants them
-        T_world_body = Pose(*map(tuple, bullet.getBasePositionAndOrientation(handle, physicsClientId=client)))
+        state = bullet.getLinkState(
+            self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client
+        )
+        # Of the centres of mass, as the engine wants them.
+        T_world_hand = Pose(tuple(state[0]), tuple(state[1]))
+        T_world_body = Pose(
+            *map(tuple, bullet.getBasePositionAndOrientation(handle, physicsClientId=client))
+        )
         T_hand_body = T_world_hand.inverse() @ T_world_body
         self._constraint = bullet.createConstraint(
-            self._mover, self._hand, handle, -1, bullet.JOINT_FIXED, [0, 0, 0], T_hand_body.position, [0, 0, 0],
-            T_hand_body.quaternion, physicsClientId=client,
+            self._mover, self._hand, handle, -1, bullet.JOINT_FIXED, [0, 0, 0],
+            T_hand_body.position, [0, 0, 0], T_hand_body.quaternion, physicsClientId=client,
         )  # fmt: skip
         self.bound = body
         self.pass_through(body, True)
@@ -208,7 +233,8 @@ class Actuated(World):
         """Switch collisions between the robot and a body: whether they do not feel each other."""
         for link in range(-1, self._bullet.getNumJoints(self._mover, physicsClientId=self.client)):
             self._bullet.setCollisionFilterPair(
-                self._mover, self.solids[body][0].handle, link, -1, 0 if passes else 1, physicsClientId=self.client
+                self._mover, self.solids[body][0].handle, link, -1, 0 if passes else 1,
+                physicsClientId=self.client,
             )  # fmt: skip
 
     def put(self, body: str, T_world_body: Array) -> None:
@@ -216,7 +242,9 @@ class Actuated(World):
         self.place(body, T_world_body)
         self.attend(body)
         for solid in self.solids[body]:
-            self._bullet.resetBaseVelocity(solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client)
+            self._bullet.resetBaseVelocity(
+                solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client
+            )
 
     def become(self, scene: Scene) -> None:
         """Take bodies away that a scene does not have, and add those that only it has, where it
@@ -242,15 +270,17 @@ class Actuated(World):
         bullet = self._bullet
         for name in self.scene.movable:
             state = (
-                bullet.ACTIVATION_STATE_DISABLE_SLEEPING if name == body else bullet.ACTIVATION_STATE_ENABLE_SLEEPING
+                bullet.ACTIVATION_STATE_DISABLE_SLEEPING
+                if name == body
+                else bullet.ACTIVATION_STATE_ENABLE_SLEEPING
             )
             bullet.changeDynamics(
-                self.solids[name][0].handle, -1, activationState=state | bullet.ACTIVATION_STATE_WAKE_UP,
-                physicsClientId=self.client,
+                self.solids[name][0].handle, -1, physicsClientId=self.client,
+                activationState=state | bullet.ACTIVATION_STATE_WAKE_UP,
             )  # fmt: skip
 
     def _let_roll(self, body: str) -> None:
         self._bullet.changeDynamics(
-            self.solids[body][0].handle, -1, rollingFriction=ROLLING, spinningFriction=ROLLING, sleepThreshold=SLEEPY,
-            physicsClientId=self.client,
+            self.solids[body][0].handle, -1, rollingFriction=ROLLING, spinningFriction=ROLLING,
+            sleepThreshold=SLEEPY, physicsClientId=self.client,
         )  # fmt: skip

@@ -63,7 +63,9 @@ class Drops:
         plane = self._bullet.createCollisionShape(
             self._bullet.GEOM_BOX, halfExtents=half, physicsClientId=self.client
         )  # fmt: skip
-        self._floor = self._bullet.createMultiBody(0.0, plane, -1, [0.0, 0.0, -0.5], physicsClientId=self.client)
+        self._floor = self._bullet.createMultiBody(
+            0.0, plane, -1, [0.0, 0.0, -0.5], physicsClientId=self.client
+        )
         self._shapes: dict[Item, tuple[int, Array]] = {}
         self._obstacles: list[tuple[int, Item]] = []
         self._boxes: list[tuple[Array, Array]] = []
@@ -81,7 +83,9 @@ class Drops:
         """
         for handle, _ in [*self._obstacles, *([self._body] if self._body else [])]:
             self._bullet.removeBody(handle, physicsClientId=self.client)
-        self._obstacles = [(self._add(item, matrix, fixed=True), item) for item, matrix in obstacles]
+        self._obstacles = [
+            (self._add(item, matrix, fixed=True), item) for item, matrix in obstacles
+        ]
         self._boxes = [bounds(item.parts, Pose.from_matrix(matrix)) for item, matrix in obstacles]
         self._body = (self._add(body, np.eye(4), fixed=False), body)
 
@@ -98,7 +102,9 @@ class Drops:
             box = self._boxes[number]
             if (box[0] > high).any() or (low > box[1]).any():
                 continue
-            points = self._bullet.getClosestPoints(handle, other, reach, physicsClientId=self.client)
+            points = self._bullet.getClosestPoints(
+                handle, other, reach, physicsClientId=self.client
+            )
             if points:
                 pads = sum(HULL_PAD for one in (item, obstacle) if _is_hull(one))
                 found.append(Contact(number, min(point[8] for point in points) + pads))
@@ -147,7 +153,9 @@ class Drops:
             baseInertialFramePosition=[0.0] * 3 if fixed else centre.tolist(),
             physicsClientId=self.client,
         )
-        self._bullet.changeDynamics(handle, -1, lateralFriction=item.friction, physicsClientId=self.client)
+        self._bullet.changeDynamics(
+            handle, -1, lateralFriction=item.friction, physicsClientId=self.client
+        )
         return handle
 
     def _shape(self, item: Item) -> int:
@@ -158,6 +166,7 @@ class Drops:
             Sphere: bullet.GEOM_SPHERE,
             Hull: bullet.GEOM_MESH,
         }
+
         arrays: dict[str, list[Any]] = {
             "shapeTypes": [],
             "radii": [],
@@ -165,16 +174,25 @@ class Drops:
             "halfExtents": [],
             "fileNames": [],
         }
+
         with scratch_folder() as folder:  # an array of shapes takes its meshes from files only
             for number, part in enumerate(item.parts):
                 shape = part.shape
                 arrays["shapeTypes"].append(keys[type(shape)])
-                arrays["radii"].append(shape.radius if isinstance(shape, Cylinder | Sphere) else 0.0)
+                arrays["radii"].append(
+                    shape.radius if isinstance(shape, Cylinder | Sphere) else 0.0
+                )
                 arrays["lengths"].append(shape.height if isinstance(shape, Cylinder) else 0.0)
-                arrays["halfExtents"].append([e / 2 for e in shape.size] if isinstance(shape, Box) else [0.0] * 3)
-                arrays["fileNames"].append(str(Path(folder) / f"{number}.obj") if isinstance(shape, Hull) else "")
+                arrays["halfExtents"].append(
+                    [e / 2 for e in shape.size] if isinstance(shape, Box) else [0.0] * 3
+                )
+                arrays["fileNames"].append(
+                    str(Path(folder) / f"{number}.obj") if isinstance(shape, Hull) else ""
+                )
+
                 if isinstance(shape, Hull):
                     Path(arrays["fileNames"][-1]).write_text(obj(shape))
+
             return bullet.createCollisionShapeArray(
                 **arrays,
                 meshScales=[[1.0, 1.0, 1.0]] * len(item.parts),

@@ -14,7 +14,10 @@ BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 BASE_MASS = 100.0
 """Kilograms: heavy enough for an arm's swing not to shake it."""
 
-_INERTIAL = '<inertial><mass value="{}"/><inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
+_INERTIAL = (
+    '<inertial><mass value="{}"/>'
+    '<inertia ixx="5" ixy="0" ixz="0" iyy="5" iyz="0" izz="5"/></inertial>'
+)
 _LIMIT = '<limit lower="-200000" upper="200000" effort="100000" velocity="10"/>'
 
 
@@ -28,10 +31,12 @@ def mobile_urdf(robot: Robot) -> str:
     base = robot.links[0]
     if len(base.parts) != 1 or not isinstance(base.parts[0].shape, Box):
         raise InputError(f"the base of the robot '{robot.name}' must be one box")
+
     size = " ".join(map(str, base.parts[0].shape.size))
     at = " ".join(map(str, base.parts[0].pose.position))
     foot = " ".join(map(str, robot.T_base_arm.position))
     x, y, yaw = BASE_JOINTS
+
     links = f"""
   <link name="ground"/>
   <link name="{x}_slide">{_INERTIAL.format(20)}</link>
@@ -45,6 +50,7 @@ def mobile_urdf(robot: Robot) -> str:
   </joint>
   <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.links[1].name}"/>
     <origin xyz="{foot}"/></joint>
-"""
+"""  # noqa: E501 (XML, as a URDF has it)
+
     text = robot.urdf.read_text(encoding="utf-8").replace("package://", f"{robot.urdf.parent}/")
     return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, text, count=1)

@@ -1,4 +1,4 @@
-"""The only file that knows pybullet: bodies and the robot in an engine of their own.
+"""Rigid-body simulation in pybullet: bodies and the robot in an engine of their own.
 
 Measured (tests/simulation/test_physics.py): distances of boxes, cylinders and spheres are exact;
 hulls are padded by 1 mm, added back here. (With a pad of zero, penetration is measured wrongly.)
@@ -10,46 +10,25 @@ import itertools
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Sphere
+from tamp.geometric.scene.scene import Body, Hull, Part, Scene
 from tamp.simulation.shapes import floor_under, half_extents, link_frame, mass_centre, obj
 from tamp.simulation.silence import silence
+from tamp.simulation.solid import Solid, arrays, described
 from tamp.system.scratch import scratch_folder
 
 HULL_PAD = 0.001
 """Metres by which Bullet pads a convex hull."""
 
 FLOOR = "floor"
-
-
-@dataclass(frozen=True, eq=False)
-class Solid:
-    """One convex piece of a body or a link of the robot, as the engine knows it.
-
-    Attributes:
-        owner: The body's or the link's name.
-        handle: The engine's number of the body, and `link` the one of the link in it.
-        offset: T_owner_solid, shape (4, 4).
-        centre, half: The box around it in the owner's frame, shape (3,) each, metres.
-        pad: What the engine adds to its surface, metres.
-    """
-
-    owner: str
-    handle: int
-    link: int
-    offset: Array
-    centre: Array
-    half: Array
-    pad: float = 0.0
 
 
 class World:
@@ -108,7 +87,9 @@ class World:
         for solid in self.solids[body]:
             self._move(solid.handle, T_world_body @ solid.offset)
 
-    def set_robot(self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float) -> None:
+    def set_robot(
+        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float
+    ) -> None:
         """Put base at x, y, yaw, arm at joint angles, fingers at opening / 2; metres, radians."""
         at = (float(base[0]), float(base[1]), float(base[2]))
         if at != self._base_at:
@@ -120,7 +101,9 @@ class World:
             frames = (Pose.from_matrix(T) for T in (T_world_base, T_world_base @ self._T_base_foot))
             self._base_frames = [(*pose.position, *pose.quaternion) for pose in frames]
         values = [[float(q)] for q in arm] + [[opening / 2], [opening / 2]]
-        self._bullet.resetJointStatesMultiDof(self._arm, self._joints, values, physicsClientId=self.client)
+        self._bullet.resetJointStatesMultiDof(
+            self._arm, self._joints, values, physicsClientId=self.client
+        )
 
     def link_frames(self) -> Array:
         """Return each link's frame, position (m) and quaternion xyzw, shape (l, 7), as `links`."""
@@ -151,12 +134,13 @@ class World:
         return min((self.distance(a, b, reach) for a, b in pairs), default=math.inf)
 
     def rays(self, starts: Array, ends: Array) -> list[tuple[str | None, float]]:
-        """Cast rays (n, 3), metres: the owner's name of what each hits or None, and how far (0-1)."""
+        """Cast rays (n, 3), metres: the owner's name of each hit or None, and how far (0-1)."""
         hits: list[tuple[str | None, float]] = []
         for at in range(0, len(starts), 8192):  # more at a time overflow the engine's shared memory
             some = slice(at, at + 8192)
             found = self._bullet.rayTestBatch(
-                starts[some].tolist(), ends[some].tolist(), physicsClientId=self.client, numThreads=1
+                starts[some].tolist(), ends[some].tolist(), numThreads=1,
+                physicsClientId=self.client,
             )  # fmt: skip
             hits += [(self._owners.get((hit[0], hit[1])), hit[2]) for hit in found]
         return hits
@@ -174,7 +158,9 @@ class World:
         shape = self._bullet.createCollisionShape(
             self._bullet.GEOM_BOX, halfExtents=half.tolist(), physicsClientId=self.client
         )  # fmt: skip
-        handle = self._bullet.createMultiBody(0.0, shape, -1, centre.tolist(), physicsClientId=self.client)
+        handle = self._bullet.createMultiBody(
+            0.0, shape, -1, centre.tolist(), physicsClientId=self.client
+        )
         self._owners[handle, -1] = FLOOR
         return Solid(FLOOR, handle, -1, np.eye(4), centre, half)
 
@@ -192,50 +178,48 @@ class World:
         centre, half = half_extents(part.shape)
         turned = np.abs(part.pose.rotation) @ half
         pad = HULL_PAD if isinstance(part.shape, Hull) else 0.0
-        shape = self._bullet.createCollisionShape(**self._described(part), physicsClientId=self.client)
+        shape = self._bullet.createCollisionShape(
+            **described(part, self._bullet), physicsClientId=self.client
+        )
         handle = self._bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
-        self._bullet.changeDynamics(handle, -1, lateralFriction=friction, physicsClientId=self.client)
+        self._bullet.changeDynamics(
+            handle, -1, lateralFriction=friction, physicsClientId=self.client
+        )
         self._owners[handle, -1] = owner
-        return Solid(owner, handle, -1, part.pose.matrix, part.pose.apply(centre[None])[0], turned, pad)
+        return Solid(
+            owner, handle, -1, part.pose.matrix, part.pose.apply(centre[None])[0], turned, pad
+        )
 
     def _compound(self, body: Body) -> Solid:
-        described = [self._described(part) for part in body.parts]
-        names = {"shapeType": "shapeTypes", "radius": "radii", "height": "lengths", "halfExtents": "halfExtents"}
-        blanks: dict[str, Any] = {"shapeType": 0, "radius": 0.0, "height": 0.0, "halfExtents": [0.0] * 3}
-        arrays = {names[key]: [one.get(key, blank) for one in described] for key, blank in blanks.items()}
+        pieces = [described(part, self._bullet) for part in body.parts]
+
         with scratch_folder() as folder:  # an array of shapes takes its meshes from files only
-            files = [""] * len(described)
-            for number, one in enumerate(described):
+            files = [""] * len(pieces)
+            for number, one in enumerate(pieces):
                 if "vertices" in one:
                     files[number] = str(Path(folder) / f"{number}.obj")
                     Path(files[number]).write_text(obj(body.parts[number].shape))
             shape = self._bullet.createCollisionShapeArray(
-                **arrays,
+                **arrays(pieces),
                 fileNames=files,
                 meshScales=[[1.0, 1.0, 1.0]] * len(files),
                 collisionFramePositions=[list(part.pose.position) for part in body.parts],
                 collisionFrameOrientations=[list(part.pose.quaternion) for part in body.parts],
                 physicsClientId=self.client,
             )
+
         centre = mass_centre(body)
         handle = self._bullet.createMultiBody(
             body.mass, shape, baseInertialFramePosition=centre.tolist(), physicsClientId=self.client
         )  # fmt: skip
-        self._bullet.changeDynamics(handle, -1, lateralFriction=body.friction, physicsClientId=self.client)
+        self._bullet.changeDynamics(
+            handle, -1, lateralFriction=body.friction, physicsClientId=self.client
+        )
+
         self._owners[handle, -1] = body.name
         offset = np.eye(4)
         offset[:3, 3] = centre
         return Solid(body.name, handle, -1, offset, np.zeros(3), np.full(3, np.inf))
-
-    def _described(self, part: Part) -> dict[str, Any]:
-        shape, bullet = part.shape, self._bullet
-        if isinstance(shape, Box):
-            return {"shapeType": bullet.GEOM_BOX, "halfExtents": [edge / 2 for edge in shape.size]}
-        if isinstance(shape, Cylinder):
-            return {"shapeType": bullet.GEOM_CYLINDER, "radius": shape.radius, "height": shape.height}
-        if isinstance(shape, Sphere):
-            return {"shapeType": bullet.GEOM_SPHERE, "radius": shape.radius}
-        return {"shapeType": bullet.GEOM_MESH, "vertices": shape.vertices.tolist()}
 
     def _add_robot(self, robot: Robot) -> None:
         bullet, client = self._bullet, self.client
@@ -243,13 +227,17 @@ class World:
         self._base_solids = tuple(self._solid(base.name, part) for part in base.parts)
         if len(self._base_solids) != 1:
             raise InputError(f"the base of the robot '{robot.name}' must be one convex part")
+
         flags = bullet.URDF_USE_SELF_COLLISION | bullet.URDF_IGNORE_VISUAL_SHAPES
-        self._arm = bullet.loadURDF(str(robot.urdf), useFixedBase=True, flags=flags, physicsClientId=client)
+        self._arm = bullet.loadURDF(
+            str(robot.urdf), useFixedBase=True, flags=flags, physicsClientId=client
+        )
         inertial = bullet.getDynamicsInfo(self._arm, -1, physicsClientId=client)
         # The engine's base position is the one of the foot's centre of mass.
         self._T_foot_com = Pose(inertial[3], inertial[4]).matrix
         self._T_base_foot = robot.T_base_arm.matrix
         self._T_base_com = self._T_base_foot @ self._T_foot_com
+
         index = {foot.name: -1}
         joints: dict[str, int] = {}
         for number in range(bullet.getNumJoints(self._arm, physicsClientId=client)):
@@ -260,24 +248,33 @@ class World:
         self._joints = list(joints.values())
         self._names = [link.name for link in robot.links[2:]]
         self._indices = [index[name] for name in self._names]
+
         self.links[base.name] = self._base_solids[0]
         for link in robot.links[1:]:
             self.links[link.name] = self._link_solid(link.name, index[link.name])
             self._owners[self._arm, index[link.name]] = link.name
+
         self._base_at = (math.nan, math.nan, math.nan)
         start = self.scene.robot
         self.set_robot(start.base, start.arm or robot.home, robot.opening)
 
     def _link_solid(self, name: str, index: int) -> Solid:
-        # The box around the link at its reset pose, taken from the engine and not from the planner's hulls: here all
-        # joints are zero, so the link's frame is turned against the world's; the box of its box is a little larger.
+        # The box around the link at its reset pose, taken from the engine and not from the
+        # planner's hulls: here all joints are zero, so the link's frame is turned against the
+        # world's; the box of its box is a little larger.
         bullet, client = self._bullet, self.client
-        low, high = (np.array(corner) for corner in bullet.getAABB(self._arm, index, physicsClientId=client))
+        low, high = (
+            np.array(corner) for corner in bullet.getAABB(self._arm, index, physicsClientId=client)
+        )
         if index < 0:
-            T_world_com = Pose(*bullet.getBasePositionAndOrientation(self._arm, physicsClientId=client)).matrix
+            T_world_com = Pose(
+                *bullet.getBasePositionAndOrientation(self._arm, physicsClientId=client)
+            ).matrix
             T_world_link = T_world_com @ np.linalg.inv(self._T_foot_com)
         else:
-            state = bullet.getLinkState(self._arm, index, computeForwardKinematics=1, physicsClientId=client)
+            state = bullet.getLinkState(
+                self._arm, index, computeForwardKinematics=1, physicsClientId=client
+            )
             T_world_link = Pose(state[4], state[5]).matrix
         centre = T_world_link[:3, :3].T @ ((low + high) / 2 - T_world_link[:3, 3])
         half = np.abs(T_world_link[:3, :3].T) @ (high - low) / 2

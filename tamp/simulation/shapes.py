@@ -43,7 +43,9 @@ def points(shape: Shape) -> Array:
     turn = np.linspace(0.0, 2 * np.pi, ROUND, endpoint=False)
     circle = np.stack([np.cos(turn), np.sin(turn), np.zeros(ROUND)], axis=1)
     if isinstance(shape, Cylinder):
-        return np.concatenate([circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)])
+        return np.concatenate(
+            [circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)]
+        )
     if isinstance(shape, Sphere):
         tilts = np.linspace(-np.pi / 2, np.pi / 2, 17)
         rings = [circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts]
@@ -69,7 +71,9 @@ def centre_of_mass(parts: Iterable[Part]) -> Array:
 
 
 def mass_centre(body: Body) -> Array:
-    """A body's centre of mass in its own frame, shape (3,), metres: its file's, or that of a uniform density."""
+    """Return a body's centre of mass in its own frame, shape (3,), metres: its file's, or that of a
+    uniform density.
+    """
     if body.center_of_mass is None:
         return centre_of_mass(body.parts)
     return np.array(body.center_of_mass, dtype=float)
@@ -116,7 +120,9 @@ def _volume_and_centre(shape: Shape) -> tuple[float, Array]:
     if isinstance(shape, Sphere):
         return float(4 / 3 * np.pi * shape.radius**3), np.zeros(3)
     inside = shape.vertices.mean(axis=0)
-    corners = shape.vertices[shape.faces] - inside  # (m, 3 corners, 3): a tetrahedron over each face
-    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+    # (m, 3 corners, 3): a tetrahedron over each face
+    corners = shape.vertices[shape.faces] - inside
+    normals = np.cross(corners[:, 1], corners[:, 2])
+    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], normals)) / 6
     volume = float(volumes.sum())
     return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume

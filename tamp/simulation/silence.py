@@ -1,4 +1,4 @@
-"""A block in which nothing that C code prints comes out."""
+"""Suppression of output: a block in which nothing that C code prints comes out."""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
-"""Compiling kernels with numba: once for an installation, at nobody's expense, and kept wherever one may write.
+"""Just-in-time compilation of kernels with numba: once for an installation, at nobody's expense,
+and kept wherever one may write.
 
-All kernels get their `njit` from here. A deadline stands still while one is compiled (`tamp.system.deadline`).
+All kernels get their `njit` from here. A deadline stands still while one is compiled
+(`tamp.system.deadline`).
 """
 
 from __future__ import annotations
@@ -20,11 +22,16 @@ from tamp.system.deadline import STANDSTILL
 Told = Callable[[int], None]
 """Called with the number of functions compiled so far, whenever another one begins."""
 
-NOWHERE = "compiled kernels cannot be kept: {why}. They are compiled anew in each run; NUMBA_CACHE_DIR names a folder"
+NOWHERE = (
+    "compiled kernels cannot be kept: {why}. They are compiled anew in each run; "
+    "NUMBA_CACHE_DIR names a folder"
+)
 
 
 class _Compiling(event.Listener):
-    """Stops the clock, and the search for garbage, which costs compiling a tenth of its time, while numba compiles."""
+    """Stops the clock, and the search for garbage, which costs compiling a tenth of its time, while
+    numba compiles.
+    """
 
     def __init__(self) -> None:
         self.told: Told | None = None
@@ -54,8 +61,8 @@ event.register("numba:compile", _COMPILING)
 def _compare_quickly() -> None:
     """Give numba's options a hash and a comparison of the same results in a tenth of the time.
 
-    Typing looks every `a[i]` up in 14 tables whose keys hold the options, and each look compares all of those, one
-    property at a time: a sixth of what compiling takes.
+    Typing looks every `a[i]` up in 14 tables whose keys hold the options, and each look compares
+    all of those, one property at a time: a sixth of what compiling takes.
     """
     if not {"_values", "options", "values"} <= {*dir(TargetConfig)}:  # another numba: it goes on as it is
         return
@@ -80,7 +87,7 @@ def _compare_quickly() -> None:
 
 
 def _all_values(config: Any) -> dict[str, Any]:
-    """`TargetConfig.values` of an instance: what is set, and the defaults of the rest."""
+    """Return `TargetConfig.values` of an instance: what is set, and the defaults of the rest."""
     kind = type(config)
     if kind not in _DEFAULTS:
         _DEFAULTS[kind] = {name: option.default for name, option in kind.options.items()}
@@ -96,13 +103,16 @@ def tell(told: Told | None) -> None:
     _COMPILING.told = told
 
 
-def njit(signature: Any = None, *, cache: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Compile in numba's way.
+def njit(
+    signature: Any = None, *, cache: bool = False, **options: Any
+) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function just in time, with numba.
 
     Args:
         signature: Compile (or load) now, for these types; None compiles at the first call.
-        cache: Keep it on disk: beside the source, or where that cannot be written in the user's cache
-            (`XDG_CACHE_HOME`). Where neither can be, a warning says so once and it is compiled in each process.
+        cache: Keep it on disk: beside the source, or where that cannot be written in the user's
+            cache (`XDG_CACHE_HOME`). Where neither can be, a warning says so once and it is
+            compiled in each process.
         options: As for `numba.njit`.
     """
 

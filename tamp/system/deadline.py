@@ -1,4 +1,4 @@
-"""The time that a computation may still take, passed down as an argument."""
+"""Deadlines: the time that a computation may still take, passed down as an argument."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 @dataclass
 class Standstill:
-    """Time that counts for nobody: while kernels are compiled, which happens once for all that come after.
+    """Time that counts for nobody: while kernels are compiled, which happens once for all that come
+    after.
 
     Attributes:
         depth: How many of those who stopped the clock have not let it go on.
@@ -38,13 +39,15 @@ STANDSTILL = Standstill()
 
 
 def counted() -> float:
-    """The monotonic clock, less the time for which it stood still; seconds."""
+    """Read the monotonic clock, less the time for which it stood still; seconds."""
     now = time.monotonic()
     return now - STANDSTILL.total if STANDSTILL.depth == 0 else STANDSTILL.since - STANDSTILL.total
 
 
 class OutOfTime(BaseException):
-    """Raised inside a computation that ran past its deadline; like KeyboardInterrupt no `except Exception` stops it."""
+    """Raised inside a computation that ran past its deadline; like KeyboardInterrupt it is not
+    stopped by `except Exception`.
+    """
 
 
 class Deadline:
@@ -54,7 +57,8 @@ class Deadline:
         seconds: From now; infinite by default.
 
     Attributes:
-        ended: Whether the computation knows that it has to end, and only says what it found: let it finish that.
+        ended: Whether the computation knows that it has to end, and only says what it found: let it
+            finish that.
     """
 
     def __init__(self, seconds: float = math.inf) -> None:
@@ -63,14 +67,14 @@ class Deadline:
         self.ended = False
 
     def left(self) -> float:
-        """Seconds until the deadline, never negative."""
+        """Compute the seconds until the deadline, never negative."""
         return max(0.0, self.seconds - self.elapsed())
 
     def elapsed(self) -> float:
-        """Seconds since the deadline was set."""
+        """Compute the seconds since the deadline was set."""
         return counted() - self.started
 
     @property
     def passed(self) -> bool:
-        """Whether the time is up."""
+        """Check whether the time is up."""
         return self.elapsed() >= self.seconds

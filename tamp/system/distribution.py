@@ -1,6 +1,8 @@
-"""Name the distribution that installs this package, its version, and the command that fetches an extra of it.
+"""Name the distribution that installs this package, its version, and the command that fetches an
+extra of it.
 
-The import name is `tamp`, the distribution is `tamp-planner`: on the public index `tamp` is somebody else's package.
+The import name is `tamp`, the distribution is `tamp-planner`: on the public index `tamp` is
+somebody else's package.
 """
 
 from __future__ import annotations
@@ -20,5 +22,7 @@ def distribution_version(name: str = DISTRIBUTION) -> str:
 
 
 def install_command(extra: str) -> str:
-    """Return the shell command that installs what an optional extra ("bench", "learn", "ray") needs."""
+    """Return the shell command that installs what an optional extra ("bench", "learn", "ray")
+    needs.
+    """
     return f"pip install '{DISTRIBUTION}[{extra}]'"

@@ -1,4 +1,4 @@
-"""Where shipped domains and problems are, and where computed things are kept between runs."""
+"""Folders of shipped domains and problems, and of the cache of what is computed between runs."""
 
 from __future__ import annotations
 
@@ -15,22 +15,27 @@ _STREAMS = ".streams.pddl"
 
 
 def shipped(folder: str) -> Path:
-    """The folder `domains` or `problems` that came with tamp: inside the wheel, or beside `tamp/` in a checkout."""
+    """Return the folder `domains` or `problems` that came with tamp: in the wheel, or beside
+    `tamp/` in a checkout.
+    """
     packed = _PACKAGE / "_data" / folder
     return packed if packed.is_dir() else _PACKAGE.parent / folder
 
 
 def find_problem(name: str | Path) -> Path:
-    """The problem file that `name` means: a path, or the name of a shipped problem.
+    """Find the problem file that `name` means: a path, or the name of a shipped problem.
 
     Raises:
         InputError: Nothing of that name, with the shipped problems as choices.
     """
-    return _find(name, "problem", ".yaml", _names("problems", ".yaml"), (Path(), shipped("problems")))
+    return _find(
+        name, "problem", ".yaml", _names("problems", ".yaml"), (Path(), shipped("problems"))
+    )
 
 
 def find_domain(name: str | Path, beside: Path | None = None) -> Path:
-    """The PDDL domain that `name` means: a path (also relative to `beside`), or the name of a shipped domain.
+    """Find the PDDL domain that `name` means: a path (also relative to `beside`), or the name of a
+    shipped domain.
 
     Args:
         name: What the command line or the problem's `domain:` says.
@@ -39,16 +44,22 @@ def find_domain(name: str | Path, beside: Path | None = None) -> Path:
     Raises:
         InputError: Nothing of that name, with the shipped domains as choices.
     """
-    folders = (Path(), shipped("domains")) if beside is None else (beside, Path(), shipped("domains"))
+    folders = (
+        (Path(), shipped("domains")) if beside is None else (beside, Path(), shipped("domains"))
+    )
     return _find(name, "domain", ".pddl", _names("domains", ".pddl"), folders)
 
 
 def cache_folder() -> Path:
-    """The folder for what is expensive to compute: `TAMP_CACHE`, or `~/.cache/tamp`. It may not exist yet."""
+    """Return the cache folder, for what is expensive to compute: `TAMP_CACHE`, or `~/.cache/tamp`.
+    It may not exist yet.
+    """
     return Path(os.path.expanduser(os.environ.get("TAMP_CACHE") or "~/.cache/tamp"))
 
 
-def _find(name: str | Path, kind: str, suffix: str, names: list[str], folders: tuple[Path, ...]) -> Path:
+def _find(
+    name: str | Path, kind: str, suffix: str, names: list[str], folders: tuple[Path, ...]
+) -> Path:
     text = str(name)
     if not text:
         raise InputError(f"no {kind} given", choices=names)
@@ -66,4 +77,6 @@ def _find(name: str | Path, kind: str, suffix: str, names: list[str], folders: t
 
 def _names(folder: str, suffix: str) -> list[str]:
     files = shipped(folder).glob(f"*{suffix}")
-    return sorted(file.name.removesuffix(suffix) for file in files if not file.name.endswith(_STREAMS))
+    return sorted(
+        file.name.removesuffix(suffix) for file in files if not file.name.endswith(_STREAMS)
+    )

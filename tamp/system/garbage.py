@@ -1,4 +1,4 @@
-"""How often Python looks for garbage that refers to itself."""
+"""Frequency of the garbage collection: how often Python looks for reference cycles."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ SELDOM = 50_000
 
 @contextmanager
 def seldom_collecting() -> Iterator[None]:
-    """Look seldom inside: planning makes many lists that last, and hardly a cycle (tests/test_memory.py)."""
+    """Collect garbage seldom inside: planning makes many lists that last, and hardly a cycle
+    (tests/test_memory.py).
+    """
     before = gc.get_threshold()
     if before[0]:
         gc.set_threshold(max(before[0], SELDOM), *before[1:])

@@ -1,8 +1,10 @@
-"""Who ends a command: Ctrl-C and SIGTERM are heard from the first moment, and obeyed within a second.
+"""Signal handling of commands: Ctrl-C and SIGTERM are heard from the first moment, and obeyed
+within a second.
 
-A command is two processes. The one that was started only watches: it hands on what it is asked, and when the other has
-not ended in time, because it is inside a library that does not come back or something dropped what was raised, it ends
-it. The other one works; it leaves with the first. Nothing here imports more than the interpreter has anyway.
+A command is two processes. The one that was started only watches: it hands on what it is asked, and
+when the other has not ended in time, because it is inside a library that does not come back or
+something dropped what was raised, it ends it. The other one works; it leaves with the first.
+Nothing here imports more than the interpreter has anyway.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ WATCHED = (*ENDING, signal.SIGCHLD)
 """What who watches waits for."""
 
 PATIENCE = 0.8
-"""Seconds that the one who works may take to end by itself, those not counted in which it waited for a core."""
+"""Seconds that the one who works may take to end by itself, those not counted in which it waited
+for a core.
+"""
 
 PATIENCE_AT_MOST = 8.0
 """The same, counted by the wall's clock: more than that no load excuses."""
@@ -51,23 +55,29 @@ _ASKED = _Asked()
 
 
 def is_guarded() -> bool:
-    """Whether this process is the one who works in a guarded command."""
+    """Check whether this process is the one who works in a guarded command."""
     return _ASKED.guarded
 
 
 def asked() -> bool:
-    """Whether somebody wants this command to end; also when what was raised was dropped on the way."""
+    """Check whether somebody wants this command to end; also when what was raised was dropped on
+    the way.
+    """
     return _ASKED.number != 0
 
 
 def note(number: int) -> None:
-    """Remember the first signal, in a guarded command: elsewhere it is the caller who goes on or not."""
+    """Remember the first signal, in a guarded command: elsewhere it is the caller who goes on or
+    not.
+    """
     if _ASKED.guarded:
         _ASKED.number = _ASKED.number or number
 
 
 def hear(number: int, frame: FrameType | None = None) -> None:
-    """Raise KeyboardInterrupt for the first signal; a terminal's Ctrl-C comes twice, from it and from who watches."""
+    """Raise KeyboardInterrupt for the first signal; a terminal's Ctrl-C comes twice, from it and
+    from who watches.
+    """
     if _ASKED.at_once:
         _say_interrupted()
         os._exit(128 + number)
@@ -78,15 +88,17 @@ def hear(number: int, frame: FrameType | None = None) -> None:
 
 
 def listen() -> None:
-    """Have `hear` called in this process, if it is one of a guarded command; again after a library took the signals."""
+    """Have `hear` called in this process, if it is one of a guarded command; again after a library
+    took the signals.
+    """
     if _ASKED.guarded:
         for number in ENDING:
             signal.signal(number, hear)
 
 
 def obey_only_parent() -> None:
-    """For a worker's process (of multiprocessing): Ctrl-C is for who leads, SIGTERM ends it without a word, and it goes
-    when its leader does, however that ends.
+    """Set the signals of a worker's process (of multiprocessing): Ctrl-C is for who leads, SIGTERM
+    ends it without a word, and it goes when its leader does, however that ends.
     """
     import multiprocessing
 
@@ -100,8 +112,8 @@ def obey_only_parent() -> None:
 
 
 class Held:
-    """Hold signals back while a process is started: what is raised in a fork is dropped, and the new process is not
-    ready to be asked. Use it as a context manager.
+    """Hold signals back while a process is started: what is raised in a fork is dropped, and the
+    new process is not ready to be asked. Use it as a context manager.
     """
 
     def __enter__(self) -> None:
@@ -112,24 +124,29 @@ class Held:
 
 
 def guarded(module: str, function: str = "main") -> NoReturn:
-    """Run a function of a module, which is imported here, as a command of its own; leave with what it returns.
+    """Run a function of a module, which is imported here, as a command of its own; leave with what
+    it returns.
 
     The exit code is the function's, that of its SystemExit, or 130 or 143 where a signal ended it.
     """
     signal.pthread_sigmask(signal.SIG_BLOCK, WATCHED)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     parent = os.getpid()
-    _prctl(PR_SET_CHILD_SUBREAPER, 1)  # before there is anybody who may end first and leave somebody behind
+    # before there is anybody who may end first and leave somebody behind
+    _prctl(PR_SET_CHILD_SUBREAPER, 1)
+
     try:
         child = os.fork()
     except OSError:  # no room for another process: it goes without
         child = 0
     if child:
         _watch(child)
+
     _ASKED.guarded = _ASKED.at_once = True
     listen()
     signal.pthread_sigmask(signal.SIG_UNBLOCK, WATCHED)
     sys.unraisablehook = _unraisable
+
     if os.getpid() != parent:
         _die_with(parent)
     command = getattr(importlib.import_module(module), function)
@@ -146,7 +163,7 @@ def leave_as(code: int) -> NoReturn:
 
 
 def _code(command: Any) -> int:
-    """What a command's function ends with."""
+    """Return the exit code that a command's function ends with."""
     try:
         code = command()
     except SystemExit as end:
@@ -155,7 +172,8 @@ def _code(command: Any) -> int:
         _say_interrupted()
         return 128 + (_ASKED.number or signal.SIGINT)
     except BaseException as error:
-        if _ASKED.number:  # what is left of an interruption, after a library has turned it into something else
+        # what is left of an interruption, after a library has turned it into something else
+        if _ASKED.number:
             _say_interrupted()
             return 128 + _ASKED.number
         sys.excepthook(type(error), error, error.__traceback__)
@@ -177,32 +195,42 @@ def _unraisable(unraisable: Any) -> None:
 
 
 def _watch(child: int) -> NoReturn:
-    """Wait for the one who works, hand on what is asked, end it when its time is over, and leave as it did."""
+    """Wait for the one who works, forward signals, end it when its time is over, and leave as it
+    did.
+    """
     number, since, waited, killed = 0, 0.0, 0.0, False
+
     while True:
         found, status = os.waitpid(child, os.WNOHANG)
         if found:
             break
+
         came = signal.sigtimedwait(WATCHED, 0.05 if number else 3600.0)
         if came is not None and came.si_signo in ENDING and not number:
             number, since, waited = came.si_signo, time.monotonic(), _waited(child)
             os.kill(child, number)
+
         if number and not killed:
             passed = time.monotonic() - since
             if passed > PATIENCE_AT_MOST or passed - (_waited(child) - waited) > PATIENCE:
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()
-    if not number:  # a terminal asks both at once, and the one who works may have left before this one looked
+
+    # a terminal asks both at once, and the one who works may have left before this one looked
+    if not number:
         came = signal.sigtimedwait(ENDING, 0.0)
         number = came.si_signo if came is not None else 0
+
     if number:
         _end_orphans()
+
     if os.WIFEXITED(status):
         code = os.WEXITSTATUS(status)
         os._exit(128 + number if number and code else code)
     if number:
         os._exit(128 + number)
+
     deadly = os.WTERMSIG(status)
     if deadly != signal.SIGKILL:
         signal.signal(deadly, signal.SIG_DFL)
@@ -212,7 +240,9 @@ def _watch(child: int) -> NoReturn:
 
 
 def _waited(process: int) -> float:
-    """Seconds for which a process was ready to run and others had the cores; 0 where the kernel does not say."""
+    """Return the seconds for which a process was ready to run and others had the cores; 0 where the
+    kernel does not say.
+    """
     try:
         with open(f"/proc/{process}/schedstat", encoding="ascii") as file:
             return int(file.read().split()[1]) * 1e-9
@@ -221,7 +251,9 @@ def _waited(process: int) -> float:
 
 
 def _end_orphans() -> None:
-    """End what the one who worked has started and left behind in our session; a browser has one of its own."""
+    """End what the one who worked has started and left behind in our session; a browser has one of
+    its own.
+    """
     end = time.monotonic() + 0.5
     while time.monotonic() < end:
         try:
@@ -253,7 +285,7 @@ def _session(process: int) -> int:
 
 
 def _prctl(option: int, value: int) -> None:
-    """linux/prctl.h; does nothing elsewhere."""
+    """Call prctl of linux/prctl.h; do nothing elsewhere."""
     if sys.platform == "linux":
         import ctypes
 

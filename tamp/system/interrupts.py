@@ -1,4 +1,4 @@
-"""A hard end for computations that do not look at the clock."""
+"""Hard timeouts: an alarm ends computations that do not look at the clock."""
 
 from __future__ import annotations
 
@@ -29,12 +29,16 @@ SOON = 0.005
 """Seconds until the next try, when the first one met a frame in which nothing can be raised."""
 
 INTERRUPT_AGAIN = 0.1
-"""Seconds of computing between a Ctrl-C and the same again, should it have been swallowed: numba drops what is raised
-while a kernel's arrays are wrapped, and so does an `except:` in a user's function."""
+"""Seconds of computing between a Ctrl-C and the same again, should it have been swallowed: numba
+drops what is raised while a kernel's arrays are wrapped, and so does an `except:` in a user's
+function.
+"""
 
 
 def _swallows(frame: FrameType | None) -> bool:
-    """Whether Python drops what is raised here: in a finaliser, or in what the garbage collector calls."""
+    """Check whether Python drops what is raised here: in a finaliser, or in what the garbage
+    collector calls.
+    """
     collecting = {getattr(callback, "__code__", None) for callback in gc.callbacks}
     while frame is not None:
         if frame.f_code in collecting or frame.f_code.co_name == "__del__":
@@ -48,19 +52,20 @@ def _look_away(frame: FrameType, event: str, argument: object) -> None:
 
 
 class Alarm:
-    """Raises OutOfTime in a computation shortly after the deadline, even inside a function that never returns; not
-    when it is known already (`Deadline.ended`).
+    """Raises OutOfTime in a computation shortly after the deadline, even inside a function that
+    never returns; not when it is known already (`Deadline.ended`).
 
-    Ctrl-C, too, is raised again until it is heard, and SIGTERM in a guarded command. Works in the main thread of
-    systems with SIGALRM; elsewhere the deadline is only kept by those who look at it. One alarm may run inside another:
-    the outer one's time goes on.
+    Ctrl-C, too, is raised again until it is heard, and SIGTERM in a guarded command. Works in the
+    main thread of systems with SIGALRM; elsewhere the deadline is only kept by those who look at
+    it. One alarm may run inside another: the outer one's time goes on.
 
     Args:
         deadline: When to ring, but for the grace.
         grace: Seconds after the deadline.
         again: Seconds between one ring and the next, should the first one have been swallowed.
-        strangers: The code of those of our functions that call what may never return. A function that they call and
-            that has swallowed a ring meets it again at each of its lines; they themselves and what is above do not.
+        strangers: The code of those of our functions that call what may never return. A function
+            that they call and that has swallowed a ring meets it again at each of its lines; they
+            themselves and what is above do not.
     """
 
     def __init__(
@@ -77,7 +82,8 @@ class Alarm:
         self._late = False
 
     def run(self, work: Callable[[], Result]) -> Result:
-        """Call a function, in which alone the alarm rings; when this returns or raises, all is as it was.
+        """Call a function, in which alone the alarm rings; when this returns or raises, all is as
+        it was.
 
         Raises:
             OutOfTime: As the function has let it out.
@@ -85,6 +91,7 @@ class Alarm:
         """
         if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
             return work()
+
         timed = self._deadline.seconds < threading.TIMEOUT_MAX
         ends = [
             number
@@ -92,10 +99,12 @@ class Alarm:
             if signal.getsignal(number) is guard.hear
             or (number == signal.SIGINT and signal.getsignal(number) is signal.default_int_handler)
         ]  # not those that an outer alarm hears, nor those of the user
+
         began = counted()
         left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0) if timed else (0.0, 0.0)
         mine = [*([signal.SIGALRM] if timed else []), *([signal.SIGVTALRM, *ends] if ends else [])]
         before: dict[int, Any] = {}
+
         try:
             for number in mine:
                 before[number] = signal.signal(number, self._end if number in ends else self._ring)
@@ -109,6 +118,7 @@ class Alarm:
                 signal.setitimer(signal.ITIMER_REAL, 0.0)
             for number, handler in before.items():
                 signal.signal(number, handler)
+
             if self._swallowed:
                 sys.settrace(None)
             if left > 0.0:
@@ -121,7 +131,9 @@ class Alarm:
                 raise KeyboardInterrupt
 
     def _inside(self, work: Callable[[], Result]) -> Result:
-        """The frame under which the alarm rings: on the way out of it nothing can be raised any more."""
+        """Return the frame under which the alarm rings: on the way out of it nothing can be raised
+        any more.
+        """
         self._inner = sys._getframe()
         try:
             return work()
@@ -129,11 +141,13 @@ class Alarm:
             self._inner = None
 
     def _set(self) -> None:
-        """Wind the clock."""
-        signal.setitimer(signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again)
+        """Set the timer of the alarm."""
+        signal.setitimer(
+            signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again
+        )
 
     def _is_inside(self, frame: FrameType | None) -> bool:
-        """Whether a frame is one of the computation's."""
+        """Check whether a frame is one of the computation's."""
         while frame is not None and frame is not self._inner:
             frame = frame.f_back
         return frame is not None and self._inner is not None
@@ -152,17 +166,21 @@ class Alarm:
         self._ring(signal.SIGVTALRM, frame)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        """Raise, if this is a place for it."""
+        """Handle the alarm: raise, if this is a place for it."""
         if self._deadline.ended or not self._is_inside(frame):
             return
+
         timed = number == signal.SIGALRM
-        if timed and (STANDSTILL.depth or self._deadline.left() > 0.0):  # kernels were compiled, or still are
+        # kernels were compiled, or still are
+        if timed and (STANDSTILL.depth or self._deadline.left() > 0.0):
             self._set()
             return
+
         if _swallows(frame):
             again = self._again if timed else INTERRUPT_AGAIN
             signal.setitimer(signal.ITIMER_REAL if timed else signal.ITIMER_VIRTUAL, SOON, again)
             return
+
         error = OutOfTime if timed else KeyboardInterrupt
         if self._swallowed:
             called = self._called(frame)
@@ -174,7 +192,9 @@ class Alarm:
         raise error
 
     def _called(self, frame: FrameType | None) -> list[FrameType]:
-        """The frames of the function that may never return; none when it is not in one that the ring comes."""
+        """List the frames of the function that may never return; none when it is not in one that
+        the ring comes.
+        """
         inner: list[FrameType] = []
         while frame is not None:
             if frame.f_code in self._strangers:
@@ -183,8 +203,12 @@ class Alarm:
             frame = frame.f_back
         return []
 
-    def _insist(self, error: type[BaseException], frame: FrameType, event: str, argument: object) -> Any:
-        """Raise in the handler, too, that catches everything; Python then forgets this trace function by itself."""
+    def _insist(
+        self, error: type[BaseException], frame: FrameType, event: str, argument: object
+    ) -> Any:
+        """Raise in the handler, too, that catches everything; Python then forgets this trace
+        function by itself.
+        """
         if event == "line" and self._inner is not None:
             raise error
         return partial(self._insist, error)

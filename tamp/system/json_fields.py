@@ -1,4 +1,6 @@
-"""Reading a JSON document whose shape is not to be trusted: every surprise is an InputError that says where."""
+"""Validation of a JSON document whose shape is not to be trusted: every surprise is an InputError
+that says where.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,10 @@ class Field:
     def __init__(self, value: Any, where: str, file: Path | None) -> None:
         self.value, self.where, self.file = value, where, file
 
-    def wrong(self, message: str, *, found: str | None = None, choices: tuple[str, ...] = ()) -> InputError:
-        """The error to raise about this field."""
+    def wrong(
+        self, message: str, *, found: str | None = None, choices: tuple[str, ...] = ()
+    ) -> InputError:
+        """Return the error to raise about this field."""
         where = f"{self.where}: " if self.where else ""
         return InputError(f"{where}{message}", file=self.file, found=found, choices=choices)
 
@@ -38,36 +42,47 @@ class Field:
         return found
 
     def get(self, key: str) -> Field | None:
-        """The field under a key, or None when it is absent or null."""
+        """Return the field under a key, or None when it is absent or null."""
         value = self.mapping().get(key)
-        return None if value is None else Field(value, f"{self.where}.{key}" if self.where else key, self.file)
+        return (
+            None
+            if value is None
+            else Field(value, f"{self.where}.{key}" if self.where else key, self.file)
+        )
 
     def mapping(self) -> dict[str, Any]:
-        """As an object."""
+        """Read the field as an object."""
         if not isinstance(self.value, dict):
             raise self.wrong(f"an object is expected, not {_kind(self.value)}")
         return self.value
 
     def fields(self) -> dict[str, Field]:
-        """The object's members."""
-        return {key: Field(value, f"{self.where}.{key}", self.file) for key, value in self.mapping().items()}
+        """Read the field as an object; return its members."""
+        return {
+            key: Field(value, f"{self.where}.{key}", self.file)
+            for key, value in self.mapping().items()
+        }
 
     def items(self) -> list[Field]:
-        """The array's elements."""
+        """Read the field as an array; return its elements."""
         if not isinstance(self.value, list):
             raise self.wrong(f"an array is expected, not {_kind(self.value)}")
-        return [Field(value, f"{self.where}[{at}]", self.file) for at, value in enumerate(self.value)]
+        return [
+            Field(value, f"{self.where}[{at}]", self.file) for at, value in enumerate(self.value)
+        ]
 
     def text(self, choices: tuple[str, ...] = ()) -> str:
-        """As a string, one of `choices` if there are any."""
+        """Read the field as a string, one of `choices` if there are any."""
         if not isinstance(self.value, str):
             raise self.wrong(f"a string is expected, not {_kind(self.value)}")
         if choices and self.value not in choices:
-            raise self.wrong(f"'{clipped(self.value)}' is unknown", found=self.value, choices=choices)
+            raise self.wrong(
+                f"'{clipped(self.value)}' is unknown", found=self.value, choices=choices
+            )
         return self.value
 
     def number(self, least: float = -math.inf) -> float:
-        """As a finite number."""
+        """Read the field as a finite number."""
         if isinstance(self.value, bool) or not isinstance(self.value, int | float):
             raise self.wrong(f"a number is expected, not {_kind(self.value)}")
         try:
@@ -83,17 +98,20 @@ class Field:
         return number
 
     def numbers(self, size: int | None = None) -> Array:
-        """As an array of finite numbers, shape (size,)."""
-        plain = isinstance(self.value, list) and all(type(item) in (float, int) for item in self.value)
+        """Read the field as an array of finite numbers, shape (size,)."""
+        plain = isinstance(self.value, list) and all(
+            type(item) in (float, int) for item in self.value
+        )
         array = np.array(self.value, dtype=float) if plain else np.array([math.nan])
         if not (np.abs(array) <= LARGEST).all():
-            array = np.array([item.number() for item in self.items()], dtype=float)  # which says where
+            # which says where
+            array = np.array([item.number() for item in self.items()], dtype=float)
         if size is not None and len(array) != size:
             raise self.wrong(f"{size} numbers are expected, not {len(array)}")
         return array
 
     def rows(self, width: int) -> Array:
-        """As rows of finite numbers, shape (n >= 1, width)."""
+        """Read the field as rows of finite numbers, shape (n >= 1, width)."""
         items = self.items()
         if not items:
             raise self.wrong("at least one row is expected")
@@ -101,10 +119,16 @@ class Field:
 
 
 def clipped(word: str, length: int = 60) -> str:
-    """The beginning of a word that may be very long."""
+    """Clip a word that may be very long to its beginning."""
     return word if len(word) <= length else f"{word[:length]}..."
 
 
 def _kind(value: Any) -> str:
-    names = {dict: "an object", list: "an array", str: "a string", bool: "true or false", type(None): "null"}
+    names = {
+        dict: "an object",
+        list: "an array",
+        str: "a string",
+        bool: "true or false",
+        type(None): "null",
+    }
     return names.get(type(value), "a number")

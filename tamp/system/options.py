@@ -119,11 +119,14 @@ def changed(options: Any, kind: type[Note]) -> Iterator[tuple[str, Note]]:
                 yield option.name, note
 
 
-def read_options(kind: type[Options], program: str, arguments: Sequence[str] | None, more: str = "") -> Options:
+def read_options(
+    kind: type[Options], program: str, arguments: Sequence[str] | None, more: str = ""
+) -> Options:
     """Read the words of a command line by tyro.
 
     Args:
-        kind: A frozen dataclass with a docstring a field; what its own docstring says is the help's head.
+        kind: A frozen dataclass with a docstring a field; what its own docstring says is the help's
+            head.
         program: The command's name.
         arguments: The words; None for those of the process.
         more: What the help says below that head.
@@ -136,11 +139,14 @@ def read_options(kind: type[Options], program: str, arguments: Sequence[str] | N
     _check_names(kind, words)
     description = f"{inspect.getdoc(kind)}\n\n{more}" if more else None
     return one_line_errors(
-        lambda: tyro.cli(kind, prog=program, args=words, description=description, config=CONFIG), program
+        lambda: tyro.cli(kind, prog=program, args=words, description=description, config=CONFIG),
+        program,
     )
 
 
-def read_command(commands: Mapping[str, type[Options]], program: str, arguments: Sequence[str]) -> Options:
+def read_command(
+    commands: Mapping[str, type[Options]], program: str, arguments: Sequence[str]
+) -> Options:
     """Read the words of a command line that begins with a command of its own, by tyro.
 
     Args:
@@ -157,7 +163,11 @@ def read_command(commands: Mapping[str, type[Options]], program: str, arguments:
         _check_names(commands[name], words, f"See {program} {name} --help")
     return one_line_errors(
         lambda: tyro.extras.subcommand_cli_from_dict(
-            dict(commands), prog=program, args=list(arguments), config=CONFIG, sort_subcommands=False
+            dict(commands),
+            prog=program,
+            args=list(arguments),
+            config=CONFIG,
+            sort_subcommands=False,
         ),
         f"{program} {name}",
     )
@@ -183,13 +193,15 @@ def one_line_errors(parse: Callable[[], Options], program: str) -> Options:
 
 
 def unread() -> SystemExit:
-    """End a command whose help nobody reads to its end (`--help | head`); Python must not flush the rest."""
+    """End a command whose help nobody reads to its end (`--help | head`); Python must not flush the
+    rest.
+    """
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return SystemExit(0)
 
 
 def sentence(box: str) -> str:
-    """Find what tyro says in the first paragraph of its frame, in words that are no programmer's."""
+    """Find what tyro says in the first paragraph of its frame, in words of no programmer."""
     lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
     title, *said = [line for line in lines if line] or ["bad arguments"]
 

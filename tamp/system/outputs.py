@@ -1,4 +1,4 @@
-"""Where a command writes: nowhere that it reads from, whole or not at all."""
+"""Outputs of a command: written atomically, and nowhere that the command reads from."""
 
 from __future__ import annotations
 
@@ -17,13 +17,23 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.system.reading import is_file
 
-STANDARD = {"/dev/stdout": 1, "/dev/fd/1": 1, "/proc/self/fd/1": 1, "/dev/stderr": 2, "/dev/fd/2": 2}
+STANDARD = {
+    "/dev/stdout": 1,
+    "/dev/fd/1": 1,
+    "/proc/self/fd/1": 1,
+    "/dev/stderr": 2,
+    "/dev/fd/2": 2,
+}
 """Names of what a process has open already: there, text is added to what was printed."""
 
 UNFINISHED = re.compile(r"^\.tamp-[0-9a-f]{32}\.unfinished$")
-"""Names of files that are being written. Their writer holds a lock on them; without one, it has been killed."""
+"""Names of files that are being written. Their writer holds a lock on them; without one, it has
+been killed.
+"""
 
-TEXTURES = re.compile(rb"^\s*(?:mtllib|map_\w+|bump|disp|decal|norm)\s+(?:-\S+\s+)*(\S.*?)\s*$", re.MULTILINE)
+TEXTURES = re.compile(
+    rb"^\s*(?:mtllib|map_\w+|bump|disp|decal|norm)\s+(?:-\S+\s+)*(\S.*?)\s*$", re.MULTILINE
+)
 """In an OBJ or MTL file: further files that belong to it."""
 
 NAMED = re.compile(rb'(?:filename|"uri")\s*[=:]\s*"([^"]{1,500})"')
@@ -34,12 +44,15 @@ MOST_SEARCHED = 20_000_000
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file so that a reader in another process sees all of it or nothing, and a kill leaves the old one.
+    """Write a file atomically: a reader in another process sees all of it or nothing, and a kill
+    leaves the old one.
 
-    A link is followed, the permissions of a file that is replaced are kept; devices are written as they are.
+    A link is followed, the permissions of a file that is replaced are kept; devices are written as
+    they are.
 
     Raises:
-        OSError: The folder cannot be made or written, the disk is full, or the file is not to be written.
+        OSError: The folder cannot be made or written, the disk is full, or the file is not to be
+            written.
     """
     if _is_device(path):
         _write_device(path, content)
@@ -62,15 +75,22 @@ def check_writable(path: Path, option: str = "--out") -> None:
         InputError: A folder, no regular file, or no place where one can write.
     """
     elsewhere = f"Choose another place with {option}"
+
     try:
         if path.is_dir():
-            raise InputError("the output is a folder", file=path, remedy=f"Name a file: {option} {path / 'plan.json'}")
+            raise InputError(
+                "the output is a folder",
+                file=path,
+                remedy=f"Name a file: {option} {path / 'plan.json'}",
+            )
         if _is_device(path):
             return
+
         if path.exists():
             if not path.is_file():
                 raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
             _check_mode(path)
+
         folder = Path(os.path.realpath(path)).parent
         while not folder.exists():
             folder = folder.parent
@@ -79,9 +99,13 @@ def check_writable(path: Path, option: str = "--out") -> None:
         if len(os.fsencode(path.name)) > os.pathconf(folder, "PC_NAME_MAX"):
             raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
     except OSError as error:
-        raise InputError(f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere) from None
+        raise InputError(
+            f"the output cannot be written: {error.strerror}", file=path, remedy=elsewhere
+        ) from None
     except ValueError:
-        raise InputError("the output cannot have such a name", file=path, remedy=elsewhere) from None
+        raise InputError(
+            "the output cannot have such a name", file=path, remedy=elsewhere
+        ) from None
 
 
 def check_outputs(outputs: Mapping[str, Path | None], inputs: Iterable[Path] = ()) -> None:
@@ -96,7 +120,11 @@ def check_outputs(outputs: Mapping[str, Path | None], inputs: Iterable[Path] = (
     Raises:
         InputError: Naming both.
     """
-    written = {option: path for option, path in outputs.items() if path is not None and not _is_device(path)}
+    written = {
+        option: path
+        for option, path in outputs.items()
+        if path is not None and not _is_device(path)
+    }
     if not written:
         return
     taken = {path: option for option, path in written.items()}
@@ -115,7 +143,8 @@ def check_outputs(outputs: Mapping[str, Path | None], inputs: Iterable[Path] = (
 
 @contextlib.contextmanager
 def locked_folder(folder: Path) -> Iterator[None]:
-    """Keep out other processes of ours that would read and rewrite a file in this folder at the same time.
+    """Keep out other processes of ours that would read and rewrite a file in this folder at the
+    same time.
 
     Where a file system has no locks there is none.
     """
@@ -138,9 +167,13 @@ def _same(one: Path, other: Path) -> bool:
 
 
 def _companions(file: Path) -> Iterator[Path]:
-    """Files that a mesh, a material or a robot's description names, as far as they are there."""
+    """List the files that a mesh, a material or a robot's description names, as far as they are
+    there.
+    """
     kind = file.suffix.lower()
-    pattern = TEXTURES if kind in (".obj", ".mtl") else NAMED if kind in (".urdf", ".gltf") else None
+    pattern = (
+        TEXTURES if kind in (".obj", ".mtl") else NAMED if kind in (".urdf", ".gltf") else None
+    )
     if pattern is None or not is_file(file) or file.stat().st_size > MOST_SEARCHED:
         return
     for name in dict.fromkeys(pattern.findall(file.read_bytes())):
@@ -170,14 +203,14 @@ def _write_device(path: Path, content: bytes) -> None:
 
 
 def _make_folder(folder: Path) -> list[Path]:
-    """Make a folder with those above it; the ones that were not there, the innermost first."""
+    """Make a folder with those above it; return those that were not there, innermost first."""
     missing = [one for one in (folder, *folder.parents) if not one.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     return missing
 
 
 def _check_mode(path: Path) -> None:
-    """A file that its owner has protected is not replaced, though the folder would allow it."""
+    """Refuse to replace a file that its owner has protected, though the folder would allow it."""
     if not os.access(path, os.W_OK):
         raise OSError(errno.EACCES, os.strerror(errno.EACCES))
 
@@ -189,8 +222,10 @@ def _replace(path: Path, content: bytes) -> None:
             raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
         _check_mode(path)
         mode = stat.S_IMODE(path.stat().st_mode)
+
     _remove_unfinished(path.parent)
     temporary, descriptor = _unfinished(path.parent)
+
     try:
         with os.fdopen(descriptor, "wb") as stream:
             stream.write(content)
@@ -206,7 +241,7 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _unfinished(folder: Path) -> tuple[Path, int]:
-    """A new file that only this process writes, locked as long as it is open."""
+    """Create a file that only this process writes, locked as long as it is open."""
     while True:
         path = folder / f".tamp-{uuid.uuid4().hex}.unfinished"
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)

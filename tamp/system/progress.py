@@ -1,4 +1,4 @@
-"""What a command says while it works and when it is done."""
+"""Progress reports of a command: while it works and when it is done."""
 
 from __future__ import annotations
 
@@ -18,8 +18,11 @@ OFTEN = 0.1
 WITHOUT_NEWS = 0.5
 """and while there is none."""
 
-_PRINTING = threading.RLock()  # held over a fork, so that no child begins with the other thread's half line
-os.register_at_fork(before=_PRINTING.acquire, after_in_parent=_PRINTING.release, after_in_child=_PRINTING.release)
+# held over a fork, so that no child begins with the other thread's half line
+_PRINTING = threading.RLock()
+os.register_at_fork(
+    before=_PRINTING.acquire, after_in_parent=_PRINTING.release, after_in_child=_PRINTING.release
+)
 
 
 def say(text: str) -> None:
@@ -32,10 +35,11 @@ def say(text: str) -> None:
 
 @dataclass
 class Progress:
-    """A line that says what a command does: rewritten on a terminal, elsewhere printed after two silent seconds.
+    """A line that says what a command does: rewritten on a terminal, elsewhere printed after two
+    silent seconds.
 
-    Counters and clock only ever grow: what is done in another try comes on top of what was shown. While it is begun, a
-    thread speaks for a main thread that is busy in a long search.
+    Counters and clock only ever grow: what is done in another try comes on top of what was shown.
+    While it is begun, a thread speaks for a main thread that is busy in a long search.
     """
 
     quiet: bool
@@ -86,13 +90,18 @@ class Progress:
         self._tell(OFTEN)
 
     def compiling(self, count: int) -> None:
-        """Say that kernels are being compiled, of which so many are done: on a terminal in a line that is rewritten."""
+        """Say that kernels are being compiled, of which so many are done: on a terminal in a line
+        that is rewritten.
+        """
         terminal = sys.stderr.isatty()
         if self.quiet or (count and not terminal):
             return
         text = "  compiling kernels, once for this installation"
         print(
-            f"\r{text}: {count}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True
+            f"\r{text}: {count}\x1b[K" if terminal else text,
+            end="" if terminal else "\n",
+            file=sys.stderr,
+            flush=True,
         )
         self._shown = terminal
 
@@ -115,16 +124,24 @@ class Progress:
                 if self.quiet or now - self._last < (often if terminal else SILENCE):
                     return
                 self._last = now
+
                 skeletons, draws = self._counted
-                counts = f"{skeletons} skeletons · {draws:,} samples · " if skeletons or draws else ""
+                counts = (
+                    f"{skeletons} skeletons · {draws:,} samples · " if skeletons or draws else ""
+                )
                 text = f"  {self.phase:<11} {counts}{now - self._started:.1f} s"
+
                 print(
-                    f"\r{text}\x1b[K" if terminal else text, end="" if terminal else "\n", file=sys.stderr, flush=True
+                    f"\r{text}\x1b[K" if terminal else text,
+                    end="" if terminal else "\n",
+                    file=sys.stderr,
+                    flush=True,
                 )
                 self._shown = terminal
             except (OSError, ValueError):  # nobody listens any more
                 self.quiet = True
 
     def _speak(self, stop: threading.Event) -> None:
-        while not stop.wait(WITHOUT_NEWS / 2):  # the terminal's clock runs on while there is no news
+        # the terminal's clock runs on while there is no news
+        while not stop.wait(WITHOUT_NEWS / 2):
             self._tell(WITHOUT_NEWS)

@@ -64,5 +64,7 @@ def python_object(path: Path, source: str | None = None) -> Any:
         _Text(path, source).exec_module(module)
     except Exception as error:
         line = error.lineno if isinstance(error, SyntaxError) else None
-        raise InputError(f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line) from error
+        raise InputError(
+            f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line
+        ) from error
     return vars(module).get(NAME)

@@ -1,4 +1,6 @@
-"""Several runs of one problem at a time, each in a process of its own: the first answer that ends it counts."""
+"""Portfolio of several runs of one problem at a time, each in a process of its own: the first
+answer that ends it counts.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ LOOK = 0.2
 """Seconds between two looks whether somebody wants it to end."""
 
 BEHIND = 10
-"""How much nicer the other runs are than the first one, so that it is not slowed down where cores are scarce."""
+"""How much nicer the other runs are than the first one, so that it is not slowed down where cores
+are scarce.
+"""
 
 STEP = 1000
 """From one run's seed to the next one's."""
@@ -41,7 +45,7 @@ class First(Generic[Answer]):
 
 
 def member_seed(seed: int, number: int) -> int:
-    """The seed of run `number`, the first being 0: that run alone repeats what it found."""
+    """Return the seed of run `number`, the first being 0: that run alone repeats what it found."""
     moved = seed + STEP * number
     return moved if abs(moved) < 2**64 else seed - STEP * number
 
@@ -54,8 +58,8 @@ def race(
 ) -> First[Answer] | None:
     """Start all runs, wait for the first answer that ends the race, and kill the others.
 
-    The processes are forks: they know the problem already, and only answers travel. They leave with this process,
-    however it ends. Of answers that come at one time, that of the first run counts.
+    The processes are forks: they know the problem already, and only answers travel. They leave with
+    this process, however it ends. Of answers that come at one time, that of the first run counts.
 
     Args:
         runs: Each is given `tell` and returns its answer, which must be picklable.
@@ -75,18 +79,24 @@ def race(
     processes: list[Any] = []
     open_: dict[Connection, int] = {}
     answers: dict[int, Answer] = {}
+
     try:
         for number, run in enumerate(runs):
             ours, theirs = context.Pipe(duplex=False)
-            process = context.Process(target=_member, args=(run, number, theirs, lifeline, held), daemon=True)
+            process = context.Process(
+                target=_member, args=(run, number, theirs, lifeline, held), daemon=True
+            )
             with guard.Held():
                 process.start()
             theirs.close()
             processes.append(process)
             open_[ours] = number
+
         while open_ and deadline.elapsed() < deadline.seconds + LATE:
-            if guard.asked():  # what it raised was dropped, as in a fork or while an answer was read
+            if guard.asked():
+                # what it raised was dropped, as in a fork or while an answer was read
                 raise KeyboardInterrupt
+
             left = deadline.seconds + LATE - deadline.elapsed()
             ready = set(wait(list(open_), min(left, LOOK)))
             for pipe, number in [item for item in open_.items() if item[0] in ready]:
@@ -95,16 +105,19 @@ def race(
                 except EOFError:  # it broke down, and has said so itself
                     del open_[pipe]
                     continue
+
                 if kind == "news":
                     if news is not None:
                         news(number, content)
                     continue
+
                 del open_[pipe]
                 if kind == "wrong":
                     raise content
                 if ends(number, content):
                     return First(number, content)
                 answers[number] = content
+
     finally:
         with guard.Held():
             for process in processes:
@@ -113,6 +126,7 @@ def race(
                 process.join()
         os.close(lifeline)
         os.close(held)
+
     if answers:
         number = min(answers)
         return First(number, answers[number])
@@ -121,8 +135,10 @@ def race(
     return None
 
 
-def _member(run: Callable[[Tell], Any], number: int, pipe: Connection, lifeline: int, held: int) -> None:
-    """One run, in its process."""
+def _member(
+    run: Callable[[Tell], Any], number: int, pipe: Connection, lifeline: int, held: int
+) -> None:
+    """Execute one run, in its process."""
     guard.obey_only_parent()
     os.close(held)
     threading.Thread(target=_leave_with, args=(lifeline,), daemon=True).start()
@@ -140,6 +156,8 @@ def _member(run: Callable[[Tell], Any], number: int, pipe: Connection, lifeline:
 
 
 def _leave_with(lifeline: int) -> None:
-    """End this process once the one that started it is gone: then nobody holds the other end of the pipe."""
+    """End this process once the one that started it is gone: then nobody holds the other end of the
+    pipe.
+    """
     os.read(lifeline, 1)
     os._exit(1)

@@ -1,4 +1,4 @@
-"""The one door through which files of bytes, text and JSON come in: what they are is found out before they are read."""
+"""Reading of input files, bytes, text and JSON: what they are is found out before they are read."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ KINDS = (
 
 
 def is_file(path: Path) -> bool:
-    """Whether a regular file of that name is there; a name that cannot be one is none."""
+    """Check whether a regular file of that name is there; a name that cannot be one is none."""
     return os.path.isfile(path)  # pathlib's raises for a name that is too long
 
 
 def read_bytes(file: Path, most: int = MOST_BYTES, *, kind: str = "file") -> bytes:
-    """The bytes of a regular file.
+    """Read the bytes of a regular file.
 
     Args:
         file: Its name; a folder, a device, a pipe or a socket is refused, and never waited for.
@@ -63,7 +63,7 @@ def read_bytes(file: Path, most: int = MOST_BYTES, *, kind: str = "file") -> byt
 
 
 def read_text(file: Path, most: int = MOST_BYTES, *, kind: str = "file") -> str:
-    """The text of a regular file in UTF-8, as `read_bytes` reads it.
+    """Read the text of a regular file in UTF-8, as `read_bytes` reads it.
 
     Raises:
         InputError: As for `read_bytes`; or it is no text, with the line.
@@ -77,17 +77,17 @@ def read_text(file: Path, most: int = MOST_BYTES, *, kind: str = "file") -> str:
 
 
 def read_json(file: Path, most: int = MOST_BYTES, *, kind: str = "plan file") -> Any:
-    """The JSON document in a regular file.
+    """Read the JSON document in a regular file.
 
     Raises:
-        InputError: As for `read_text`; or it is not JSON, nested too deeply, has a number that is not finite or has too
-            many digits, or a key twice.
+        InputError: As for `read_text`; or it is not JSON, nested too deeply, has a number that is
+            not finite or has too many digits, or a key twice.
     """
     return parse_json(read_text(file, most, kind=kind), file, kind=kind)
 
 
 def parse_json(text: str, file: Path | None = None, *, kind: str = "plan file") -> Any:
-    """The JSON document in a text.
+    """Parse the JSON document in a text.
 
     Raises:
         InputError: As for `read_json`.
@@ -97,7 +97,9 @@ def parse_json(text: str, file: Path | None = None, *, kind: str = "plan file") 
             text, parse_constant=_refuse_constant, parse_int=_integer, object_pairs_hook=_unique
         )  # fmt: skip
     except json.JSONDecodeError as error:
-        raise InputError(f"not JSON: {error.msg}", file=file, line=error.lineno, column=error.colno) from None
+        raise InputError(
+            f"not JSON: {error.msg}", file=file, line=error.lineno, column=error.colno
+        ) from None
     except RecursionError:
         raise InputError(f"this is no {kind}: it is nested too deeply", file=file) from None
     except InputError as error:

@@ -1,4 +1,6 @@
-"""Folders that are needed for a moment, as for an engine that takes meshes from files only."""
+"""Temporary folders that are needed for a moment, as for an engine that takes meshes from files
+only.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ OLD = 60.0
 
 @contextlib.contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """A new folder for files of a moment, which is gone afterwards; what killed processes have left goes, too."""
+    """Create a temporary folder, which is gone afterwards; what killed processes have left goes,
+    too.
+    """
     _tidy(Path(tempfile.gettempdir()))
     with tempfile.TemporaryDirectory(prefix=f"tamp-{os.getpid()}-") as folder:
         yield Path(folder)
@@ -29,14 +33,18 @@ def scratch_folder() -> Iterator[Path]:
 
 @cache
 def _tidy(place: Path) -> None:
-    """Once a process."""
+    """Remove what killed processes have left, once a process."""
     with contextlib.suppress(OSError):
         for entry in os.scandir(place):
             named = OURS.match(entry.name)
             if named is None or not entry.is_dir(follow_symlinks=False):
                 continue
             found = entry.stat(follow_symlinks=False)
-            if found.st_uid == os.getuid() and time.time() - found.st_mtime > OLD and not _runs(int(named[1])):
+            if (
+                found.st_uid == os.getuid()
+                and time.time() - found.st_mtime > OLD
+                and not _runs(int(named[1]))
+            ):
                 shutil.rmtree(entry.path, ignore_errors=True)
 
 

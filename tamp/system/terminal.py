@@ -1,4 +1,4 @@
-"""What a command prints: harmless whatever names files hold, and never lost in silence."""
+"""Standard streams of a command: harmless whatever names files hold, never lost in silence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from typing import ParamSpec, TextIO
 from tamp.errors import one_line, printable
 
 UNPRINTED = 2
-"""The exit status of a command whose output could not be printed, or which the machine could not carry out."""
+"""The exit status of a command whose output could not be printed, or which the machine could not
+carry out.
+"""
 
 ERASE = "\x1b[K"
 """What a line of progress ends with: erase the rest of the line."""
@@ -22,7 +24,8 @@ P = ParamSpec("P")
 
 
 class Shown(io.TextIOBase):
-    """A standard stream that never fails: what could not be printed is known at the end, and the work is done.
+    """A standard stream that never fails: what could not be printed is known at the end, and the
+    work is done.
 
     Args:
         stream: The true one; None when it was closed before the program began.
@@ -36,11 +39,12 @@ class Shown(io.TextIOBase):
         self.failure: str | None = None
         if isinstance(stream, io.TextIOWrapper):
             with contextlib.suppress(OSError, ValueError):
-                stream.reconfigure(errors="replace")  # a terminal without our letters is no reason to fail
+                # a terminal without our letters is no reason to fail
+                stream.reconfigure(errors="replace")
 
     @property
     def encoding(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """As the stream has it."""
+        """The encoding of the stream."""
         return self._stream.encoding if self._stream is not None else "utf-8"
 
     def write(self, text: str) -> int:
@@ -49,7 +53,11 @@ class Shown(io.TextIOBase):
             self.failure = "it is closed"
         if self.failure is not None or self._stream is None:
             return len(text)
-        shown = text if self._plain else ERASE.join(printable(part, self._kept) for part in text.split(ERASE))
+        shown = (
+            text
+            if self._plain
+            else ERASE.join(printable(part, self._kept) for part in text.split(ERASE))
+        )
         try:
             self._stream.write(shown)
         except (OSError, ValueError) as error:
@@ -66,15 +74,15 @@ class Shown(io.TextIOBase):
             self._fail(error)
 
     def isatty(self) -> bool:
-        """Whether a terminal shows it."""
+        """Check whether the stream is a terminal."""
         return self._stream is not None and not self._stream.closed and self._stream.isatty()
 
     def writable(self) -> bool:
-        """Always."""
+        """Return True: the stream can always be written."""
         return True
 
     def fileno(self) -> int:
-        """The stream's."""
+        """Return the file descriptor of the stream."""
         if self._stream is None:
             raise OSError("the stream is closed")
         return self._stream.fileno()
@@ -87,12 +95,13 @@ class Shown(io.TextIOBase):
 
 
 def unheard() -> bool:
-    """Whether nobody can read what this command prints."""
+    """Check whether nobody can read what this command prints."""
     return isinstance(sys.stdout, Shown) and sys.stdout.failure is not None
 
 
 def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
-    """Let a command print through streams of this kind, and end with 2 when something could not be printed.
+    """Let a command print through streams of this kind, and end with 2 when something could not be
+    printed.
 
     Args:
         command: Returns, or leaves by `sys.exit` with, its exit status.
@@ -103,18 +112,25 @@ def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
         _fill()
         plain = any(word in ("-h", "--help") for word in (*sys.argv[1:], *_words(args)))
         out, err = Shown(sys.stdout, plain=plain), Shown(sys.stderr, "\n\t\r", plain=plain)
+
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
                 code = command(*args, **kwargs) or 0
             except SystemExit as end:
                 code = end.code if isinstance(end.code, int) else int(end.code is not None)
             except (OSError, MemoryError) as error:  # the machine's fault, wherever it comes
-                place = f"{error.filename}: " if isinstance(error, OSError) and error.filename else ""
-                reason = (isinstance(error, OSError) and error.strerror) or "there is not enough memory"
+                place = (
+                    f"{error.filename}: " if isinstance(error, OSError) and error.filename else ""
+                )
+                reason = (
+                    isinstance(error, OSError) and error.strerror
+                ) or "there is not enough memory"
                 err.write(f"error: {one_line(f'{place}{reason}')}\n")
                 code = UNPRINTED
+
             out.flush()
-            excused = code > 128 or (plain and out.broken)  # interrupted; a help that nobody reads to its end
+            # interrupted; a help that nobody reads to its end
+            excused = code > 128 or (plain and out.broken)
             if out.failure is not None and not excused:
                 err.write(f"error: the standard output cannot be written: {out.failure}\n")
                 code = UNPRINTED
@@ -125,12 +141,14 @@ def spoken(command: Callable[P, int | None]) -> Callable[P, int]:
 
 
 def _words(arguments: tuple[object, ...]) -> list[str]:
-    """The command line's words, when they were passed in the place of those of the process."""
+    """List the command line's words, when they were passed in the place of those of the process."""
     return [str(word) for words in arguments if isinstance(words, list | tuple) for word in words]
 
 
 def _fill() -> None:
-    """Take the places of closed standard streams, so that no file that is opened later gets what is printed there."""
+    """Take the places of closed standard streams, so that no file that is opened later gets what is
+    printed there.
+    """
     for number in range(3):
         try:
             os.fstat(number)
