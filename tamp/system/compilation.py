@@ -64,7 +64,8 @@ def _compare_quickly() -> None:
     Typing looks every `a[i]` up in 14 tables whose keys hold the options, and each look compares
     all of those, one property at a time: a sixth of what compiling takes.
     """
-    if not {"_values", "options", "values"} <= {*dir(TargetConfig)}:  # another numba: it goes on as it is
+    # of another numba: it goes on as it is
+    if not {"_values", "options", "values"} <= {*dir(TargetConfig)}:
         return
 
     hashes: dict[type, int] = {}
