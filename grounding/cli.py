@@ -262,7 +262,7 @@ def _commit() -> str:
 
 
 def _show(text: str, *, last: bool = False, shown: Progress) -> None:
-    """How far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
+    """Show how far it is, on a line that a terminal rewrites; elsewhere printed now and then."""
     if last:
         shown.clear()
     else:

@@ -35,7 +35,8 @@ _HOMES = {
     "solve": "tamp.planner.solve",
     "write_plan": "tamp.plan.write",
 }
-"""Public names and the modules that they are imported from when first used: `import tamp` costs nothing."""
+"""Public names and the modules that they are imported from when first used: `import tamp` costs
+nothing."""
 
 
 def __getattr__(name: str) -> Any:

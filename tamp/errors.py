@@ -69,10 +69,16 @@ class InputError(Exception):
         return placed
 
     def _text(self) -> str:
-        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+        place = ":".join(
+            str(part) for part in (self.file, self.line, self.column) if part is not None
+        )
         text = f"{place}: {self.message}" if place else self.message
         if self.choices:
-            more = f" and {len(self.choices) - MOST_CHOICES:,} more" if len(self.choices) > MOST_CHOICES else ""
+            more = (
+                f" and {len(self.choices) - MOST_CHOICES:,} more"
+                if len(self.choices) > MOST_CHOICES
+                else ""
+            )
             text += f". Choices: {', '.join(self.choices[:MOST_CHOICES])}{more}"
         if self.suggestion:
             text += f". Did you mean '{self.suggestion}'?"
@@ -98,7 +104,11 @@ def printable(text: str, kept: str = "") -> str:
     if text.isprintable():
         return text
     hidden = {one for one in set(text) if one not in kept and unicodedata.category(one) in HIDDEN}
-    return text.translate({ord(one): one.encode("unicode_escape").decode() for one in hidden}) if hidden else text
+    return (
+        text.translate({ord(one): one.encode("unicode_escape").decode() for one in hidden})
+        if hidden
+        else text
+    )
 
 
 def closest(word: str, choices: Iterable[str]) -> str | None:

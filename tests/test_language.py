@@ -10,21 +10,17 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 
-VERB_FOLDERS = (
-    "grounding",
-    "tamp/benchmark",
-    "tamp/execution",
-    "tamp/export",
-    "tamp/simulation",
-    "tamp/view",
-)
-"""Folders whose docstrings open with a verb; to be extended until it is every folder."""
+VERB_FOLDERS = ("grounding", "tamp")
+"""Folders whose docstrings open with a verb."""
 
-AIR_FOLDERS = ("grounding", "tamp/benchmark", "tamp/export", "tamp/view")
-"""Folders whose lines and functions are short, and whose longer functions have air."""
+AIR_FOLDERS = ("grounding", "tamp")
+"""Folders whose lines are short, and whose longer functions have air."""
 
 LINE_CHARACTERS = 100
 FUNCTION_LINES = 60
+LONGER = {"_compiled", "decide", "imagine", "solve_parallel", "verify"}
+"""Functions that are longer still, to be split: nothing may be added."""
+
 AIR_FROM_LINES = 20
 """Lines of code from which on a function has a blank line or a comment between its steps."""
 
@@ -158,12 +154,12 @@ def test_longer_functions_have_air(folder: str) -> None:
 
 @pytest.mark.parametrize("folder", AIR_FOLDERS)
 def test_no_function_is_too_long(folder: str) -> None:
-    found = [
-        f"{place} {node.name}: {len(_code(node))} lines"
+    found = {
+        node.name: f"{place} {node.name}: {len(_code(node))} lines"
         for place, node, _ in _nodes(folder)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and len(_code(node)) > FUNCTION_LINES
-    ]
-    assert not found, "\n".join(found)
+    }
+    assert set(found) == (LONGER if folder == "tamp" else set()), "\n".join(found.values())
 
 
 @pytest.mark.parametrize("folder", AIR_FOLDERS)

@@ -58,7 +58,13 @@ def _run(chosen: Run) -> list[dict[str, Any]]:
         label, texts = labelled(sampler, served)
         samplers[label] = served
         sources |= texts
-    return _lead(chosen, samplers, range(chosen.first, chosen.first + chosen.seeds), chosen.algorithm, sources)
+    return _lead(
+        chosen,
+        samplers,
+        range(chosen.first, chosen.first + chosen.seeds),
+        chosen.algorithm,
+        sources,
+    )
 
 
 def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
@@ -92,7 +98,9 @@ def _lead(
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     problems = [named(problem) for problem in chosen.problems]
     read: list[Path] = []
-    for problem in dict.fromkeys(problems):  # an error in a file is one now, and not one in each run
+    for problem in dict.fromkeys(
+        problems
+    ):  # an error in a file is one now, and not one in each run
         for relation_samplers in samplers.values():
             names, objects = given_by_files(relation_samplers, sources)
             loaded = load_problem(problem, samplers=names, groundings=objects, registry=_registry())
@@ -128,14 +136,14 @@ def _crew(chosen: Run | Fig8, runs: int) -> Crew:
 
 
 def _registry() -> Registry:
-    """The learned samplers."""
+    """Return the learned samplers."""
     from tamp.commands.solve import registry
 
     return registry()
 
 
 def _known() -> Registry:
-    """All samplers by relation and name."""
+    """Return all samplers by relation and name."""
     from tamp.geometric.samplers.registry import SAMPLERS
 
     learned = _registry()
@@ -155,11 +163,15 @@ def _print_tables(lines: Sequence[Mapping[str, Any]], against: str | None = None
     from tamp.benchmark.table import report
 
     samplers = dict.fromkeys(line["config"]["sampler"] for line in lines)
-    if against is not None and against not in samplers:  # of a file's version, the name alone will do
+    if (
+        against is not None and against not in samplers
+    ):  # of a file's version, the name alone will do
         alike = [name for name in samplers if re.sub(r"#[0-9a-f]{8}(?=,|:|$)", "", name) == against]
         against = alike[0] if len(alike) == 1 else against
     if against is not None and against not in samplers:
-        raise InputError(f"no runs with '{against}' among the results", found=against, choices=samplers)
+        raise InputError(
+            f"no runs with '{against}' among the results", found=against, choices=samplers
+        )
     usual = BASELINE if BASELINE in samplers and len(samplers) > 1 else None
     print(report(lines, against or usual))
 

@@ -20,8 +20,9 @@ class Run:
     problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
     """Shipped problems' names, or files."""
     samplers: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("default", "uniform")
-    """NAME or NAME:alone for all relations that have it; on=NAME,inside=NAME; or default: the problem's own. In on=NAME
-    it may also be a file, as for tamp-solve --sampler: on=weights.safetensors, or on=mine.py, which is run."""
+    """NAME or NAME:alone for all relations that have it; on=NAME,inside=NAME; or default: the
+    problem's own. In on=NAME it may also be a file, as for tamp-solve --sampler:
+    on=weights.safetensors, or on=mine.py, which is run."""
     seeds: Annotated[int, tyro.conf.arg(metavar="COUNT")] = 10
     """How many seeds each; all samplers get the same ones."""
     first: Annotated[int, tyro.conf.arg(metavar="SEED")] = 0
@@ -30,9 +31,13 @@ class Run:
     """Of one run."""
     algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
     """adaptive or incremental."""
-    jobs: Annotated[int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")] = None
+    jobs: Annotated[
+        int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")
+    ] = None
     """Runs at a time."""
-    ray: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")] = None
+    ray: Annotated[
+        str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")
+    ] = None
     """Run on a Ray cluster: its address, auto, or local."""
     out: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("bench.jsonl")
     """Where the results are, one JSON line a run; what is there is not run again."""
@@ -42,7 +47,9 @@ class Run:
 
 @dataclass(frozen=True)
 class Fig8:
-    """The paper's comparison: every sampler there is, 100 runs of 30 s each, then tables and pictures."""
+    """The paper's comparison: every sampler there is, 100 runs of 30 s each, then tables and
+    pictures.
+    """
 
     problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
     """Shipped problems' names, or files."""
@@ -50,9 +57,13 @@ class Fig8:
     """How many runs each."""
     time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
     """Of one run."""
-    jobs: Annotated[int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")] = None
+    jobs: Annotated[
+        int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")
+    ] = None
     """Runs at a time."""
-    ray: Annotated[str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")] = None
+    ray: Annotated[
+        str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")
+    ] = None
     """Run on a Ray cluster: its address, auto, or local."""
     out: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("fig8.jsonl")
     """Where the results are; the pictures come into a folder of the same name without .jsonl."""
@@ -67,7 +78,8 @@ class Tabulate:
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """The results."""
     against: Annotated[
-        str | None, tyro.conf.arg(metavar="SAMPLER", help_behavior_hint="(default: uniform, if it is there)")
+        str | None,
+        tyro.conf.arg(metavar="SAMPLER", help_behavior_hint="(default: uniform, if it is there)"),
     ] = None
     """Whom the others are compared with, seed by seed."""
 
@@ -78,9 +90,10 @@ class Draw:
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """The results."""
-    out: Annotated[Path | None, tyro.conf.arg(metavar="FOLDER", help_behavior_hint="(default: LOG without .jsonl)")] = (
-        None
-    )
+    out: Annotated[
+        Path | None,
+        tyro.conf.arg(metavar="FOLDER", help_behavior_hint="(default: LOG without .jsonl)"),
+    ] = None
     """Where the pictures come."""
 
 
@@ -90,7 +103,7 @@ Command = Run | Fig8 | Tabulate | Draw
 
 
 def parsed(arguments: list[str]) -> Command:
-    """What the words of a command line say.
+    """Read the words of a command line.
 
     Raises:
         InputError: Something that the command does not know.

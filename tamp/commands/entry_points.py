@@ -1,4 +1,6 @@
-"""The commands: each is guarded (`tamp.system.guard`) before what it needs is imported, which takes a second."""
+"""The commands: each is guarded (`tamp.system.guard`) before what it needs is imported, which takes
+a second.
+"""
 
 from __future__ import annotations
 

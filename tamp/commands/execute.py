@@ -20,11 +20,13 @@ REACHED, NOT_REACHED = 0, 1
 
 @dataclass(frozen=True)
 class Execute:
-    """Carry out a plan file in physics (pybullet) and say for each action how it went, and what of the goal holds.
+    """Carry out a plan file in physics (pybullet) and say for each action how it went, and what of
+    the goal holds.
 
     Motors follow the plan's trajectories, fingers close with force and friction, bodies have mass.
 
-    Exit status: 0 the goal holds at the end, 1 it does not, 2 bad input. docs/watch-export-execute.md says more.
+    Exit status: 0 the goal holds at the end, 1 it does not, 2 bad input.
+    docs/watch-export-execute.md says more.
     """
 
     plan: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN")]
@@ -32,11 +34,11 @@ class Execute:
     grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
     """friction, or constraint: a fixed joint holds what the fingers close on."""
     replan: bool = False
-    """After an action that came out differently, keep the rest of the plan if it still holds, else plan anew from what
-    is seen."""
+    """After an action that came out differently, keep the rest of the plan if it still holds, else
+    plan anew from what is seen."""
     disturb: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="")] = None
-    """Do something to the scene on the way: object-moved, object-dropped, grasp-slips, object-removed,
-    surface-blocked."""
+    """Do something to the scene on the way: object-moved, object-dropped, grasp-slips,
+    object-removed, surface-blocked."""
     seed: Annotated[int, tyro.conf.arg(metavar="NUMBER")] = 0
     """Of the disturbance and of planning anew."""
     time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
@@ -45,7 +47,8 @@ class Execute:
         tyro.conf.UseAppendAction[tuple[str, ...]],
         tyro.conf.arg(metavar="RELATION=NAME", help_behavior_hint="(repeatable)"),
     ] = ()
-    """As for tamp-solve, over the plan's own: what says whether a relation of your own holds, and for planning anew."""
+    """As for tamp-solve, over the plan's own: what says whether a relation of your own holds, and
+    for planning anew."""
     problem: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """The problem, instead of the one the plan names."""
     json: bool = False
@@ -56,13 +59,23 @@ class Execute:
 
 @as_command()
 def main(shown: Progress, arguments: Sequence[str], registry: Callable[[], Registry]) -> int:
-    """Exit with 0 when the goal holds at the end, 1 when it does not, 2 for bad input, 130 when interrupted."""
+    """Exit with 0 when the goal holds at the end, 1 when it does not, 2 for bad input, 130 when
+    interrupted.
+    """
     given = read_options(Execute, "tamp-execute", arguments)
     from tamp.execution.command import Options, carry_out  # after --help
 
     shown.quiet = given.quiet or given.json
     shown.begin("executing")
-    options = Options(given.grasp, given.replan, given.disturb, given.seed, given.time, given.problem, given.sampler)
+    options = Options(
+        given.grasp,
+        given.replan,
+        given.disturb,
+        given.seed,
+        given.time,
+        given.problem,
+        given.sampler,
+    )
     done = carry_out(given.plan, options, registry())
     shown.end()
 

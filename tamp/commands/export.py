@@ -19,7 +19,8 @@ from tamp.system.progress import Progress, say
 
 @dataclass(frozen=True)
 class Export:
-    """Write the trajectories of a plan file for another program: names of joints, times, positions and velocities.
+    """Write the trajectories of a plan file for another program: names of joints, times, positions
+    and velocities.
 
     They are those of base, arm and fingers.
 

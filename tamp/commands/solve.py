@@ -24,7 +24,9 @@ SOLVED, NO_PLAN = 0, 1
 
 
 def main() -> NoReturn:
-    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 or 143 interrupted."""
+    """Run tamp-solve and leave the process with 0 solved, 1 no plan, 2 bad input, 130 or 143
+    interrupted.
+    """
     if not guard.is_guarded():
         guard.guarded("tamp.commands.solve")
     # The time that the user gives counts from here, less what the interpreter took to come here.
@@ -41,14 +43,20 @@ def execute(arguments: list[str] | None = None) -> NoReturn:
 
 @as_command()
 def run(shown: Progress, arguments: list[str], started: float | None = None) -> int:
-    """Run tamp-solve and return its exit code; `started` is when, on the monotonic clock, its time began."""
+    """Run tamp-solve and return its exit code; `started` is when, on the monotonic clock, its time
+    began.
+    """
     began = time.monotonic() if started is None else started
     options = parsed(arguments)
     shown.quiet = options.quiet or options.json
 
     _check_outputs_writable(options)
     budget = Budget(options.time, began)
-    solved = _solve_pddl(options, budget, shown) if options.is_pddl else _solve_scene(options, budget, shown)
+    solved = (
+        _solve_pddl(options, budget, shown)
+        if options.is_pddl
+        else _solve_scene(options, budget, shown)
+    )
 
     if solved is None:
         return INTERRUPTED
@@ -82,7 +90,8 @@ def _solve_scene(options: Arguments, budget: Budget, shown: Progress) -> bool | 
 
 
 def registry() -> Registry:
-    """The samplers that package grounding supplies in `grounding.registry.GROUNDINGS`: relation to name to a factory.
+    """Return the samplers that package grounding supplies in `grounding.registry.GROUNDINGS`:
+    relation to name to a factory.
 
     This is the one place where the planner meets them.
     """

@@ -1,4 +1,4 @@
-"""The part of tamp-solve that plans a domain and a problem in PDDL: load, plan, judge, write, show."""
+"""tamp-solve for a domain and a problem in PDDL: load, plan, judge, write, show."""
 
 from __future__ import annotations
 
@@ -12,7 +12,14 @@ from tamp.errors import InputError
 from tamp.planner.pddl_only.anytime import optimize_symbolic
 from tamp.planner.pddl_only.parallel import solve_symbolic_parallel
 from tamp.planner.pddl_only.problem import SymbolicProblem, load_symbolic
-from tamp.planner.pddl_only.report import document, headline, improvement, plan_text, summary, write_symbolic_plan
+from tamp.planner.pddl_only.report import (
+    document,
+    headline,
+    improvement,
+    plan_text,
+    summary,
+    write_symbolic_plan,
+)
 from tamp.planner.pddl_only.solve import SymbolicSolution, choose
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system import guard
@@ -24,7 +31,9 @@ from tamp.verification.report import Report
 
 @dataclass(frozen=True)
 class Ended:
-    """How the command ended: the solution, the judge's verdict if it was asked, the file that was written."""
+    """The end of the command: the solution, the judge's verdict if it was asked, the file that was
+    written.
+    """
 
     solution: SymbolicSolution
     verdict: Report | None
@@ -32,12 +41,15 @@ class Ended:
 
     @property
     def interrupted(self) -> bool:
-        """Whether the user ended it."""
+        """Return whether the user ended it."""
         return self.solution.outcome is Outcome.INTERRUPTED
 
     def json(self) -> str:
-        """What `--json` prints."""
-        content = {**document(self.solution), "plan": None if self.written is None else str(self.written)}
+        """Return what `--json` prints."""
+        content = {
+            **document(self.solution),
+            "plan": None if self.written is None else str(self.written),
+        }
         if self.verdict is not None:
             content["verification"] = self.verdict.json()
         return json.dumps(content, indent=2)
@@ -78,13 +90,17 @@ def load(options: Arguments) -> SymbolicProblem:
     choose(options.pddl.search, options.pddl.heuristic)
     if len(files) != 2:
         remedy = "For example: tamp-solve domain.pddl problem.pddl"
-        raise InputError(f"'{files[-1]}' alone: a problem in PDDL needs its domain before it", remedy=remedy)
+        raise InputError(
+            f"'{files[-1]}' alone: a problem in PDDL needs its domain before it", remedy=remedy
+        )
     if not files[0].endswith(".pddl") and Path(files[0]).suffix:
         raise InputError(f"expected [DOMAIN] PROBLEM, found '{files[0]}' in the domain's place")
     return load_symbolic(*files)
 
 
-def plan(options: Arguments, loaded: SymbolicProblem, budget: Budget, shown: Progress) -> SymbolicSolution:
+def plan(
+    options: Arguments, loaded: SymbolicProblem, budget: Budget, shown: Progress
+) -> SymbolicSolution:
     """Search for a plan; for ever cheaper ones, if that is wanted."""
     if options.optimize:
         return optimize_symbolic(

@@ -83,7 +83,9 @@ def load(request: Request) -> Loaded:
     problem = load_again()
 
     read = [file for files in problem.files.values() for file in files]
-    check_outputs(options.outputs, (*read, *sampler_files((*problem.samplers.values(), *named.values()))))
+    check_outputs(
+        options.outputs, (*read, *sampler_files((*problem.samplers.values(), *named.values())))
+    )
     if options.scene.html is not None and not options.scene.allow_outside:
         shown_meshes = (*problem.files["meshes"], *problem.files["drawn"])
         check_inside(shown_meshes, problem.files["problem"][0])
@@ -179,7 +181,12 @@ def follow_up(request: Request, loaded: Loaded, planned: Planned, written: Writt
 
 
 def tell(
-    request: Request, loaded: Loaded, planned: Planned, judged: Judged, written: Written, followed: FollowUp
+    request: Request,
+    loaded: Loaded,
+    planned: Planned,
+    judged: Judged,
+    written: Written,
+    followed: FollowUp,
 ) -> None:
     """Print how it ended: one JSON document, or lines."""
     options, shown = request.options, request.shown
@@ -205,7 +212,9 @@ def show(wishes: Wishes, planned: Planned, shown: Progress) -> None:
     fulfil(wishes, *film_of_solution(planned.solution), None, shown.line)
 
 
-def _document(planned: Planned, judged: Judged, written: Written, followed: FollowUp) -> dict[str, object]:
+def _document(
+    planned: Planned, judged: Judged, written: Written, followed: FollowUp
+) -> dict[str, object]:
     """Collect what `--json` prints."""
     document: dict[str, object] = dict(summary_document(planned.solution))
     document["plan"] = None if written.plan is None else str(written.plan)

@@ -1,4 +1,4 @@
-"""What the steps of `tamp.commands.solve_scene` hand on to each other."""
+"""The values that the steps of `tamp.commands.solve_scene` hand on to each other."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tamp.verification.report import Report
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked for.
+    """A request: what is asked for.
 
     Attributes:
         options: Of the command line, checked.
@@ -50,13 +50,13 @@ class Loaded:
 
     @property
     def domain_name(self) -> str:
-        """As the domain's file has it."""
+        """Return the name as the domain's file has it."""
         return self.problem.stream_task.task.domain.name
 
 
 @dataclass(frozen=True)
 class Planned:
-    """How planning ended.
+    """The end of planning.
 
     Attributes:
         solution: With a plan, or without.
@@ -69,7 +69,7 @@ class Planned:
 
 @dataclass(frozen=True)
 class Judged:
-    """What the judge said of the plan, and whether it may be written.
+    """The verdict: what the judge said of the plan, and whether it may be written.
 
     Attributes:
         verdict: The judge's, if it was asked.
@@ -82,7 +82,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Written:
-    """What is on disk.
+    """The files that are on disk.
 
     Attributes:
         plan: The plan file.
@@ -95,7 +95,7 @@ class Written:
 
 @dataclass(frozen=True)
 class FollowUp:
-    """What was done after the plan: why there is none, or how it went in physics."""
+    """The steps after the plan: why there is none, or how it went in physics."""
 
     why: Why | None
     execution: Execution | None

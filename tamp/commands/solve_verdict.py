@@ -1,4 +1,4 @@
-"""What tamp-solve asks of the independent judge, and the lines with which it ends."""
+"""The verdict of the independent judge on a new plan, and the last lines of tamp-solve."""
 
 from __future__ import annotations
 

@@ -39,11 +39,11 @@ class Verify:
         tyro.conf.UseAppendAction[tuple[str, ...]],
         tyro.conf.arg(metavar="RELATION=FILE", help_behavior_hint="(repeatable)"),
     ] = ()
-    """What says whether a relation of your own holds: FILE.py, which is run, or FILE.safetensors; without it the
-    relation is taken on trust, and the verdict says so."""
+    """What says whether a relation of your own holds: FILE.py, which is run, or FILE.safetensors;
+    without it the relation is taken on trust, and the verdict says so."""
     strict: bool = False
-    """Do not accept a verdict that rests on what could not be checked: a relation on trust, another domain or other
-    streams than the problem's."""
+    """Do not accept a verdict that rests on what could not be checked: a relation on trust, another
+    domain or other streams than the problem's."""
     json: bool = False
     """Print the report as JSON."""
     quiet: bool = False
@@ -52,7 +52,8 @@ class Verify:
 
 @as_command(interrupted="")
 def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
-    """Exit with 0 when the plan holds, 1 when it does not, 2 when it cannot be read, 130 when interrupted.
+    """Exit with 0 when the plan holds, 1 when it does not, 2 when it cannot be read, 130 when
+    interrupted.
 
     With --strict also with 1 when it holds but for what could not be checked.
     """
@@ -61,7 +62,13 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
 
     shown.begin("judging")
     classifiers = classifiers_of(options.sampler)
-    report = verify(options.plan, options.problem, options.domain, streams=options.streams, classifiers=classifiers)
+    report = verify(
+        options.plan,
+        options.problem,
+        options.domain,
+        streams=options.streams,
+        classifiers=classifiers,
+    )
     shown.end()
 
     accepted = report.holds and (report.checked or not options.strict)
@@ -81,7 +88,8 @@ def _more() -> str:
 
 {rows}
 
-Exit status: 0 the plan holds, 1 it does not (with --strict: or it rests on what could not be checked), 2 bad input.
+Exit status: 0 the plan holds, 1 it does not (with --strict: or it rests on what could not be
+checked), 2 bad input.
 
 docs/adding-a-predicate.md says more of relations of one's own."""
 

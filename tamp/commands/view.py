@@ -25,7 +25,8 @@ class View:
 
     In the browser (the default), as a page that plays offline, as a picture, as a moving picture.
 
-    Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C. docs/watch-export-execute.md says what is to be seen.
+    Exit status: 0 written, 2 bad input, 130 ended by Ctrl-C.
+    docs/watch-export-execute.md says what is to be seen.
     """
 
     what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN|PROBLEM")]
@@ -49,7 +50,9 @@ class View:
     """Of a picture, in pixels (800x600; moving ones 480x360)."""
     speed: Annotated[float, tyro.conf.arg(metavar="FACTOR")] = 6.0
     """Of a moving picture, times the robot's."""
-    port: Annotated[int, tyro.conf.arg(metavar="NUMBER", help_behavior_hint="(default: any free one)")] = 0
+    port: Annotated[
+        int, tyro.conf.arg(metavar="NUMBER", help_behavior_hint="(default: any free one)")
+    ] = 0
     """Where to serve the page."""
     no_browser: bool = False
     """Serve the page without opening a browser."""
@@ -57,7 +60,9 @@ class View:
 
 @as_command(interrupted="")
 def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
-    """Exit with 0 when it was written, 2 for bad input, 130 or 143 when a signal ended it, as it ends the server."""
+    """Exit with 0 when it was written, 2 for bad input, 130 or 143 when a signal ended it, as it
+    ends the server.
+    """
     _view(read_options(View, "tamp-view", arguments))
     return INTERRUPTED if guard.asked() else 0
 
@@ -93,7 +98,9 @@ def _size(text: str | None) -> tuple[int, int] | None:
         return None
     columns, _, rows = text.lower().partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        raise InputError(f"--size wants WIDTHxHEIGHT, not '{text}'", remedy="For example: --size 1200x800")
+        raise InputError(
+            f"--size wants WIDTHxHEIGHT, not '{text}'", remedy="For example: --size 1200x800"
+        )
     return int(columns), int(rows)
 
 

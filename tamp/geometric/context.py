@@ -65,7 +65,7 @@ class Context:
 
     @cached_property
     def reachability(self) -> Reachability:
-        """Where the base may stand for a tool pose."""
+        """Return where the base may stand for a tool pose."""
         return Reachability(self.robot)
 
     @cached_property
@@ -75,7 +75,7 @@ class Context:
 
     @cached_property
     def touching(self) -> Touching:
-        """The bodies that touch each other at the start."""
+        """Return the bodies that touch each other at the start."""
         return Touching(self.scene, () if self.holding is None else (self.holding.body,))
 
     @cached_property
@@ -85,13 +85,13 @@ class Context:
 
     @cached_property
     def passage(self) -> Passage:
-        """How wide the ways of the base are among the fixed bodies."""
+        """Return how wide the ways of the base are among the fixed bodies."""
         return Passage(self.scene, self.robot)
 
     @cached_property
     def fixed_parts(self) -> tuple[list[tuple[str, Part, Pose]], Array, Array]:
-        """Of the fixed bodies: name, part and pose of the body; and all parts' lowest and highest
-        corners, (n, 3).
+        """List of the fixed bodies: name, part and pose of the body; and all parts' lowest and
+        highest corners, (n, 3).
         """
         bodies = [self.scene.bodies[name] for name in self.scene.fixed]
         parts = [(body.name, part, body.pose) for body in bodies for part in body.parts]
@@ -100,13 +100,13 @@ class Context:
 
     @cached_property
     def home(self) -> Array:
-        """The arm's configuration between actions, shape (7,)."""
+        """Return the arm's configuration between actions, shape (7,)."""
         arm = self.scene.robot.arm
         return np.array(self.robot.home if arm is None else arm)
 
     @cached_property
     def carrying_up(self) -> Array:
-        """The direction of up in the tool's frame while the arm is at home, shape (3,)."""
+        """Return the direction of up in the tool's frame while the arm is at home, shape (3,)."""
         return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
 
     def resting(self, body: str) -> Resting:

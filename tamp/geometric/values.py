@@ -9,7 +9,7 @@ from tamp.geometric.scene.pose import Array, Pose
 
 @dataclass(frozen=True)
 class Grasp:
-    """How the hand holds a body.
+    """A grasp: how the hand holds a body.
 
     Attributes:
         body: The body's name.
@@ -24,7 +24,7 @@ class Grasp:
 
 @dataclass(frozen=True)
 class BaseConf:
-    """Where the base stands: x, y in metres, yaw in radians."""
+    """A base configuration: x, y in metres, yaw in radians."""
 
     x: float
     y: float
@@ -32,7 +32,7 @@ class BaseConf:
 
     @property
     def array(self) -> tuple[float, float, float]:
-        """x, y, yaw."""
+        """Return x, y, yaw."""
         return (self.x, self.y, self.yaw)
 
 
@@ -86,6 +86,6 @@ class Grip:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What an action does with the robot, segment after segment."""
+    """The motion of an action, segment after segment."""
 
     segments: tuple[Path | Grip, ...]

@@ -35,7 +35,7 @@ class Action(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """How planning ended. Unpacks as PDDLStream's solutions do: plan, cost, certificate.
+    """The end of planning. Unpacks as PDDLStream's solutions do: plan, cost, certificate.
 
     Attributes:
         outcome: How it ended.
@@ -102,7 +102,9 @@ def solve(
     load_compiled_loops()  # before the clock starts
     deadline = Deadline(max_time)
     try:
-        result = Alarm(deadline, strangers=STRANGERS).run(lambda: _run(task, algorithm, seed, deadline))
+        result = Alarm(deadline, strangers=STRANGERS).run(
+            lambda: _run(task, algorithm, seed, deadline)
+        )
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
@@ -112,12 +114,18 @@ def solve(
     if uncalled and not solved:  # an optimizer might have given what is missing
         outcome = Outcome.EXHAUSTED if outcome is Outcome.INFEASIBLE else outcome
         explanation = (*explanation, *uncalled)
-    plan = [Action(action.name, tuple(values[word] for word in action.arguments)) for action in result.actions]
+    plan = [
+        Action(action.name, tuple(values[word] for word in action.arguments))
+        for action in result.actions
+    ]
     return Solution(
         outcome,
         plan if solved else None,
         sum(action.cost for action in result.actions) if solved else float("inf"),
-        tuple((names.get(fact[0], fact[0]), *(values[word] for word in fact[1:])) for fact in result.certified),
+        tuple(
+            (names.get(fact[0], fact[0]), *(values[word] for word in fact[1:]))
+            for fact in result.certified
+        ),
         explanation,
         (*warnings, *result.warnings),
         result.statistics,
@@ -143,7 +151,9 @@ def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Res
     if looked.outcome is Outcome.EXHAUSTED and second.binder.units < CLOSER_LOOK:
         # Not for want of draws: there are plans, but nothing proves that none of them holds.
         return looked
-    open_end = bool(second.streams.wild) or not all(isinstance(value, str) for value in _goal_values(task))
+    open_end = bool(second.streams.wild) or not all(
+        isinstance(value, str) for value in _goal_values(task)
+    )
     if looked.outcome is Outcome.EXHAUSTED and open_end:
         looked = second.solve()
     return looked if looked.outcome is Outcome.SOLVED or open_end else result

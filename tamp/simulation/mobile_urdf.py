@@ -43,14 +43,15 @@ def mobile_urdf(robot: Robot) -> str:
   <link name="{y}_slide">{_INERTIAL.format(20)}</link>
   <link name="{base.name}">{_INERTIAL.format(BASE_MASS)}
     <collision><origin xyz="{at}"/><geometry><box size="{size}"/></geometry></collision></link>
-  <joint name="{x}" type="prismatic"><parent link="ground"/><child link="{x}_slide"/><axis xyz="1 0 0"/>{_LIMIT}</joint>
-  <joint name="{y}" type="prismatic"><parent link="{x}_slide"/><child link="{y}_slide"/><axis xyz="0 1 0"/>{_LIMIT}
-  </joint>
-  <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link="{base.name}"/><axis xyz="0 0 1"/>{_LIMIT}
-  </joint>
+  <joint name="{x}" type="prismatic"><parent link="ground"/><child link="{x}_slide"/>
+    <axis xyz="1 0 0"/>{_LIMIT}</joint>
+  <joint name="{y}" type="prismatic"><parent link="{x}_slide"/><child link="{y}_slide"/>
+    <axis xyz="0 1 0"/>{_LIMIT}</joint>
+  <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link="{base.name}"/>
+    <axis xyz="0 0 1"/>{_LIMIT}</joint>
   <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.links[1].name}"/>
     <origin xyz="{foot}"/></joint>
-"""  # noqa: E501 (XML, as a URDF has it)
+"""
 
     text = robot.urdf.read_text(encoding="utf-8").replace("package://", f"{robot.urdf.parent}/")
     return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, text, count=1)

@@ -38,7 +38,7 @@ PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 
 class _Asked:
-    """What this process was asked.
+    """The signals that this process was sent.
 
     Attributes:
         number: The first signal of ENDING that came; 0 for none.

@@ -25,7 +25,7 @@ Note = TypeVar("Note")
 
 @dataclass(frozen=True)
 class Above:
-    """That an option's number is above a limit; it stands in the option's annotation.
+    """A rule: an option's number is above a limit; it stands in the option's annotation.
 
     Attributes:
         limit: The largest number that is refused.
@@ -47,7 +47,7 @@ class Above:
 
 @dataclass(frozen=True)
 class Between:
-    """That an option's number is within limits, both allowed.
+    """A rule: an option's number is within limits, both allowed.
 
     Attributes:
         low: The smallest.
@@ -71,7 +71,7 @@ class Between:
 
 @dataclass(frozen=True)
 class OneOf:
-    """That an option's value is one of some names.
+    """A rule: an option's value is one of some names.
 
     Attributes:
         what: What they are names of.

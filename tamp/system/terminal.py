@@ -44,7 +44,7 @@ class Shown(io.TextIOBase):
 
     @property
     def encoding(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """The encoding of the stream."""
+        """Return the encoding of the stream."""
         return self._stream.encoding if self._stream is not None else "utf-8"
 
     def write(self, text: str) -> int:

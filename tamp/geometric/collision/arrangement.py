@@ -46,12 +46,12 @@ class Statistics:
 
     @property
     def states_decided(self) -> int:
-        """States that one call of compiled code decided."""
+        """Count the states that one call of compiled code decided."""
         return self.states - self.states_undecided
 
     @property
     def edges_decided(self) -> int:
-        """Edges that one call of compiled code decided."""
+        """Count the edges that one call of compiled code decided."""
         return self.edges - self.edges_undecided
 
 

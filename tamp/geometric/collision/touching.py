@@ -30,7 +30,7 @@ DIRECTIONS = 16
 
 
 class Touching:
-    """Who touches whom at the start of a scene.
+    """The pairs that touch each other at the start of a scene.
 
     Args:
         scene: Its bodies at their first poses.

@@ -32,7 +32,7 @@ _DIRECTIONS = np.array(
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """What lies in one cell.
+    """The part of a mesh in one cell.
 
     Attributes:
         triangles: (m, 3, 3), the surface.

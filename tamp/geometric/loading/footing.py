@@ -50,7 +50,7 @@ FLOOR = "floor"
 
 @dataclass(frozen=True)
 class Footing:
-    """How a body stands.
+    """The footing of a body: how it stands.
 
     Attributes:
         on: Names of the bodies that carry it, FLOOR included; empty when nothing is within GAP
@@ -63,7 +63,7 @@ class Footing:
 
     @property
     def why(self) -> str | None:
-        """Why it does not stay where it is; None when it does."""
+        """Return why it does not stay where it is; None when it does."""
         if not self.on:
             return "nothing is within 10 mm below it"
         if self.lean > LEAN:

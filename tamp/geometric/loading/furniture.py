@@ -19,7 +19,7 @@ _LEG = 0.05
 
 @dataclass(frozen=True)
 class Options:
-    """What may be said about a piece of furniture beside its size.
+    """The options of a piece of furniture beside its size.
 
     Attributes:
         rows: Compartments above each other.

@@ -233,7 +233,7 @@ def check_gltf(content: bytes, name: str) -> None:
 
 
 class Beside:
-    """What trimesh asks for the files that a mesh names: only regular ones of a modest size, in the
+    """The resolver of the files that a mesh names: only regular ones of a modest size, in the
     mesh's folder.
 
     Args:

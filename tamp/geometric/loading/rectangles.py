@@ -31,9 +31,14 @@ def _sides(polygon: Array, xs: Array) -> tuple[Array, Array]:
     for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         within = (xs >= min(ax, bx) - 1e-12) & (xs <= max(ax, bx) + 1e-12)
         ends = (ay, by) if abs(bx - ax) < 1e-12 else None
-        y = ay + (by - ay) * (xs - ax) / (bx - ax) if ends is None else None
-        floor[within] = np.minimum(floor[within], min(ends) if ends else y[within])  # type: ignore[index,arg-type]
-        ceiling[within] = np.maximum(ceiling[within], max(ends) if ends else y[within])  # type: ignore[index,arg-type]
+        if ends is not None:
+            floor[within] = np.minimum(floor[within], min(ends))
+            ceiling[within] = np.maximum(ceiling[within], max(ends))
+            continue
+
+        y = ay + (by - ay) * (xs[within] - ax) / (bx - ax)
+        floor[within] = np.minimum(floor[within], y)
+        ceiling[within] = np.maximum(ceiling[within], y)
     return floor, ceiling
 
 

@@ -17,7 +17,8 @@ MOST_BYTES = 20_000_000
 _DECLARED = re.compile(rb"""^<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["'][^>]*\?>""")
 # Of the others, some are no text, and some take quadratic time.
 _KNOWN = re.compile(
-    r"(utf|ucs|us-ascii|ascii|iso[-_]?8859|latin|windows-?125|cp\d|gb|big5|shift|sjis|euc|koi8|mac)",
+    r"(utf|ucs|us-ascii|ascii|iso[-_]?8859|latin|windows-?125|cp\d|gb|big5|shift|sjis|euc|koi8"
+    r"|mac)",
     re.IGNORECASE,
 )
 _BOMS = ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be"))

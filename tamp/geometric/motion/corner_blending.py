@@ -77,7 +77,9 @@ class Corner:
 
     @property
     def taken(self) -> float:
-        """How much of either adjacent edge belongs to the corner; zero where the motion rests."""
+        """Return how much of either adjacent edge belongs to the corner; zero where the motion
+        rests.
+        """
         return self.reach or self.window
 
     @property

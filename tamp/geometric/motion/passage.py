@@ -63,7 +63,7 @@ class Gap:
 
     @property
     def text(self) -> str:
-        """In words."""
+        """Say it in words."""
         if self.width < 2 * FINEST:
             return f"no way leads there: {' and '.join(self.bodies)} in between"
         return f"the door is {self.width:.2f} m, the base {self.base:.2f} m wide"
@@ -89,12 +89,12 @@ class Passage:
 
     @property
     def slack(self) -> float:
-        """What a way through cells may miss of the width of a gap on each side, metres."""
+        """Return what a way through cells may miss of the width of a gap on each side, metres."""
         return self.cell * math.sqrt(0.5) + 1e-3
 
     @cached_property
     def slices(self) -> list[Slice]:
-        """Of all fixed bodies at the base's height."""
+        """Return the outlines of all fixed bodies at the base's height."""
         low, high = self._heights
         found: list[Slice] = []
         for name in self._scene.fixed:
@@ -155,7 +155,7 @@ class Passage:
 
     @cached_property
     def _floor(self) -> tuple[Array, Array, Array]:
-        """Coordinates of the cells along x and y, and their clearances (nx, ny)."""
+        """Return coordinates of the cells along x and y, and their clearances (nx, ny)."""
         room = self._scene.room
         xs = np.arange(room.x[0], room.x[1] + self.cell, self.cell)
         ys = np.arange(room.y[0], room.y[1] + self.cell, self.cell)
@@ -164,8 +164,8 @@ class Passage:
 
     @cached_property
     def _widest(self) -> tuple[Array, NDArray[np.intp]]:
-        """For each cell the clearance of the widest way from the start, and the cell before it on
-        that way.
+        """Return for each cell the clearance of the widest way from the start, and the cell before
+        it on that way.
         """
         xs, ys, free = self._floor
         columns = len(ys)

@@ -9,7 +9,7 @@ from tamp.geometric.scene.pose import Array
 
 
 class Failure(Enum):
-    """Why no path came out; the value is the phrase that a user reads."""
+    """The reason why no path came out; the value is the phrase that a user reads."""
 
     START = "the start is in collision"
     GOAL = "the goal is in collision"

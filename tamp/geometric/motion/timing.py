@@ -26,7 +26,7 @@ class Timed:
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Return seconds."""
         return float(self.times[-1])
 
 

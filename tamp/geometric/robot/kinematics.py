@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pinocchio  # pyright: ignore[reportMissingImports]  # its wheel lives behind a .pth that pyright does not run
+
+# Its wheel lives behind a .pth that pyright does not run.
+import pinocchio  # pyright: ignore[reportMissingImports]
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose

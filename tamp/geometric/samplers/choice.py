@@ -45,7 +45,7 @@ class Choice:
 
     @property
     def text(self) -> str:
-        """As `--sampler` takes it, without the mode that is usual."""
+        """Return the text as `--sampler` takes it, without the mode that is usual."""
         if self.alone == (self.name in HAND_MADE):
             return self.name
         return f"{self.name}:{'alone' if self.alone else 'mixed'}"

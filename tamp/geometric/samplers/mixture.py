@@ -35,7 +35,7 @@ LEDGER = "ledger of "
 
 @dataclass(frozen=True)
 class Mixture:
-    """Who proposes the poses of a relation, the chosen generator first.
+    """The generators that propose the poses of a relation, the chosen generator first.
 
     Attributes:
         names: Of the generators.
@@ -48,7 +48,7 @@ class Mixture:
 
 @dataclass
 class Account:
-    """What became of one generator's proposals in one run.
+    """The account of one generator's proposals in one run.
 
     Attributes:
         judged: Proposals that were looked at.

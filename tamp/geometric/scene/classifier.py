@@ -25,7 +25,7 @@ class Classifier(Protocol):
 
 @runtime_checkable
 class Undecided(Protocol):
-    """What proposes poses and has no classifier yet; `cannot_tell` says why."""
+    """A generator that has no classifier yet; `cannot_tell` says why."""
 
     cannot_tell: str
 

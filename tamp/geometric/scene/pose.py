@@ -26,7 +26,7 @@ class Pose:
 
     @cached_property
     def matrix(self) -> Array:
-        """The homogeneous matrix, shape (4, 4), read-only."""
+        """Return the homogeneous matrix, shape (4, 4), read-only."""
         x, y, z, w = self.quaternion
         matrix = np.array(
             [
@@ -57,7 +57,7 @@ class Pose:
 
     @property
     def rotation(self) -> Array:
-        """The rotation matrix, shape (3, 3)."""
+        """Return the rotation matrix, shape (3, 3)."""
         return self.matrix[:3, :3]
 
     @property

@@ -162,7 +162,7 @@ class Room:
 
 @dataclass(frozen=True)
 class RobotStart:
-    """Which robot, and where it starts.
+    """The robot, and where it starts.
 
     Attributes:
         model: A name in ROBOTS.
@@ -195,12 +195,12 @@ class Scene:
 
     @property
     def movable(self) -> tuple[str, ...]:
-        """Names of the bodies that the robot may move, in the problem's order."""
+        """Return names of the bodies that the robot may move, in the problem's order."""
         return tuple(name for name, body in self.bodies.items() if body.movable)
 
     @property
     def fixed(self) -> tuple[str, ...]:
-        """Names of the others."""
+        """Return names of the others."""
         return tuple(name for name, body in self.bodies.items() if not body.movable)
 
     def world_pose(self, place: Surface | Cavity) -> Pose:

@@ -86,7 +86,9 @@ class Resting:
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """All ways to rest that withstand a tilt of STABLE: the present one, then the steadiest."""
+        """Return all ways to rest that withstand a tilt of STABLE: the present one, then the
+        steadiest.
+        """
         down = -self.body.pose.rotation[2]
         faces = stable_faces(self.body)
         faces.sort(
@@ -99,8 +101,8 @@ class Resting:
 
     @cached_property
     def lying(self) -> Face | None:
-        """The curved side that the body lies on at the start; None where that is a stable face, or
-        it is a ball.
+        """Return the curved side that the body lies on at the start; None where that is a stable
+        face, or it is a ball.
 
         What lies there can lie so elsewhere, though a touch may roll it: a way to rest where there
         is no better one.
@@ -116,7 +118,7 @@ class Resting:
 
     @property
     def ways(self) -> tuple[Face, ...]:
-        """The stable faces, and the curved side that it lies on."""
+        """Return the stable faces, and the curved side that it lies on."""
         return self.faces if self.lying is None else (*self.faces, self.lying)
 
     def nearest(self, rotation: Array) -> Face | None:

@@ -66,7 +66,7 @@ class HandFit:
 
     @property
     def widest(self) -> float:
-        """The largest width that is grasped, metres."""
+        """Return the largest width that is grasped, metres."""
         return self._robot.opening - CLEARANCE
 
     def close(self, T_body_tool: Array) -> Closed | None:

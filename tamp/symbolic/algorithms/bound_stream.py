@@ -36,22 +36,22 @@ class BoundStream:
 
     @property
     def name(self) -> str:
-        """The declaration's name."""
+        """Return the declaration's name."""
         return self.declaration.name
 
     @property
     def is_test(self) -> bool:
-        """Whether it has no outputs."""
+        """Return whether it has no outputs."""
         return not self.declaration.outputs
 
     @property
     def is_fluent(self) -> bool:
-        """Whether what it certifies holds only in the state that it was shown."""
+        """Return whether what it certifies holds only in the state that it was shown."""
         return bool(self.declaration.fluents) and not self.is_advisory
 
     @property
     def is_advisory(self) -> bool:
-        """Whether it may look at the state, yet certifies nothing about it."""
+        """Return whether it may look at the state, yet certifies nothing about it."""
         return self.may_advise and bool(self.declaration.fluents) and self.name.startswith(ADVISORY)
 
 

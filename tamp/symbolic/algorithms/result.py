@@ -57,7 +57,7 @@ class PlanAction:
 
 @dataclass
 class Effort:
-    """How much was done.
+    """The effort: how much was done.
 
     Attributes:
         searches: Symbolic searches.

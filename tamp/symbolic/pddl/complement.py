@@ -60,7 +60,7 @@ def negated_tests(streams: Sequence[Stream], domain: Domain, goal: Formula) -> d
 
 
 class Complements(NamedTuple):
-    """What is written instead where a predicate has to be false.
+    """The predicates that are written instead where a predicate has to be false.
 
     Attributes:
         complements: Of decided predicates: what holds when the predicate does not.

@@ -25,8 +25,8 @@ TOTAL_COST = "total-cost"
 
 @dataclass
 class Effects:
-    """What an action does: the simple effects, and its increases of the total cost, None when it
-    has none.
+    """The effects of an action: the simple effects, and its increases of the total cost, None when
+    it has none.
     """
 
     simple: list[Effect] = field(default_factory=list[Effect])

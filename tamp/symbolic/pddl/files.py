@@ -39,12 +39,18 @@ def decoded(content: bytes, path: Path) -> str:
         pass
 
     lines: list[str] = []
-    for number, line in enumerate(content.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"), start=1):
+    for number, line in enumerate(
+        content.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"), start=1
+    ):
         code, semicolon, comment = line.partition(b";")
         try:
-            lines.append(code.decode("utf-8") + (semicolon + comment).decode("utf-8", errors="replace"))
+            lines.append(
+                code.decode("utf-8") + (semicolon + comment).decode("utf-8", errors="replace")
+            )
         except UnicodeDecodeError as error:
             what = "cannot read it: it is not UTF-8 text"
             column = len(code[: error.start].decode("utf-8")) + 1
-            raise InputError(what, file=path, line=number, column=column, remedy="Save it as UTF-8") from None
+            raise InputError(
+                what, file=path, line=number, column=column, remedy="Save it as UTF-8"
+            ) from None
     return "\n".join(lines)

@@ -19,7 +19,11 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
         InputError: When a predicate rests on its own negation, at that negation.
     """
     levels = {rule.head.predicate: 0 for rule in rules}
-    uses = [(rule.head.predicate, atom, positive) for rule in rules for atom, positive in _uses(rule.body, True)]
+    uses = [
+        (rule.head.predicate, atom, positive)
+        for rule in rules
+        for atom, positive in _uses(rule.body, True)
+    ]
     uses = [use for use in uses if use[1].predicate in levels]
     # Levels only rise; one that exceeds the number of predicates rises for ever.
     changed = True

@@ -11,7 +11,7 @@ Fact = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where something stands in a file; lines and columns count from 1."""
+    """A place in a file; lines and columns count from 1."""
 
     file: str | None
     line: int
@@ -162,7 +162,9 @@ class Domain:
     @property
     def fluent_predicates(self) -> frozenset[str]:
         """Name the predicates that some action changes."""
-        return frozenset(effect.atom.predicate for action in self.actions for effect in action.effects)
+        return frozenset(
+            effect.atom.predicate for action in self.actions for effect in action.effects
+        )
 
     @property
     def derived_predicates(self) -> frozenset[str]:

@@ -46,7 +46,10 @@ def parameters(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Paramet
     entries = typed_list(nodes, "a variable such as ?x")
     for entry in entries:
         as_variable(entry.name)
-    return tuple(Parameter(entry.name.text, known_types(entry.types, types) or ("object",)) for entry in entries)
+    return tuple(
+        Parameter(entry.name.text, known_types(entry.types, types) or ("object",))
+        for entry in entries
+    )
 
 
 def placeholders(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Parameter, ...]:
@@ -75,7 +78,9 @@ def known_types(written: Iterable[Symbol], types: Mapping[str, str]) -> tuple[st
     written = tuple(written)
     for symbol in written:
         if symbol.text not in types:
-            raise error(symbol, f"unknown type '{symbol.written}'", found=symbol.text, choices=types)
+            raise error(
+                symbol, f"unknown type '{symbol.written}'", found=symbol.text, choices=types
+            )
     return tuple(dict.fromkeys(symbol.text for symbol in written))
 
 

@@ -13,13 +13,17 @@ from tamp.symbolic.search.operators import Axiom
 class AxiomStratum:
     """The axioms of one stratum, each under the lowest bit of its body."""
 
-    watched: dict[int, list[tuple[int, int, int]]] = field(default_factory=dict[int, list[tuple[int, int, int]]])
+    watched: dict[int, list[tuple[int, int, int]]] = field(
+        default_factory=dict[int, list[tuple[int, int, int]]]
+    )
     free: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
     mask: int = 0
     recursive: bool = False
 
 
-def axiom_strata(axioms: Sequence[Axiom], mask: Callable[[Iterable[Fact]], int]) -> list[AxiomStratum]:
+def axiom_strata(
+    axioms: Sequence[Axiom], mask: Callable[[Iterable[Fact]], int]
+) -> list[AxiomStratum]:
     """Sort the axioms, over bits, into their strata, the lowest first.
 
     Args:

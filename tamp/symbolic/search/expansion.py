@@ -15,7 +15,7 @@ from tamp.system.deadline import Deadline
 
 
 class Reason(Enum):
-    """Why a search ended without a plan."""
+    """The reason why a search ended without a plan."""
 
     UNSOLVABLE = "proven: no plan exists"
     LIMIT = "the limit of expanded states was reached"

@@ -72,7 +72,12 @@ class OpenLists:
         )
 
         # Preferred, but by far too dear: a price was learned.
-        if p is not None and not self._greedy and usual[p] and preferred[p][0][0] > 2.0 * usual[p][0][0]:
+        if (
+            p is not None
+            and not self._greedy
+            and usual[p]
+            and preferred[p][0][0] > 2.0 * usual[p][0][0]
+        ):
             p = None
 
         if p is not None and (k is None or self._preferred_turns[p] <= self._turns[k]):

@@ -93,8 +93,8 @@ class Axiom:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What must hold at the end. `static` are the static facts that it names itself, all of them
-    true.
+    """The goal: what must hold at the end. `static` are the static facts that it names itself, all
+    of them true.
     """
 
     positive: Facts

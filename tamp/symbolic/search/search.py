@@ -21,7 +21,7 @@ from tamp.system.deadline import Deadline
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a search found.
+    """The result of a search.
 
     Attributes:
         plan: None when there is none, then `reason` says why.

@@ -47,7 +47,7 @@ class _Certified:
 
     @property
     def of_states(self) -> set[Fact]:
-        """All those that hold in some states only."""
+        """Return all those that hold in some states only."""
         return {fact for made in self.shown.values() for facts in made.values() for fact in facts}
 
 

@@ -101,5 +101,5 @@ class Skeleton:
 
     @property
     def signature(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """What tells it from other skeletons."""
+        """Return what tells it from other skeletons."""
         return tuple((step.name, step.arguments) for step in self.steps)

@@ -36,12 +36,12 @@ class Tally:
 
     @property
     def failures(self) -> int:
-        """Tries without a result."""
+        """Count the tries without a result."""
         return self.tries - self.successes
 
     @property
     def never(self) -> bool:
-        """Whether all tries failed."""
+        """Return whether all tries failed."""
         return self.tries > 0 and self.successes == 0
 
     def text(self) -> str:

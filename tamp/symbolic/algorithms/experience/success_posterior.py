@@ -21,7 +21,7 @@ class Posterior:
 
     @property
     def mean(self) -> float:
-        """The expected probability that a try succeeds."""
+        """Return the expected probability that a try succeeds."""
         return (self.successes + 1) / (self.successes + self.failures + 2)
 
     @property

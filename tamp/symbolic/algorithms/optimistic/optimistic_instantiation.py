@@ -45,12 +45,12 @@ class Guess:
 
     @property
     def call(self) -> tuple[str, tuple[str, ...]]:
-        """The stream's name and the inputs."""
+        """Return the stream's name and the inputs."""
         return self.stream.name, self.inputs
 
     @property
     def has_real_inputs(self) -> bool:
-        """Whether all inputs are real, so that what its function says of them is final."""
+        """Return whether all inputs are real, so that what its function says of them is final."""
         return not any(name.startswith(MARK) for name in self.inputs)
 
 

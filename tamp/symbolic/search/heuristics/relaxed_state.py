@@ -53,7 +53,7 @@ class RelaxedState:
 
 @dataclass(slots=True)
 class TriggeredGuards:
-    """What triggered guards and violated negative conditions change in the relaxed task.
+    """The changes that triggered guards and violated negative conditions make in the relaxed task.
 
     Attributes:
         waiting: For each guard, its facts and price, the relaxed operators that wait for it.

@@ -139,7 +139,7 @@ def derive(
 
 
 class Support(NamedTuple):
-    """What derivations rest on: static facts, facts of the state, and the derived facts
+    """The supports of derivations: static facts, facts of the state, and the derived facts
     themselves.
     """
 

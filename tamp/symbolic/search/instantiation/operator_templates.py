@@ -57,7 +57,9 @@ class OperatorTemplate:
         self._positive = self._fills((*kinds.positive, *kinds.derived))
         self._derived = self._fills(kinds.derived)
         fills = self._fills(kinds.negative)
-        self._negative = [(atom.predicate, fill) for atom, fill in zip(kinds.negative, fills, strict=True)]
+        self._negative = [
+            (atom.predicate, fill) for atom, fill in zip(kinds.negative, fills, strict=True)
+        ]
         self._refuted = self._fills(kinds.refuted)
 
         # A parameter's object stands among the operator's arguments; another variable's is needed.
@@ -66,11 +68,17 @@ class OperatorTemplate:
         static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
         self._static = self._fills([*static, *unnamed])
         self._arguments = filler([parameter.name for parameter in action.parameters], known)
-        self._effects = Effects(variant.effects, variant.rule.variables, rows, predicates, negation, need)
+        self._effects = Effects(
+            variant.effects, variant.rule.variables, rows, predicates, negation, need
+        )
 
         cost = action.cost
-        self._price = filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
-        self._simple = not (kinds.negative or kinds.refuted) and all(effect.simple for effect in variant.effects)
+        self._price = (
+            filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
+        )
+        self._simple = not (kinds.negative or kinds.refuted) and all(
+            effect.simple for effect in variant.effects
+        )
         self._deletes = sum(not effect.adds for effect in variant.effects)
 
     def instantiate(self, row: Row) -> Operator | None:
@@ -148,12 +156,18 @@ def action_rule(
     """
     heads = tuple(effect.atom for effect in effects if effect.adds and effect.simple)
     conditions = (literals, *(condition for effect in effects for condition in effect.conditions))
-    mentioned = {term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms}
-    mentioned |= {term for one in conditions for left, right, _ in one.equalities for term in (left, right)}
+    mentioned = {
+        term for one in conditions for atom in (*one.positive, *one.negative) for term in atom.terms
+    }
+    mentioned |= {
+        term for one in conditions for left, right, _ in one.equalities for term in (left, right)
+    }
     mentioned |= {term for effect in effects for term in effect.atom.terms}
     mentioned |= set(action.cost.terms) if isinstance(action.cost, Atom) else set[str]()
     free = {name: types for name, types in literals.variables if name not in mentioned}
-    body = predicates.body(replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free)))
+    body = predicates.body(
+        replace(literals, variables=tuple(v for v in literals.variables if v[0] not in free))
+    )
     any_ = tuple(predicates.any_atom(name, types) for name, types in free.items())
     return Rule(literals.names, replace(body, positive=(*body.positive, *any_)), heads)
 

@@ -29,6 +29,6 @@ class Kernels:
     reals: Callable[[Sequence[float]], Reals]
 
     def rows(self, lists: Sequence[Sequence[int]]) -> CsrRows:
-        """CsrRows from lists."""
+        """Return CsrRows from lists."""
         made = csr_rows(lists)
         return CsrRows(self.integers(made.starts), self.integers(made.values))

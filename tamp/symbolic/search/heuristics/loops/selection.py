@@ -44,8 +44,8 @@ PLAIN = Kernels(
 
 
 class _Meter:
-    """What plain Python has gone through in this process. It decides about time alone, never about
-    a result.
+    """A meter of what plain Python has gone through in this process. It decides about time alone,
+    never about a result.
     """
 
     entries = 0
