@@ -41,13 +41,18 @@ def revolve(profile: Profile, count: int, squeeze: float = 1.0) -> str:
     for radius, height in rings:
         for step in range(count):
             angle = 2 * math.pi * step / count
-            lines.append(f"v {radius * math.cos(angle):.6f} {radius * squeeze * math.sin(angle):.6f} {height:g}")
+            lines.append(
+                f"v {radius * math.cos(angle):.6f} {radius * squeeze * math.sin(angle):.6f} {height:g}"
+            )
     for step in range(count):
         after = (step + 1) % count
         lines.append(f"f 1 {3 + after} {3 + step}")
         for ring in range(len(rings) - 1):
             low, high = 3 + ring * count, 3 + (ring + 1) * count
-            lines += [f"f {low + step} {low + after} {high + after}", f"f {low + step} {high + after} {high + step}"]
+            lines += [
+                f"f {low + step} {low + after} {high + after}",
+                f"f {low + step} {high + after} {high + step}",
+            ]
         last = 3 + (len(rings) - 1) * count
         lines.append(f"f 2 {last + step} {last + after}")
     return "\n".join(["# Made by problems/assets/make_assets.py; CC0", *lines, ""])
@@ -60,7 +65,10 @@ def main() -> None:
     (OBJECTS / "bowl.obj").write_text(revolve(BOWL, 24))
     for file, scale in SHIPPED:
         path = find_mesh(file, OBJECTS.parent)
-        write_whole(OBJECTS.parent / "pieces" / pieces_name(path, scale), packed(*compute_pieces(path, scale)))
+        write_whole(
+            OBJECTS.parent / "pieces" / pieces_name(path, scale),
+            packed(*compute_pieces(path, scale)),
+        )
 
 
 if __name__ == "__main__":

@@ -78,13 +78,25 @@ def hear(number: int, frame: FrameType | None = None) -> None:
     """Raise KeyboardInterrupt for the first signal; a terminal's Ctrl-C comes twice, from it and
     from who watches.
     """
-    if _ASKED.at_once:
+    if _ASKED.at_once or _is_importing(frame):
         _say_interrupted()
         os._exit(128 + number)
+
     first = _ASKED.number == 0
     note(number)
     if first:
         raise KeyboardInterrupt
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    """Check whether a module is being imported: what is raised inside the start of one in C++ ends
+    the process with a traceback, and nothing has been found yet that could be lost.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def listen() -> None:

@@ -230,3 +230,20 @@ def command_line(pid: int) -> str:
         return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8", errors="replace")
     except OSError:
         return ""
+
+
+def test_an_import_is_left_at_once(tmp_path: Path) -> None:
+    """What is raised in the start of a module in C++ is a crash there, and others swallow it."""
+    waits = "    try:\n        time.sleep(9)\n    except BaseException:\n        pass\n"
+    slow = f"import time\nprint('ready', flush=True)\nwhile True:\n{waits}"
+    (tmp_path / "slow.py").write_text(slow)
+    (tmp_path / "command.py").write_text("def main():\n    import slow\n")
+    code = "from tamp.system.guard import guarded; guarded('command')"
+    environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{Path.cwd()}"}
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None and process.stdout.readline() == "ready\n"
+    process.send_signal(INT)
+    _, err = process.communicate(timeout=SLACK)
+    assert (process.returncode, err) == (130, "interrupted\n")
