@@ -18,6 +18,7 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from tamp.system.process_exit import leave
+from tamp.system.process_family import adopt_orphans, die_with, end_orphans, seconds_waited
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
 """What ends a command, with 128 and the signal's number as its exit code."""
@@ -32,9 +33,6 @@ for a core.
 
 PATIENCE_AT_MOST = 8.0
 """The same, counted by the wall's clock: more than that no load excuses."""
-
-PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
-"""Of linux/prctl.h."""
 
 
 class _Asked:
@@ -120,7 +118,7 @@ def obey_only_parent() -> None:
     _ASKED.guarded = False
     leader = multiprocessing.parent_process()
     if leader is not None and leader.pid is not None:
-        _die_with(leader.pid)
+        die_with(leader.pid)
 
 
 class Held:
@@ -145,7 +143,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     parent = os.getpid()
     # before there is anybody who may end first and leave somebody behind
-    _prctl(PR_SET_CHILD_SUBREAPER, 1)
+    adopt_orphans()
 
     try:
         child = os.fork()
@@ -160,7 +158,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
     sys.unraisablehook = _unraisable
 
     if os.getpid() != parent:
-        _die_with(parent)
+        die_with(parent)
     command = getattr(importlib.import_module(module), function)
     _ASKED.at_once = False
     leave_as(_code(command))
@@ -219,12 +217,12 @@ def _watch(child: int) -> NoReturn:
 
         came = signal.sigtimedwait(WATCHED, 0.05 if number else 3600.0)
         if came is not None and came.si_signo in ENDING and not number:
-            number, since, waited = came.si_signo, time.monotonic(), _waited(child)
+            number, since, waited = came.si_signo, time.monotonic(), seconds_waited(child)
             os.kill(child, number)
 
         if number and not killed:
             passed = time.monotonic() - since
-            if passed > PATIENCE_AT_MOST or passed - (_waited(child) - waited) > PATIENCE:
+            if passed > PATIENCE_AT_MOST or passed - (seconds_waited(child) - waited) > PATIENCE:
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()
@@ -235,7 +233,7 @@ def _watch(child: int) -> NoReturn:
         number = came.si_signo if came is not None else 0
 
     if number:
-        _end_orphans()
+        end_orphans()
 
     if os.WIFEXITED(status):
         code = os.WEXITSTATUS(status)
@@ -249,56 +247,3 @@ def _watch(child: int) -> NoReturn:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, signal.valid_signals())
     os.kill(os.getpid(), deadly)
     os._exit(128 + deadly)
-
-
-def _waited(process: int) -> float:
-    """Return the seconds for which a process was ready to run and others had the cores; 0 where the
-    kernel does not say.
-    """
-    try:
-        with open(f"/proc/{process}/schedstat", encoding="ascii") as file:
-            return int(file.read().split()[1]) * 1e-9
-    except (OSError, ValueError, IndexError):
-        return 0.0
-
-
-def _end_orphans() -> None:
-    """End what the one who worked has started and left behind in our session; a browser has one of
-    its own.
-    """
-    end = time.monotonic() + 0.5
-    while time.monotonic() < end:
-        try:
-            with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as file:
-                left = [int(word) for word in file.read().split()]
-        except OSError:
-            return
-        ours = [process for process in left if _session(process) == os.getsid(0)]
-        if not ours:
-            return
-        for process in ours:
-            os.kill(process, signal.SIGKILL)
-        for process in ours:
-            os.waitpid(process, 0)  # what it has started is ours now, too
-
-
-def _die_with(parent: int) -> None:
-    """Have the kernel end this process when its parent is gone."""
-    _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it went before
-        os._exit(1)
-
-
-def _session(process: int) -> int:
-    try:
-        return os.getsid(process)
-    except OSError:
-        return -1
-
-
-def _prctl(option: int, value: int) -> None:
-    """Call prctl of linux/prctl.h; do nothing elsewhere."""
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
