@@ -7,7 +7,7 @@
 # Seen 2026-11-29 with coal 3.0.3 (comes with pin 4.1.0), Python 3.11, Linux x86-64; two unit boxes, middles so far apart:
 #   0.95 m   primitives: depth 0.05, distance -0.05      mesh against primitive: collides, depth 0, distance 0
 #   0.60 m   primitives: depth 0.40, distance -0.40      mesh against primitive: collides, depth 0, distance 0
-source "$(dirname "$(realpath "$0")")/prelude.sh"
+source "$(dirname "$(realpath "$0")")/prelude"
 install pin==4.1.0 coal==3.0.3 numpy==2.4.6
 cat > look.py <<'PYTHON'
 import itertools

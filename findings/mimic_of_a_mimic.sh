@@ -10,7 +10,7 @@
 #   pybullet 3.2.7             3 free joints       <mimic> is not read
 #   roboticstoolbox 1.5.0      3 free joints       likewise
 #   mujoco-core 4.0.1          2 equalities        b follows a, c follows b: the chain
-source "$(dirname "$(realpath "$0")")/prelude.sh"
+source "$(dirname "$(realpath "$0")")/prelude"
 install yourdfpy==0.0.60 pin==4.1.0 pybullet==3.2.7 mujoco-core==4.0.1 roboticstoolbox-python==1.5.0
 cat > hand.py <<'PYTHON'
 LINK = (

@@ -6,7 +6,7 @@
 #
 # Seen 2026-11-29 with ompl 2.0.1, Python 3.11, Linux x86-64: True in a RealVectorStateSpace with bounds [-1, 1], for NaN in
 # any coordinate; infinity and 2.0 are refused. enforceBounds leaves NaN as it is.
-source "$(dirname "$(realpath "$0")")/prelude.sh"
+source "$(dirname "$(realpath "$0")")/prelude"
 install ompl==2.0.1
 cat > look.py <<'PYTHON'
 import math

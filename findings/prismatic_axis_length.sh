@@ -10,7 +10,7 @@
 #   pybullet 3.2.7       0.6      the same model at another place, no warning
 #   yourdfpy 0.0.60      0.6
 # All four agree on a turning joint with that axis.
-source "$(dirname "$(realpath "$0")")/prelude.sh"
+source "$(dirname "$(realpath "$0")")/prelude"
 install yourdfpy==0.0.60 pin==4.1.0 pybullet==3.2.7 mujoco-core==4.0.1
 cat > look.py <<'PYTHON'
 import math

@@ -6,7 +6,7 @@
 #
 # Seen 2026-11-29 with pybullet 3.2.7, Python 3.11, Linux x86-64: entry 0 is exact, entry 4 is rounded to a float: 1.5 um
 # off at 100 m from the origin, 1.6 mm at 45 km (where a map's coordinates may put a robot).
-source "$(dirname "$(realpath "$0")")/prelude.sh"
+source "$(dirname "$(realpath "$0")")/prelude"
 install pybullet==3.2.7 numpy==2.4.6
 cat > look.py <<'PYTHON'
 import numpy as np
