@@ -128,8 +128,13 @@ class PredicateKinds:
         return frozenset(found)
 
     def classify(self, literals: Literals) -> ClassifiedAtoms:
-        """Split a conjunction by the kinds of its predicates."""
+        """Split a conjunction by the kinds of its predicates; types that it asks about have a
+        relation from then on.
+        """
         definitions = self._normalizer.definitions
+        for atom in (*literals.positive, *literals.negative):
+            if atom.predicate.startswith("type "):
+                self.type_atom(atom.terms[0], tuple(atom.predicate.split(" ")[1:]))
 
         def of(atoms: Iterable[Atom], kind: int) -> tuple[Atom, ...]:
             return tuple(
@@ -160,9 +165,6 @@ class PredicateKinds:
             for name, types in literals.variables
             if not (name in covered and "object" in types)
         )
-        for atom in kinds.static:
-            if atom.predicate.startswith("type "):
-                self.type_atom(atom.terms[0], tuple(atom.predicate.split(" ")[1:]))
         return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
 
     def unnamed(self, literals: Literals) -> tuple[Atom, ...]:

@@ -115,3 +115,25 @@ def test_types_of_the_head_are_kept() -> None:
     text = "(define (problem q) (:domain d) (:objects x - a y - b z - object) (:init) (:goal (done)))"
     assert [str(operator) for operator in instantiate(parse_task(text, domain)).operators] == ["(go x y)"]
     assert Normalizer(domain).definitions["d"][0].head == Atom("d", ("?x", "?y"))
+
+
+TYPED = """(define (domain d) (:types a b - object) (:constants x - a y - b) (:predicates (done) (d ?v))
+ (:derived (d ?v - a) (done)) (:action go :effect (done)))"""
+
+
+@pytest.mark.parametrize(
+    ("goal", "solvable"),
+    [
+        ("(d x)", True),
+        ("(d y)", False),
+        ("(a x)", True),
+        ("(a y)", False),
+        ("(not (a x))", False),
+        ("(not (a y))", True),
+    ],
+)  # fmt: skip
+def test_a_goal_may_ask_for_the_type_of_an_object(goal: str, solvable: bool) -> None:
+    """Unfolded, a rule's head asks it; no other condition here does."""
+    text = f"(define (problem q) (:domain d) (:init) (:goal {goal}))"
+    found = search(instantiate(parse_task(text, parse_domain(TYPED))), search="astar", heuristic="blind")
+    assert (found.plan is not None) == solvable
