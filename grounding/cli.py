@@ -25,13 +25,13 @@ from grounding.certainty import cannot_tell
 from grounding.cli_files import (
     check_out,
     encoder_file,
-    files_below,
     mesh_files,
     read_data,
     with_card,
 )
 from grounding.dataset import FORMAT as DATA
 from grounding.dataset import write_dataset
+from grounding.folder_files import files_below
 from grounding.mesh_folder import MeshFolder, read_folder
 from grounding.variety import contradictions, monotony
 from grounding.weights import FORMAT as WEIGHTS

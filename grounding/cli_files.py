@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 from grounding.arguments import Explore, Generate, data_file
 from grounding.dataset import Dataset, read_dataset
+from grounding.folder_files import files_below
 from tamp.errors import InputError
 from tamp.system.outputs import check_outputs, check_writable
 
@@ -30,18 +30,9 @@ def with_card(path: Path | None) -> list[Path]:
     return [] if path is None else [path, path.with_suffix(".json")]
 
 
-def files_below(folder: Path, pattern: str) -> list[Path]:
-    """Find the files of a folder, at any depth; none of what is no folder."""
-    return sorted(folder.rglob(pattern)) if os.path.isdir(folder) else []
-
-
 def mesh_files(chosen: Generate | Explore) -> list[Path]:
     """Find the files of the folder of one's own meshes."""
-    return (
-        []
-        if chosen.meshes is None
-        else [file for file in files_below(chosen.meshes, "*") if os.path.isfile(file)]
-    )
+    return [] if chosen.meshes is None else files_below(chosen.meshes)
 
 
 def check_out(out: Path, form: str, read: list[Path], state: Path | None = None) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from grounding.body_geometry import BodyGeometry
+from grounding.folder_files import files_below
 from tamp.errors import InputError
 from tamp.geometric.loading.meshes import load_mesh
 from tamp.geometric.scene.scene import Part
@@ -115,12 +116,14 @@ def unusable(parts: tuple[Part, ...]) -> str | None:
 def _files(folder: Path) -> dict[str, Path]:
     """Return the meshes by name."""
     found: dict[str, Path] = {}
-    for place in sorted(folder.iterdir()) if folder.is_dir() else []:
-        files = [file for file in place.rglob("*") if file.is_file()] if place.is_dir() else [place]
-        meshes = [file for file in files if file.suffix.lower() in SUFFIXES]
-        if meshes:
-            first = min(meshes, key=lambda file: (SUFFIXES.index(file.suffix.lower()), file))
-            found.setdefault(place.name if place.is_dir() else place.stem, first)
+    by_place: dict[Path, list[Path]] = {}
+    for file in files_below(folder):
+        if file.suffix.lower() in SUFFIXES:
+            by_place.setdefault(folder / file.relative_to(folder).parts[0], []).append(file)
+
+    for place in sorted(by_place):
+        first = min(by_place[place], key=lambda file: (SUFFIXES.index(file.suffix.lower()), file))
+        found.setdefault(place.name if place.is_dir() else place.stem, first)
     return found
 
 
