@@ -212,7 +212,8 @@ def judge(ended: Ended, words: list[str], before: dict[str, bytes | None], folde
         names = ({Path(name).name for name in named} - {""}) | {"lefty"}
         if "words" not in ended.faults and not any(name in ended.err for name in names):
             faults.append("the error names no file")
-        if after != before and not {name for name in after if name not in before} <= {"out.json"}:
+        whole = {"out.json", *(words if "/dev/full" in words else ())}  # one output failed, another is there whole
+        if after != before and not after.keys() - before.keys() <= whole:
             faults.append(f"written: {sorted(after.keys() - before.keys())}")
     changed = [name for name, content in before.items() if after.get(name, b"gone") != content]
     kept = {words[at + 1] for at, word in enumerate(words[:-1]) if word in ("--out", "--statistics")}
