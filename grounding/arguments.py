@@ -24,6 +24,9 @@ class Generate:
     """train or test; they share no object and no support."""
     count: int = 20000
     """Scenes; half of them are positive."""
+    layout: str = "household"
+    """household: odd and small furniture, many bodies, any face down; or paper: as the paper's
+    public code lays its scenes out, which is easier."""
     seed: int = 0
     """Of all randomness: the same seed gives the same bytes."""
     out: Path | None = None
@@ -213,6 +216,7 @@ def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
     )
 
 
-def data_file(relation: str, split: str) -> Path:
+def data_file(relation: str, split: str, layout: str = "household") -> Path:
     """Return the default path of a relation's data."""
-    return Path("data") / f"{relation}_{split}.npz"
+    name = split if layout == "household" else f"{layout}_{split}"
+    return Path("data") / f"{relation}_{name}.npz"

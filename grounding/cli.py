@@ -86,9 +86,11 @@ def run(shown: Progress, arguments: list[str]) -> int:
 def _generate(chosen: Generate, show: Show) -> None:
     from grounding.generate import Job, generate
 
-    out = chosen.out or data_file(chosen.relation, chosen.split)
+    out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout)
     check_out(out, DATA, mesh_files(chosen))
-    job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
+    job = Job(
+        chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen), chosen.layout
+    )
     data = generate(
         job, out, chosen.workers, lambda done, total: show(f"{done:,} of {total:,} scenes")
     )
