@@ -113,8 +113,11 @@ class Train:
     """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
     scheme: str | None = None
     """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by
-    default both.
+    default discriminator for on, both for others.
     """
+    departures: tuple[str, ...] = ()
+    """Of the paper's networks: what is done otherwise than there, any of residual-turn,
+    mean-weights, scaled-classifier."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -143,6 +146,8 @@ class Evaluate:
     """The data set; by default data/RELATION_test.npz of the weights' relation."""
     scenes: int | None = None
     """At most so many scenes."""
+    draws: int = 1
+    """Poses a scene for the oracles on boxes; the published evaluation draws 9."""
     seed: int = 0
     """Of the scenes' order and of the draws."""
 

@@ -172,6 +172,7 @@ def _train(chosen: Train, show: Show) -> None:
         samples=chosen.samples,
         seed=chosen.seed,
         scheme=chosen.scheme,
+        departures=chosen.departures or None,
         iterations=chosen.iterations,
         encoder=encoder,
         state=out.with_suffix(".state"),
@@ -219,6 +220,7 @@ def _evaluate(chosen: Evaluate, show: Show) -> None:
         chosen.scenes,
         chosen.seed,
         lambda done, total: show(f"{done} of {total} scenes"),
+        chosen.draws,
     )
     show("", last=True)
     for name, share in (
@@ -228,6 +230,10 @@ def _evaluate(chosen: Evaluate, show: Show) -> None:
     ):
         low, high = wilson(share, found.scenes)
         print(f"{name:9} {share:.4f}  [{low:.4f}, {high:.4f}]")
+    print(f"published {found.published:.4f}  by the published oracle at 3 cm")
+    print(f"          {found.published_scaled:.4f}  at 6.3 cm, which it comes to for clouds")
+    print(f"ceiling   {found.blind_mca:.4f}  MCA of an ideal generator that sees no surroundings")
+    print(f"          {found.blind_published:.4f}  by the published oracle")
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
     print(f"one pose  {found.milliseconds:.2f} ms")
     print(json.dumps(asdict(found)))

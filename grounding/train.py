@@ -32,6 +32,7 @@ NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
 
 OPTIONS: Mapping[str, tuple[str, ...]] = {
     "scheme": NETWORKS,
+    "departures": NETWORKS,
     "iterations": NETWORKS,
     "encoder": ("mlp-pc", "gnn-pc", "tree-pc"),
 }
@@ -56,7 +57,9 @@ class TrainArgs:
         seed: Of initial weights and batches.
         demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
         scheme: What teaches the generator of one of the paper's networks: discriminator, classifier
-            or both; None for both.
+            or both; None for the relation's headline scheme.
+        departures: What is done otherwise than in the paper, of its networks: any of
+            `grounding.paper.training.DEPARTURES`.
         iterations: Of the paper's networks; None for the paper's 30,000.
         encoder: Weights of an encoder of clouds, which the models on clouds need.
         state: Where an interrupted training of the paper's networks goes on from, and is saved.
@@ -67,6 +70,7 @@ class TrainArgs:
     seed: int = 0
     demonstrations: int = 2000
     scheme: str | None = None
+    departures: tuple[str, ...] | None = None
     iterations: int | None = None
     encoder: Path | None = None
     state: Path | None = None
@@ -171,7 +175,11 @@ def train_relational(
         "samples": count,
         "seed": args.seed,
         "commit": args.commit,
-        "data": {name: data.card[name] for name in ("split", "seed", "count") if name in data.card},
+        "data": {
+            name: data.card[name]
+            for name in ("split", "seed", "count", "layout")
+            if name in data.card
+        },
         "validation accuracy": score,
         "ranks": ranks,
         **_certainty(measured, holds, usable, ranks, score, args.seed),
@@ -224,18 +232,20 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
     """Train one of the paper's networks, on as many scenes in the order of
     `grounding.paper.feature_table.order`.
     """
+    from grounding.paper.training import HEADLINE_SCHEME
     from grounding.paper.training import train as train_networks
 
     (weights,) = train_networks(
         data,
         model,
-        args.scheme or "both",
+        args.scheme or HEADLINE_SCHEME.get(data.relation, "both"),
         sizes=[args.samples or len(data)],
         seeds=[args.seed],
         encoder=_encoder(args),
         state=args.state,
         progress=progress,
         iterations=args.iterations or ITERATIONS,
+        departures=args.departures or (),
     )
     return _signed(_checked(weights, data, args), args)
 

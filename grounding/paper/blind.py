@@ -1,5 +1,5 @@
-"""The blind ceiling: what an ideal generator that does not look at the surroundings reaches on a data
-set.
+"""The blind ceiling: what an ideal generator that does not look at the surroundings reaches on a
+data set.
 
 Beside each success rate it says how much of what is missing is the generator's fault, and how much
 no network could have that sees the two arguments only.
@@ -14,6 +14,7 @@ from itertools import product
 
 import numpy as np
 from numpy.random import Generator as Random
+from numpy.typing import NDArray
 
 from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
@@ -37,8 +38,8 @@ the body lowest.
 
 @dataclass(frozen=True)
 class BlindModel:
-    """An ideal generator that sees the two arguments only: exact height, a stable face, uniform over
-    the middle of the region. It is no classifier.
+    """An ideal generator that sees the two arguments only: exact height, a stable face, uniform
+    over the middle of the region. It is no classifier.
 
     Attributes:
         face: One of FACES.
@@ -82,7 +83,9 @@ class BlindCeiling:
     published: float
 
 
-def blind_ceiling(data: Dataset, indices: Sequence[int], draws: int, seed: int) -> BlindCeiling:
+def blind_ceiling(
+    data: Dataset, indices: Sequence[int] | NDArray[np.intp], draws: int, seed: int
+) -> BlindCeiling:
     """Compute the share of poses that hold, of the best blind generator on these scenes of a data
     set.
 

@@ -7,6 +7,7 @@ true vertices and is the more lenient one.
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,7 @@ def published_oracle(
     """
     region = situation.region
     low, high = situation.body.form.corners
-    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    corners = np.array([*product(*zip(low, high, strict=True))])
     frame = situation.support.matrix if region.hollow else situation.T_world_region
     inner = np.linalg.inv(frame) @ poses
     points = corners @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]

@@ -24,6 +24,7 @@ from grounding.relation_scene import Placed, gap, region_of
 from grounding.scenes import GAP, TRIES, SampledScene
 from grounding.separation import Obstacles, separations
 from grounding.supports import Support, scaled_region
+from tamp.errors import InputError
 from tamp.geometric.loading.furniture import FURNITURE, Options
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Part, Surface
@@ -57,6 +58,11 @@ SUPPORT_SIZES_M: Mapping[str, Mapping[str, tuple[float, float, float]]] = {
 
 CONTAINER_SIZES_M = {"square_box": (0.50, 0.50, 0.15), "long_box": (0.60, 0.40, 0.16)}
 """`inside`: the boxes at scale 1, the same ones in training and test."""
+
+STEADY_RAD = math.radians(8.0)
+"""The tilt that a body withstands whose own frame says what is up; others are left out: the
+published bodies lie in their files as they stand.
+"""
 
 CONTAINER_WALL_M = 0.02
 """Thickness of their walls and floor, metres."""
@@ -97,9 +103,12 @@ class PaperScenes:
 
     def __init__(self, relation: str, split: str, folder: MeshFolder | None = None) -> None:
         self.relation, self.split, self.items = relation, split, ItemOf()
-        self._objects = {
+        forms = {
             name: BodyGeometry(parts) for name, parts in object_templates(split, folder).items()
         }
+        self._objects = {name: form for name, form in forms.items() if stands_upright(form)}
+        if not self._objects:
+            raise InputError("none of the bodies stands as its own frame has it")
         self._supports = dict(paper_supports(relation, split))
         self._forms = {
             name: BodyGeometry(support.parts) for name, support in self._supports.items()
@@ -229,6 +238,13 @@ class PaperScenes:
 
         x, y = rng.uniform(least, most)
         return Pose.from_xyz_yaw(float(x), float(y), CONTACT_GAP - float(low[2]), yaw).matrix.copy()
+
+
+def stands_upright(form: BodyGeometry) -> bool:
+    """Check whether a body rests as it is in its own frame, and withstands a tilt of STEADY_RAD."""
+    return any(
+        face.angle >= STEADY_RAD and float(face.rotation[2, 2]) > 0.999 for face in form.faces
+    )
 
 
 def _reachable(
