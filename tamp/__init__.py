@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tamp.planner.solve import solve as solve
     from tamp.stream import Call as Call
     from tamp.stream import Rejection as Rejection
+    from tamp.stream import RejectionKind as RejectionKind
     from tamp.symbolic.algorithms.result import Outcome as Outcome
 
 _HOMES = {
@@ -29,6 +30,7 @@ _HOMES = {
     "Pose": "tamp.geometric.scene.pose",
     "Problem": "tamp.planner.problem",
     "Rejection": "tamp.stream",
+    "RejectionKind": "tamp.stream",
     "Scene": "tamp.geometric.scene.scene",
     "Solution": "tamp.planner.solution",
     "load_problem": "tamp.planner.problem",

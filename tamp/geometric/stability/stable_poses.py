@@ -14,7 +14,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Cavity, Sphere, Surface
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
-from tamp.stream import Rejection
+from tamp.stream import Rejection, RejectionKind
 
 SNAP_HEIGHT = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
@@ -142,14 +142,15 @@ def rest(
     """
     face = resting.nearest(proposal.rotation)
     if face is None:
-        return Rejection("stands on no stable face")
+        return Rejection("stands on no stable face", kind=RejectionKind.UNSTABLE)
     T_region_body = T_world_region.inverse() @ proposal
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     if face.extent + 2 * CONTACT_GAP > room:
-        return Rejection(f"too tall ({face.extent:.2f} m, room for {room:.2f} m)")
+        what = f"too tall ({face.extent:.2f} m, room for {room:.2f} m)"
+        return Rejection(what, kind=RejectionKind.TOO_LARGE)
     bottom = T_region_body.position[2] - face.height
     if abs(bottom) > SNAP_HEIGHT:
-        return Rejection("too high" if bottom > 0 else "too low")
+        return Rejection("too high" if bottom > 0 else "too low", kind=RejectionKind.UNSTABLE)
     yaw = _yaw_between(face.rotation, T_region_body.rotation)
     return settle(
         face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region
@@ -168,12 +169,12 @@ def settle(
     outline = face.outline @ turn.T + (x, y)
     if isinstance(region, Cavity):
         if (np.abs(outline) > half).any():
-            return Rejection("protrudes")
+            return Rejection("protrudes", kind=RejectionKind.TOO_LARGE)
     else:
         base = face.base @ turn.T + (x, y)
         centre = turn @ face.centre + (x, y)
         if (np.abs(base) > half).any() and not _balanced(base, centre, half):
-            return Rejection("overhangs")
+            return Rejection("overhangs", kind=RejectionKind.UNSTABLE)
     return T_world_region @ resting_pose(face, yaw, x, y)
 
 

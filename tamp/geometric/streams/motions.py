@@ -17,7 +17,7 @@ from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.result import Failure, Planned
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 HARDEST = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
@@ -179,9 +179,9 @@ def _diagnosed(
             if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any()
             else None
         )
-        if gap is not None:
-            return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
-        return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
+        failed = failure.value if gap is None else gap.text
+        what = f"no motion even without the movable bodies: {failed}{where}"
+        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(ahead))
 
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
@@ -191,9 +191,10 @@ def _diagnosed(
         if not _free(context.collisions.arrangement({name: pose}, attachment, fixed=False), confs)
     )
     if not blockers:
-        return Rejection("no motion found")
+        return Rejection("no motion found", kind=RejectionKind.NO_MOTION)
 
-    return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
+    what = f"way blocked by {' and '.join(blockers)}"
+    return Rejection(what, blockers, kind=RejectionKind.BLOCKED)
 
 
 def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:

@@ -19,7 +19,7 @@ from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.streams.collisions import NEIGHBOUR
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 BATCH = 16
 """Poses asked of a generator at once."""
@@ -88,7 +88,8 @@ def draw(
         None,
     )
     if unruly is not None:
-        yield Rejection(f"{unruly.account.name}: {unruly.wrong}", given_up=True)
+        what = f"{unruly.account.name}: {unruly.wrong}"
+        yield Rejection(what, given_up=True, kind=RejectionKind.FAULT)
 
 
 @dataclass
@@ -239,7 +240,7 @@ class _Drawer:
 
     def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
         """Ask a generator beside the trusted one no more; alone it has a few more tries."""
-        refused[Rejection(f"{source.account.name}: {what}")] += 1
+        refused[Rejection(f"{source.account.name}: {what}", kind=RejectionKind.FAULT)] += 1
         source.wrong = what
         if not self.alone:
             source.batch.clear()

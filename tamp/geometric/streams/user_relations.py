@@ -16,7 +16,7 @@ from tamp.geometric.scene.classifier import LIKELY, Classifier, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.stability.stable_poses import rest
 from tamp.geometric.streams.proposal_stream import draw
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 
 def sample_relation(
@@ -57,11 +57,11 @@ def sample_relation(
         ]
         pose = next((pose for pose in rested if isinstance(pose, Pose)), None)
         if pose is None:
-            return Rejection("rests nowhere")
+            return Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
 
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
-            return Rejection(f"hits {hit}")
+            return Rejection.hits(hit)
         if judge is None:
             return pose
 
@@ -90,14 +90,18 @@ def fails_relation(
     """Test whether the classifier says that the relation does not hold."""
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
-        return Rejection("cannot tell")
-    return True if number < LIKELY else Rejection(f"likely ({number:.2f})")
+        return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
+    if number < LIKELY:
+        return True
+    return Rejection(f"likely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
 
 def _answer(number: float) -> bool | Rejection:
     if math.isnan(number):
-        return Rejection("cannot tell")
-    return True if number >= LIKELY else Rejection(f"unlikely ({number:.2f})")
+        return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
+    if number >= LIKELY:
+        return True
+    return Rejection(f"unlikely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
 
 def _probability(

@@ -23,7 +23,7 @@ from tamp.geometric.streams.sampling import sample_grasp
 from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
-from tamp.stream import Rejection
+from tamp.stream import Rejection, RejectionKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.verification.verify import verify
 from tests.geometric.streams.scenes import call, problem_with, values
@@ -107,7 +107,8 @@ def test_a_lying_can_fits_under_a_ceiling_that_it_cannot_stand_under(tmp_path: P
 
 def test_a_sphere_is_refused_in_words_without_a_proof(tmp_path: Path) -> None:
     refused = refusal("sphere: 0.03", "cupboard_top", tmp_path)
-    assert refused == Rejection("a sphere rests on no stable face (thing)", given_up=True)
+    words = "a sphere rests on no stable face (thing)"
+    assert refused == Rejection(words, given_up=True, kind=RejectionKind.UNSTABLE)
 
 
 def test_the_measured_height_is_reached_and_a_hand_higher_is_not(tmp_path: Path) -> None:
