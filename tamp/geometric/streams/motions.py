@@ -5,7 +5,7 @@ they were shown.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -71,12 +71,13 @@ def plan_pick(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
     """Plan a pick: from home to the body, close the hand, and back home with it."""
+    opened = context.robot.opening
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
             continue
+
         empty, loaded = found
-        opened = context.robot.opening
         yield Motion(
             (
                 Path("arm", np.concatenate([empty, reach.approach]), opened),
@@ -89,20 +90,22 @@ def plan_pick(
 def plan_place(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """Plan a placement: from home with the body to its place, open the hand, and back home."""
-    for found in _transits(context, body, pose, grasp, base, reach, call):
-        if isinstance(found, Rejection):
-            yield found
-            continue
-        empty, loaded = found
-        opened = context.robot.opening
-        yield Motion(
-            (
-                Path("arm", np.concatenate([loaded, reach.lift[::-1][1:]]), grasp.opening, body),
-                Grip((grasp.opening, opened), detach=body),
-                Path("arm", np.concatenate([reach.approach[::-1], empty[::-1]]), opened),
-            )
-        )
+    """Plan a placement: a pick of the body from there, backwards."""
+    for found in plan_pick(context, body, pose, grasp, base, reach, call):
+        yield found if isinstance(found, Rejection) else _backwards(found)
+
+
+def _backwards(motion: Motion) -> Motion:
+    """Reverse a motion in time: paths run back, and a hand that closed on a body lets it go."""
+    segments: list[Path | Grip] = []
+    for segment in reversed(motion.segments):
+        if isinstance(segment, Path):
+            segments.append(replace(segment, points=segment.points[::-1]))
+        else:
+            held = None if segment.attach is None else segment.attach.body
+            segments.append(Grip((segment.opening[1], segment.opening[0]), detach=held))
+
+    return Motion(tuple(segments))
 
 
 def _transits(
