@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tamp.errors import InputError as InputError
     from tamp.geometric.scene.pose import Pose as Pose
     from tamp.geometric.scene.scene import Scene as Scene
+    from tamp.geometric.stability.placement import Placement as Placement
     from tamp.plan.write import write_plan as write_plan
     from tamp.planner.problem import Problem as Problem
     from tamp.planner.problem import load_problem as load_problem
@@ -27,6 +28,7 @@ _HOMES = {
     "Call": "tamp.stream",
     "InputError": "tamp.errors",
     "Outcome": "tamp.symbolic.algorithms.result",
+    "Placement": "tamp.geometric.stability.placement",
     "Pose": "tamp.geometric.scene.pose",
     "Problem": "tamp.planner.problem",
     "Rejection": "tamp.stream",

@@ -22,7 +22,7 @@ from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Part, Scene
-from tamp.geometric.stability.stable_poses import Resting, resting_of
+from tamp.geometric.stability.stable_poses import StableFaces, stable_faces_of
 from tamp.geometric.values import Grasp
 
 
@@ -109,9 +109,9 @@ class Context:
         """Return the direction of up in the tool's frame while the arm is at home, shape (3,)."""
         return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
 
-    def resting(self, body: str) -> Resting:
+    def stable_faces(self, body: str) -> StableFaces:
         """Return the ways in which a body can rest."""
-        return resting_of(self.scene.bodies[body])
+        return stable_faces_of(self.scene.bodies[body])
 
     def radius(self, body: str) -> float:
         """Return the radius of a sphere around the body's frame that contains the body, metres."""

@@ -108,7 +108,7 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
 
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
-    ways = context.resting(body).ways
+    ways = context.stable_faces(body).ways
     if not ways:
         ball = all(isinstance(part.shape, Sphere) for part in shape.parts)
         reason = (
@@ -143,7 +143,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     Wherever it rests, its centre of mass is over the region and well inside the side that is down;
     so a disc around it, just above the region, must be free.
     """
-    shape, ways = context.scene.bodies[body], context.resting(body).ways
+    shape, ways = context.scene.bodies[body], context.stable_faces(body).ways
     if len(shape.parts) != 1 or not ways:
         return None
 

@@ -9,7 +9,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
-from tamp.geometric.stability.stable_poses import rest
+from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
 from tamp.geometric.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.streams.proposal_stream import draw
@@ -80,14 +80,20 @@ def _placements(
     context: Context, relation: str, body: str, region: Surface | Cavity, call: Call
 ) -> Iterator[Pose | Rejection]:
     T_world_region = context.scene.world_pose(region)
-    resting = context.resting(body)
+    faces = context.stable_faces(body)
     refusal = no_room(context, body, region)
     if refusal is not None:
         yield refusal
         return
 
-    def judge(proposal: Pose) -> Pose | Rejection:
-        pose = rest(resting, proposal, region, T_world_region)
+    def judge(proposal: Placement | Pose) -> Pose | Rejection:
+        if isinstance(proposal, Pose):
+            snapped = snap_to_region(faces, proposal, region, T_world_region)
+            if isinstance(snapped, Rejection):
+                return snapped
+            proposal = snapped
+
+        pose = certified_pose(faces, proposal, region, T_world_region)
         if isinstance(pose, Rejection):
             return pose
         hit = context.collisions.between(body, pose, {})
