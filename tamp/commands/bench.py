@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tamp.commands.bench_options import Draw, Fig8, Run, Tabulate, parsed
+from tamp.commands.bench_options import Draw, Fig8, Run, Runs, Tabulate, parsed
 from tamp.errors import InputError
 from tamp.system.command_line import BAD_INPUT as BAD_INPUT
 from tamp.system.command_line import as_command
@@ -78,7 +78,7 @@ def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
 
 
 def _lead(
-    chosen: Run | Fig8,
+    chosen: Runs,
     samplers: Mapping[str, Mapping[str, str]],
     seeds: range,
     algorithm: str,
@@ -122,7 +122,7 @@ def _lead(
     return lines
 
 
-def _crew(chosen: Run | Fig8, runs: int) -> Crew:
+def _crew(chosen: Runs, runs: int) -> Crew:
     from tamp.benchmark.run_case import do, warm_up
 
     work = partial(do, registry=_registry)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 SNAP_TILT = math.radians(15.0)
 """A proposal tilted less than this from a stable face, or than the face withstands, is laid onto
@@ -113,7 +117,7 @@ class StableFaces:
         """Return the stable faces, and the curved side that it lies on."""
         return self.faces if self.lying is None else (*self.faces, self.lying)
 
-    def nearest(self, rotation: Array) -> int | None:
+    def nearest(self, rotation: Float[Array, "3 3"]) -> int | None:
         """Find the way onto which the body, let go under this rotation (3, 3), tips back: an index
         of `ways`; None when it may tip over.
         """
@@ -123,7 +127,7 @@ class StableFaces:
         best = max(range(len(cosines)), key=cosines.__getitem__)
         return best if cosines[best] >= math.cos(max(SNAP_TILT, self.ways[best].angle)) else None
 
-    def index_of(self, rotation: Array) -> int | None:
+    def index_of(self, rotation: Float[Array, "3 3"]) -> int | None:
         """Find the way that this rotation (3, 3) turns down, exactly: an index of `ways`."""
         for number, face in enumerate(self.ways):
             if (face.rotation == rotation).all():

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from tamp.geometric.streams.grasp_directions import (
 from tamp.geometric.streams.hand_fit import CONE, ROOMY, Closed, HandFit
 from tamp.geometric.values import Grasp
 from tamp.stream import Rejection
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 TIP = 0.009
 """Metres by which the finger tips reach beyond the tool's origin."""
@@ -68,7 +72,7 @@ def sample_grasps(
     body: Body,
     robot: Robot,
     rng: np.random.Generator,
-    ups: Sequence[Array] = (),
+    ups: Sequence[Float[Array, " 3"]] = (),
     refused: Callable[[Grasp], Rejection | None] = _welcome,
 ) -> Iterator[Grasp | Rejection]:
     """Yield grasps of a body: first the canonical ones in random order, then random antipodal ones

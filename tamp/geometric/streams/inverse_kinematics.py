@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.heights import too_high
 from tamp.geometric.values import BaseConf, Grasp, Reach
 from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 STEP = 0.01
 """Spacing of the tool poses along the last stretch, metres,"""
@@ -190,7 +194,12 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
     return Reach(away[::-1].copy(), np.concatenate([up, out[1:]]))
 
 
-def follow_line(context: Context, T_base_tool: Array, offset: Array, q: Array) -> Array | None:
+def follow_line(
+    context: Context,
+    T_base_tool: Float[Array, "4 4"],
+    offset: Float[Array, " 3"],
+    q: Float[Array, " 7"],
+) -> Float[Array, "k 7"] | None:
     """Compute arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the
     base frame, from q.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.flat import too_flat
 from tamp.geometric.streams.heights import too_high
 from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 PAD = 0.02
 """How far the fingers reach beyond the tool's origin, metres."""
@@ -30,7 +34,9 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
     return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
 
 
-def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
+def within_reach(
+    context: Context, low: Float[Array, " 3"], high: Float[Array, " 3"]
+) -> bool | Rejection:
     """Check whether the arm could touch a box with corners `low` and `high` (3,) from some place in
     the room.
 
