@@ -35,6 +35,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--no-shapes", action="store_true", help="do not check the shapes of arrays in tamp.geometric")
 
 
+def pytest_runtest_setup() -> None:
+    """Check the shapes of each function's first calls in this test."""
+    shape_checks.begin_test()
+
+
 @pytest.fixture(scope="session")
 def root() -> Path:
     """The checkout: domains/, problems/ and README.md lie here."""

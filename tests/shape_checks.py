@@ -9,15 +9,22 @@ from __future__ import annotations
 import ast
 import importlib.machinery
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
 from importlib.abc import MetaPathFinder
 from pathlib import Path
 from types import CodeType, ModuleType
+from typing import ParamSpec, TypeVar
+
+P, R = ParamSpec("P"), TypeVar("R")
 
 WING = "tamp.geometric."
 SHAPES = ("Float", "Int")
 WRAPPABLE = ("property", "cached_property", "classmethod", "staticmethod", "cache")
 """Decorators that may stand above the check; a compiled kernel's would compile it, too."""
+
+CALLS = 100
+"""Calls of one function that are checked in one test; a check takes longer than most of them do."""
 
 NAMES = "_shape_checks"
 """The name under which a checked module knows this one."""
@@ -121,9 +128,31 @@ def __getattr__(name: str) -> object:
         import jaxtyping
 
         return getattr(jaxtyping, name)
-    if name == "checked":
-        from beartype import beartype
-        from jaxtyping import jaxtyped
-
-        return jaxtyped(typechecker=beartype)
     raise AttributeError(name)
+
+
+_budgets: list[dict[int, int]] = [{}]
+"""The calls that are still checked in this test, of each function that was called."""
+
+
+def begin_test() -> None:
+    """Check the first calls of each function again."""
+    _budgets[0] = {}
+
+
+def checked(function: Callable[P, R]) -> Callable[P, R]:
+    """Wrap a function so that its first calls in each test are checked."""
+    from beartype import beartype
+    from jaxtyping import jaxtyped
+
+    slow, key = jaxtyped(typechecker=beartype)(function), id(function)
+
+    @wraps(function)
+    def call(*args: P.args, **kwargs: P.kwargs) -> R:
+        left = _budgets[0].get(key, CALLS)
+        if left == 0:
+            return function(*args, **kwargs)
+        _budgets[0][key] = left - 1
+        return slow(*args, **kwargs)
+
+    return call
