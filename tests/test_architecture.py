@@ -108,7 +108,7 @@ def test_dependencies_are_what_the_code_imports() -> None:
         extra: {re.split("[>=]=", line)[0] for line in project["optional-dependencies"][extra]}
         for extra in ("learn", "bench", "ray")
     }
-    own = {"tamp", "grounding", *sys.stdlib_module_names}
+    own = {"tamp", "grounding", "jaxtyping", *sys.stdlib_module_names}  # jaxtyping: see tests/test_shapes.py
     needed = {
         folder: {DISTRIBUTIONS.get(name, name) for file in sources(folder) for name in imported(file)} - own
         for folder in ("tamp", "grounding")
