@@ -79,8 +79,8 @@ def _proposed(
 
 @dataclass(frozen=True, eq=False)
 class _Limits:
-    """What a proposal may name, noted before the generator has the scene in its hands; it may have
-    had it before.
+    """The body, regions and room that proposals are about, noted before the generator has the scene
+    in its hands.
     """
 
     body: Body | None
