@@ -18,7 +18,7 @@ ResultFile = Annotated[Path, tyro.conf.arg(metavar="FILE")]
 
 @dataclass(frozen=True)
 class Runs:
-    """What all commands that make runs have in common."""
+    """The options of all commands that make runs."""
 
     problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
     """Shipped problems' names, or files."""
