@@ -93,7 +93,7 @@ def load(request: Request) -> Loaded:
     if options.scene.statistics is not None:
         domain_name = problem.stream_task.task.domain.name
         known = read_statistics(options.scene.statistics, domain_name)
-        problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
+        problem = replace(problem, stream_task=replace(problem.stream_task, posteriors=known))
 
     shown.line(headline(problem))
     return Loaded(problem, load_again, request.budget.elapsed())

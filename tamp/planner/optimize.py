@@ -16,7 +16,7 @@ from tamp.planner.solution import Improvement, Solution
 from tamp.planner.timed_trajectories import Timed
 from tamp.symbolic.algorithms.anytime import solve_anytime
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result
+from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
@@ -127,5 +127,5 @@ def _frozen(result: Result) -> Result:
     )
 
 
-def _silent(effort: Effort) -> None:
+def _silent(effort: SearchStatistics) -> None:
     pass

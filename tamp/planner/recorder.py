@@ -12,7 +12,7 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection, Wild
 from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.algorithms.result import Attempt, StreamTask
+from tamp.symbolic.algorithms.result import SkeletonAttempt, StreamTask
 
 LIMIT = 2000
 """Samples that are kept of a run, beside those of the plan,"""
@@ -52,7 +52,7 @@ class Record:
 
     samples: tuple[Sample, ...]
     dropped: int
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[SkeletonAttempt, ...]
 
 
 class Recorder:
@@ -70,7 +70,7 @@ class Recorder:
         """Return the same task with streams that are listened to."""
         return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
 
-    def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
+    def record(self, attempts: tuple[SkeletonAttempt, ...], used: Iterable[object] = ()) -> Record:
         """Return what was heard, all of the values that the plan uses included."""
         late = [
             self._late[value]

@@ -15,7 +15,7 @@ from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Action, Solution
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
 from tamp.symbolic.algorithms.registry import ALGORITHMS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result, StreamTask
+from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
@@ -112,5 +112,5 @@ def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:
     return make_rng(f"{again} {key}")
 
 
-def _silent(effort: Effort) -> None:
+def _silent(effort: SearchStatistics) -> None:
     pass

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
+from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.nodes import error
-from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formula, Not, Or, Place
+from tamp.symbolic.pddl.structs import Atom, Derived, Place
 
 
 def strata(rules: Sequence[Derived]) -> dict[str, int]:
@@ -22,7 +23,7 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
     uses = [
         (rule.head.predicate, atom, positive)
         for rule in rules
-        for atom, positive in _uses(rule.body, True)
+        for atom, positive in signed_atoms(rule.body)
     ]
     uses = [use for use in uses if use[1].predicate in levels]
     # Levels only rise; one that exceeds the number of predicates rises for ever.
@@ -63,19 +64,3 @@ def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple
                 seen.add(atom.predicate)
                 ways.append((*way, atom.predicate))
     return None
-
-
-def _uses(formula: Formula, positive: bool) -> Iterator[tuple[Atom, bool]]:
-    """Generate the atoms of a formula, and whether each stands under an even number of
-    negations.
-    """
-    match formula:
-        case Atom():
-            yield formula, positive
-        case Not(body):
-            yield from _uses(body, not positive)
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from _uses(part, positive)
-        case Exists(_, body) | Forall(_, body):
-            yield from _uses(body, positive)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tamp.symbolic.algorithms.binding.call_order import ordered
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Step, Term
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import ANY
 from tamp.symbolic.search.plan_trace import End
@@ -15,10 +15,10 @@ from tamp.symbolic.search.plan_trace import End
 def build_skeleton(
     steps: Sequence[Step],
     end: End,
-    maker: Callable[[Fact], Guess | None],
+    maker: Callable[[Fact], OptimisticInstance | None],
     promise: Callable[[str], Fact | None],
     given: Iterable[Fact] = (),
-    chosen: Mapping[tuple[int, Fact], Guess] | None = None,
+    chosen: Mapping[tuple[int, Fact], OptimisticInstance] | None = None,
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
@@ -47,10 +47,10 @@ class _Builder:
 
     def __init__(
         self,
-        maker: Callable[[Fact], Guess | None],
+        maker: Callable[[Fact], OptimisticInstance | None],
         promise: Callable[[str], Fact | None],
         given: Iterable[Fact],
-        chosen: Mapping[tuple[int, Fact], Guess],
+        chosen: Mapping[tuple[int, Fact], OptimisticInstance],
     ) -> None:
         self._chosen = chosen
         self._maker, self._promise, self._given = maker, promise, frozenset(given)

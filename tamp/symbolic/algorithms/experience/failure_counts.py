@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.bound_stream import ADVISORY
-from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Fact
 
 LATEST = 100
@@ -17,7 +17,7 @@ LATEST = 100
 
 
 @dataclass
-class Tally:
+class FailureCount:
     """The calls of one stream for one action with its objects, over all plans that were tried.
 
     Attributes:
@@ -40,20 +40,20 @@ class Tally:
         return self.tries - self.successes
 
     @property
-    def never(self) -> bool:
+    def always_failed(self) -> bool:
         """Return whether all tries failed."""
         return self.tries > 0 and self.successes == 0
 
     def text(self) -> str:
         """Describe it in one line."""
         reasons = ", ".join(f"{count} {reason}" for reason, count in self.reasons.most_common(3))
-        how = "never worked" if self.never else f"worked {self.successes} times"
+        how = "never worked" if self.always_failed else f"worked {self.successes} times"
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
 
 
-def tallies(
+def failure_counts(
     skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]
-) -> tuple[Tally, ...]:
+) -> tuple[FailureCount, ...]:
     """Count what was tried by action and stream: what never worked first, then by failures.
 
     Args:
@@ -61,13 +61,13 @@ def tallies(
         experience: What binding them has taught.
         names: The values of the problem's objects: those that are their own names stand for things.
     """
-    records: dict[Fact, list[Record]] = {
+    records: dict[Fact, list[FailureRecord]] = {
         fact: [record] for fact, record in experience.facts.items()
     }
     for (fact, _), record in experience.nogoods.items():
         records.setdefault(fact, []).append(record)
 
-    made: dict[tuple[str, str], Tally] = {}
+    made: dict[tuple[str, str], FailureCount] = {}
     counted: set[tuple[str, str, Fact]] = set()
     for skeleton in skeletons[-LATEST:]:
         users = _users(skeleton)
@@ -81,17 +81,19 @@ def tallies(
             if (*key, node.fact) in counted:
                 continue
             counted.add((*key, node.fact))
-            tally = made.setdefault(key, Tally(*key))
+            tally = made.setdefault(key, FailureCount(*key))
             for record in records[node.fact]:
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
 
     rows = [tally for tally in made.values() if tally.tries]
-    return tuple(sorted(rows, key=lambda row: (not row.never, -row.failures)))
+    return tuple(sorted(rows, key=lambda row: (not row.always_failed, -row.failures)))
 
 
-def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
+def blocking_objects(
+    rows: Sequence[FailureCount], names: Mapping[str, object]
+) -> tuple[tuple[str, int], ...]:
     """Count the things of the problem that reasons name as hit or blocking; most first."""
     counts: Counter[str] = Counter()
     for row in rows:

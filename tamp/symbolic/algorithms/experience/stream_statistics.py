@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-Call = tuple[str, tuple[str, ...]]
+CallKey = tuple[str, tuple[str, ...]]
 """A stream call: the stream's name, and its inputs."""
 
 
@@ -27,7 +27,7 @@ class StreamStatistics:
 
 
 @dataclass
-class Record:
+class FailureRecord:
     """Successes and failures of one thing in a skeleton: a test's fact, a stream's instance."""
 
     successes: int = 0
@@ -60,32 +60,34 @@ class Experience:
     """
 
     def __init__(self) -> None:
-        self.facts: dict[tuple[str, ...], Record] = {}
-        self.exact: dict[Call, tuple[tuple[str, ...], dict[frozenset[tuple[str, ...]], None]]] = {}
-        self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], Record] = {}
+        self.facts: dict[tuple[str, ...], FailureRecord] = {}
+        self.failing_states: dict[
+            CallKey, tuple[tuple[str, ...], dict[frozenset[tuple[str, ...]], None]]
+        ] = {}
+        self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], FailureRecord] = {}
 
-    def note(self, fact: tuple[str, ...], reason: str | None) -> None:
+    def record(self, fact: tuple[str, ...], reason: str | None) -> None:
         """Count a try of whatever certifies `fact`: a success, or a failure for a reason."""
-        self._count(self.facts.setdefault(fact, Record()), reason)
+        self._count(self.facts.setdefault(fact, FailureRecord()), reason)
 
-    def note_nogood(
+    def record_nogood(
         self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str
     ) -> None:
         """Count a failure to certify `fact` for which `present` facts are to blame."""
-        self._count(self.nogoods.setdefault((fact, present), Record()), reason)
+        self._count(self.nogoods.setdefault((fact, present), FailureRecord()), reason)
 
-    def note_exact(
-        self, call: Call, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
+    def record_failing_state(
+        self, call: CallKey, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
     ) -> None:
         """Note that a call gives nothing in states with just these facts of the predicates."""
-        self.exact.setdefault(call, (predicates, {}))[1][state] = None
+        self.failing_states.setdefault(call, (predicates, {}))[1][state] = None
 
     def prices(self) -> dict[tuple[str, ...], float]:
         """Return the extra cost of an action that rests on a fact, where it is not zero."""
         return {fact: record.price for fact, record in self.facts.items() if record.price > 0.0}
 
     @staticmethod
-    def _count(record: Record, reason: str | None) -> None:
+    def _count(record: FailureRecord, reason: str | None) -> None:
         if reason is None:
             record.successes += 1
         else:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import combinations
 
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
 from tamp.symbolic.search.instantiation.normal_form import show
@@ -26,7 +26,7 @@ InstantiateGoal = Callable[[Formula], InstantiatedTask]
 """Instantiates the task with another goal."""
 
 
-def conflict(
+def minimal_unsolvable_goals(
     instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
 ) -> tuple[str, ...]:
     """Find a minimal conflict: goals that cannot be reached together, as texts.

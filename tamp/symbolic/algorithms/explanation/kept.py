@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tamp.symbolic.algorithms.explanation.unachievable_facts import plain_atoms
 from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
 from tamp.symbolic.search.lasting import forbidden_by, lasting
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
@@ -104,7 +104,7 @@ def _unwanted(formula: Formula) -> Iterator[Atom]:
 def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fact: Fact) -> bool:
     """Check that the rule derives the head from the fact, given what plainly holds at the start."""
     binding = dict(zip(rule_head.terms, head[1:], strict=False))
-    atoms = plain_atoms(body)
+    atoms = necessary_atoms(body)
     for atom in atoms:
         if atom.predicate != fact[0]:
             continue
