@@ -7,6 +7,7 @@ from collections.abc import Callable, Set
 from dataclasses import dataclass, field
 from typing import Any
 
+from tamp.stream import Rejection
 from tamp.symbolic.algorithms.binding.binder import Binder
 from tamp.symbolic.algorithms.binding.plan_replay import Fault, PlanReplay
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
@@ -29,6 +30,9 @@ from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.replay import REFUTED
 from tamp.system.deadline import Deadline
+
+FORBIDDEN = Rejection("what was found besides forbids the plan")
+"""Why values failed that only the replay refused."""
 
 
 @dataclass(eq=False, slots=True)
@@ -218,6 +222,5 @@ def bind_skeleton(
         skeleton.memory.clear()
         for node in skeleton.nodes:
             if node.outputs:
-                reason = "what was found besides forbids the plan"
-                run.knowledge.experience.record(node.fact, reason)
+                run.knowledge.experience.record(node.fact, FORBIDDEN)
     return values

@@ -221,7 +221,7 @@ class Binder:
         if node.stream.is_fluent and instance.last.blockers:
             present = _present(node, instance.last.blockers)
             if present:
-                self._experience.record_nogood(node.fact, present, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
                 return
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
@@ -232,8 +232,8 @@ class Binder:
                     call, node.stream.declaration.fluents, present
                 )
             if present:  # nobody says what of the state is to blame
-                self._experience.record_nogood(node.fact, present, instance.last.reason)
-        self._experience.record(node.fact, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
+        self._experience.record(node.fact, instance.last)
 
     def _blame(
         self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]

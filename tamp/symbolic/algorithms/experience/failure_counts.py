@@ -26,6 +26,7 @@ class FailureCount:
         tries: Results asked for.
         successes: Those that came, or held.
         reasons: Why the others did not.
+        in_the_way: The objects that they hit or that blocked them, counted.
     """
 
     action: str
@@ -33,6 +34,7 @@ class FailureCount:
     tries: int = 0
     successes: int = 0
     reasons: Counter[str] = field(default_factory=Counter[str])
+    in_the_way: Counter[str] = field(default_factory=Counter[str])
 
     @property
     def failures(self) -> int:
@@ -86,6 +88,7 @@ def failure_counts(
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
+                tally.in_the_way.update(record.in_the_way)
 
     rows = [tally for tally in made.values() if tally.tries]
     return tuple(sorted(rows, key=lambda row: (not row.always_failed, -row.failures)))
@@ -94,13 +97,12 @@ def failure_counts(
 def blocking_objects(
     rows: Sequence[FailureCount], names: Mapping[str, object]
 ) -> tuple[tuple[str, int], ...]:
-    """Count the things of the problem that reasons name as hit or blocking; most first."""
+    """Count the things of the problem that were hit or that blocked a way; most first."""
     counts: Counter[str] = Counter()
     for row in rows:
-        for reason, count in row.reasons.items():
-            if "hits " in reason or "blocked by " in reason:
-                words = reason.replace(",", " ").lower().split()
-                counts.update({word: count for word in words if isinstance(names.get(word), str)})
+        for name, count in row.in_the_way.items():
+            if isinstance(names.get(name.lower()), str):
+                counts[name.lower()] += count
     return tuple(counts.most_common())
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+from tamp.stream import Rejection
+
 CallKey = tuple[str, tuple[str, ...]]
 """A stream call: the stream's name, and its inputs."""
 
@@ -28,11 +30,19 @@ class StreamStatistics:
 
 @dataclass
 class FailureRecord:
-    """Successes and failures of one thing in a skeleton: a test's fact, a stream's instance."""
+    """Successes and failures of one thing in a skeleton: a test's fact, a stream's instance.
+
+    Attributes:
+        successes: Tries that gave a value, or held.
+        failures: The others.
+        reasons: Why they failed, in words, counted.
+        in_the_way: The objects that they hit or that blocked them, counted.
+    """
 
     successes: int = 0
     failures: int = 0
     reasons: Counter[str] = field(default_factory=Counter[str])
+    in_the_way: Counter[str] = field(default_factory=Counter[str])
 
     @property
     def expected_failures(self) -> float:
@@ -66,15 +76,15 @@ class Experience:
         ] = {}
         self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], FailureRecord] = {}
 
-    def record(self, fact: tuple[str, ...], reason: str | None) -> None:
-        """Count a try of whatever certifies `fact`: a success, or a failure for a reason."""
-        self._count(self.facts.setdefault(fact, FailureRecord()), reason)
+    def record(self, fact: tuple[str, ...], rejection: Rejection | None) -> None:
+        """Count a try of whatever certifies `fact`: a success, or a failure and its cause."""
+        self._count(self.facts.setdefault(fact, FailureRecord()), rejection)
 
     def record_nogood(
-        self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], reason: str
+        self, fact: tuple[str, ...], present: frozenset[tuple[str, ...]], rejection: Rejection
     ) -> None:
         """Count a failure to certify `fact` for which `present` facts are to blame."""
-        self._count(self.nogoods.setdefault((fact, present), FailureRecord()), reason)
+        self._count(self.nogoods.setdefault((fact, present), FailureRecord()), rejection)
 
     def record_failing_state(
         self, call: CallKey, predicates: tuple[str, ...], state: frozenset[tuple[str, ...]]
@@ -87,9 +97,10 @@ class Experience:
         return {fact: record.price for fact, record in self.facts.items() if record.price > 0.0}
 
     @staticmethod
-    def _count(record: FailureRecord, reason: str | None) -> None:
-        if reason is None:
+    def _count(record: FailureRecord, rejection: Rejection | None) -> None:
+        if rejection is None:
             record.successes += 1
         else:
             record.failures += 1
-            record.reasons[reason] += 1
+            record.reasons[rejection.reason] += 1
+            record.in_the_way.update(rejection.in_the_way)

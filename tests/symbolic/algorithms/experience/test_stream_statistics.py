@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tamp.stream import Rejection
 from tamp.symbolic.algorithms.experience.stream_statistics import SCALE, Experience, FailureRecord
 
 CLEAR = ("clear", "tea", "p1")
@@ -21,20 +22,22 @@ def test_failures_to_expect(successes: int, failures: int, expected: float) -> N
 
 def test_only_what_fails_more_often_than_not_has_a_price() -> None:
     experience = Experience()
-    experience.record(CLEAR, "hits mug")
+    experience.record(CLEAR, Rejection.hits("mug"))
     experience.record(("pose", "tea", "p1"), None)
     assert experience.prices() == {CLEAR: pytest.approx(SCALE)}
     experience.record(CLEAR, None)
     assert experience.prices() == {}
     assert experience.facts[CLEAR].reasons == {"hits mug": 1}
+    assert experience.facts[CLEAR].in_the_way == {"mug": 1}
 
 
 def test_what_the_state_is_to_blame_for_is_no_price_of_the_fact() -> None:
     experience = Experience()
-    experience.record_nogood(CLEAR, frozenset((AT,)), "blocked by mug")
-    experience.record_nogood(CLEAR, frozenset((AT,)), "blocked by mug")
+    experience.record_nogood(CLEAR, frozenset((AT,)), Rejection("blocked by mug", ("mug",)))
+    experience.record_nogood(CLEAR, frozenset((AT,)), Rejection("blocked by mug", ("mug",)))
     assert experience.prices() == {}
     assert experience.nogoods[CLEAR, frozenset((AT,))].failures == 2
+    assert experience.nogoods[CLEAR, frozenset((AT,))].in_the_way == {"mug": 2}
 
 
 def test_each_call_has_states_of_its_own() -> None:

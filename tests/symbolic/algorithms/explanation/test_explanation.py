@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -69,8 +70,8 @@ GRASPS = """
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_stream_that_was_given_up_proves_nothing(algorithm: str, given_up: bool) -> None:
     def sample_grasp(thing: str, call: Call) -> Iterator[Rejection]:
-        yield Rejection("hits wall")
-        yield Rejection("hits wall", given_up=given_up)
+        yield Rejection.hits("wall")
+        yield replace(Rejection.hits("wall"), given_up=given_up)
 
     functions = {"sample-grasp": sample_grasp}
     objects = {"mug": ("thing",), "wall": ("thing",)}
