@@ -41,26 +41,21 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
 
 
 def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
-    """Make the error at the first negation that lies on a cycle."""
+    """Make the error at the first negation that lies on a cycle.
+
+    The graph is networkx's, which takes 0.1 s to import: that is for errors only. Strata themselves
+    are computed above for each domain that is read, and need no graph.
+    """
+    import networkx as nx
+
+    rests_on = nx.DiGraph((head, atom.predicate) for head, atom, _ in uses)
     for head, atom, positive in uses:
-        way = None if positive else _way(atom.predicate, head, uses)
-        if way:
-            place = atom.place or Place(None, 1, 1)
-            cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))
-            return error(place, f"derived predicate '{head}' rests on its own negation: {cycle}")
+        if positive or not nx.has_path(rests_on, atom.predicate, head):
+            continue
+        way = nx.shortest_path(  # pyright: ignore[reportUnknownMemberType]
+            rests_on, atom.predicate, head
+        )
+        place = atom.place or Place(None, 1, 1)
+        cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))
+        return error(place, f"derived predicate '{head}' rests on its own negation: {cycle}")
     raise ValueError("no negation lies on a cycle")
-
-
-def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple[str, ...] | None:
-    """Find predicates from `start` to `goal`, each resting on the next."""
-    ways: list[tuple[str, ...]] = [(start,)]
-    seen = {start}
-    while ways:
-        way = ways.pop(0)
-        if way[-1] == goal:
-            return way
-        for head, atom, _ in uses:
-            if head == way[-1] and atom.predicate not in seen:
-                seen.add(atom.predicate)
-                ways.append((*way, atom.predicate))
-    return None
