@@ -176,7 +176,7 @@ def test_the_served_page_works_too(browser: Browser, document: dict[str, Any]) -
         browser.logged.clear()
         browser.requests.clear()
         browser.open(server.address)
-        browser.wait("window.tamp !== undefined && tamp.system.files.actions.length === 4")
+        browser.wait("window.tamp !== undefined && tamp.data.actions.length === 4")
         assert browser.logged == []
         assert [address for address in browser.requests if not address.startswith("data:")] == [server.address]
         server.shutdown()
