@@ -18,10 +18,10 @@ from tamp.symbolic.search.heuristics.loops.selection import prepare as prepare_l
 from tamp.system.deadline import Deadline
 from tamp.system.race import Tell, member_seed, race
 
-EVERY = 0.1
+SECONDS_BETWEEN_REPORTS = 0.1
 """Seconds between two reports of a run's progress."""
 
-FINAL = (Outcome.SOLVED, Outcome.INFEASIBLE)
+FINAL_OUTCOMES = (Outcome.SOLVED, Outcome.INFEASIBLE)
 """Outcomes that settle the matter, whichever run says so."""
 
 
@@ -143,7 +143,7 @@ def _ends(settings: _Settings, number: int, answer: dict[str, Any]) -> bool:
     outcome = answer["parts"]["outcome"]
     if number == 0 and outcome not in (Outcome.SOLVED, Outcome.TIMEOUT):
         return True
-    return outcome in FINAL and answer["good"] and not settings.optimizing
+    return outcome in FINAL_OUTCOMES and answer["good"] and not settings.optimizing
 
 
 class _Best:
@@ -181,7 +181,7 @@ def _seldom(tell: Tell) -> Progress:
     def progress(effort: SearchStatistics) -> None:
         nonlocal last
         now = time.monotonic()
-        if now - last >= EVERY:
+        if now - last >= SECONDS_BETWEEN_REPORTS:
             last = now
             tell(effort)
 

@@ -26,7 +26,7 @@ from tamp.symbolic.algorithms.priced_search import lower_bound
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
 
-BOUND_LIMIT = 30
+MAX_BOUND_STATES = 30
 """States that are expanded for the lower bound."""
 
 WEIGHTS = (2.0, 1.0)
@@ -35,7 +35,7 @@ WEIGHTS = (2.0, 1.0)
 MAX_VAIN_SEARCHES = 10
 """Searches for a cheaper plan that may come to nothing between two plans that are better."""
 
-WINDOW = 4
+ACTIONS_DRAWN_ANEW = 4
 """Actions whose values are drawn anew at a time: a body's way from place to place."""
 
 Better = Callable[[Result], bool]
@@ -103,7 +103,7 @@ def _lower_bound(run: Run) -> float:
     if restore_objects(run.knowledge):
         renew(run)
     with run.effort.searching():
-        return lower_bound(run.optimistic, BOUND_LIMIT, run.deadline)
+        return lower_bound(run.optimistic, MAX_BOUND_STATES, run.deadline)
 
 
 def _cheaper(run: Run, weight: float, cost: float) -> Result | None:
@@ -120,11 +120,11 @@ def _cheaper(run: Run, weight: float, cost: float) -> Result | None:
 
 def _redrawn(run: Run, skeleton: Skeleton, choose: Random) -> Result | None:
     """Bind the plan anew with other values for what a few of its actions in a row need."""
-    first = choose.randrange(1 - WINDOW, max(1, len(skeleton.steps)))
+    first = choose.randrange(1 - ACTIONS_DRAWN_ANEW, max(1, len(skeleton.steps)))
     chosen = {
         number
         for number, node in enumerate(skeleton.nodes)
-        if not node.stream.is_test and first <= node.step < first + WINDOW
+        if not node.stream.is_test and first <= node.step < first + ACTIONS_DRAWN_ANEW
     }
     if not chosen:
         return None

@@ -12,7 +12,7 @@ from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Fa
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Fact
 
-LATEST = 100
+MAX_SKELETONS = 100
 """So many plans, the latest, are looked at: the user waits for the answer."""
 
 
@@ -71,7 +71,7 @@ def failure_counts(
 
     made: dict[tuple[str, str], FailureCount] = {}
     counted: set[tuple[str, str, Fact]] = set()
-    for skeleton in skeletons[-LATEST:]:
+    for skeleton in skeletons[-MAX_SKELETONS:]:
         users = _users(skeleton)
         labels: dict[int, str] = {}
         for node, user in zip(skeleton.nodes, users, strict=True):

@@ -24,15 +24,15 @@ from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
-SOON = 3.0
+CONFLICT_SECONDS = 3.0
 """Seconds in which goals that exclude each other are looked for once it is proven that there is no
 plan."""
 
-SELDOM = 0.05
+LEAST_SHARE_OF_FAILURES = 0.05
 """What never worked is the cause where it failed at least so often, as a share of the failures of
 what failed most."""
 
-LINES = 6
+MAX_CAUSES = 6
 """How many causes are worth reading."""
 
 
@@ -60,7 +60,7 @@ def explain_infeasible(
     problem: StreamTask,
     instantiated: InstantiatedTask,
     dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
-    missing: UnachievableFacts,
+    unachievable: UnachievableFacts,
     deadline: Deadline,
     instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
@@ -70,7 +70,7 @@ def explain_infeasible(
         problem: The task and its streams.
         instantiated: The optimistic task, unsolvable.
         dead: The calls that ended without a value.
-        missing: Says what a fact lacks.
+        unachievable: Says what a fact lacks.
         deadline: When to look no further.
         instantiate: Instantiates the task with another goal.
     """
@@ -86,7 +86,7 @@ def explain_infeasible(
             if set(_names(problem, key[1])) & set(words):
                 blamed.add(key)
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
-        causes = causes or [missing.reason(fact) + _kinds(problem, words)]
+        causes = causes or [unachievable.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
 
     lines += [
@@ -97,7 +97,7 @@ def explain_infeasible(
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
 
-    soon = Deadline(min(SOON, deadline.left()))
+    soon = Deadline(min(CONFLICT_SECONDS, deadline.left()))
     goals = minimal_unsolvable_goals(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
@@ -137,7 +137,7 @@ def explain_failures(
         [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
     )
     # one that failed once or twice is no cause
-    least = SELDOM * max((row.failures for row in rows), default=0)
+    least = LEAST_SHARE_OF_FAILURES * max((row.failures for row in rows), default=0)
     never = [row for row in rows if row.always_failed and row.failures >= least]
     mostly = sorted(
         (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
@@ -146,7 +146,7 @@ def explain_failures(
     blocking = [
         f"{name} ({count} times)" for name, count in blocking_objects(rows, problem.values)[:3]
     ]
-    lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
+    lines = lines[:MAX_CAUSES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
     lines = lines if tried else _never_worked(problem, streams)
     none = "no single step failed more than it worked" if tried else "no action plan was found yet"
     return (*endless, *lines) or (none,)
@@ -170,7 +170,7 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
     )
     return [
         f"{kind} never worked: {text}"
-        for (kind, _), text in zip(never[:LINES], texts, strict=False)
+        for (kind, _), text in zip(never[:MAX_CAUSES], texts, strict=False)
     ]
 
 
@@ -191,7 +191,7 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
             if record is not None and record.failures > record.successes:
                 rows.append((record.failures, _row(skeleton, node, present, record)))
     rows.sort(key=lambda row: -row[0])
-    return list(dict.fromkeys(text for _, text in rows[:LINES]))
+    return list(dict.fromkeys(text for _, text in rows[:MAX_CAUSES]))
 
 
 def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: FailureRecord) -> str:

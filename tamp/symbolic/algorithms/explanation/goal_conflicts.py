@@ -15,11 +15,11 @@ from tamp.symbolic.search.operators import Goal, InstantiatedTask
 from tamp.symbolic.search.search import Reason, search
 from tamp.system.deadline import Deadline
 
-LIMIT = 5000
+MAX_STATES = 5000
 """States that a search may expand in the attempt to prove that some of the goals alone are too
 many."""
 
-PAIRS = 200
+MAX_PAIRS = 200
 """Pairs of conjuncts looked at where the goal is one formula with variables."""
 
 InstantiateGoal = Callable[[Formula], InstantiatedTask]
@@ -32,8 +32,8 @@ def minimal_unsolvable_goals(
     """Find a minimal conflict: goals that cannot be reached together, as texts.
 
     Pairs of facts that exclude each other say it at once. Where they do not, one goal after the
-    other is left out; it stays out when the others are proven unsolvable without it, within LIMIT
-    and the time.
+    other is left out; it stays out when the others are proven unsolvable without it, within
+    MAX_STATES and the time.
 
     Args:
         instantiated: The task.
@@ -59,7 +59,7 @@ def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) 
     for part in parts:
         if part in denied:
             return tuple(sorted((show(part), show(Not(part)))))
-    fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:PAIRS]
+    fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:MAX_PAIRS]
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
@@ -76,7 +76,7 @@ def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple
         if not rest or deadline.passed:
             break
         left = replace(instantiated, goal=_goal(instantiated.goal, rest))
-        found = search(left, search="greedy", limit=LIMIT, deadline=deadline)
+        found = search(left, search="greedy", limit=MAX_STATES, deadline=deadline)
         if found.reason is Reason.UNSOLVABLE:
             kept = rest
     return tuple(kept)

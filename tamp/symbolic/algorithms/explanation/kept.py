@@ -10,7 +10,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
 from tamp.symbolic.search.lasting import forbidden_by, lasting
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 
-CALLS = 2
+MAX_CALLS_NAMED = 2
 """Calls that are named as the reason why a thing stays where it is."""
 
 
@@ -48,7 +48,7 @@ def kept_from(
                 if not names.isdisjoint(others)
             ]
 
-            because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
+            because = f" ({', '.join(reasons[:MAX_CALLS_NAMED])})" if reasons else ""
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now

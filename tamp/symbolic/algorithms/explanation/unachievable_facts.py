@@ -10,7 +10,7 @@ from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Formula, Parameter, Task
 
-DEEPEST = 4
+MAX_CHAIN = 4
 """Steps of a chain of missing facts that are worth reading."""
 
 MAX_FACTS_EXAMINED = 2000
@@ -54,7 +54,7 @@ class UnachievableFacts:
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
         for fact in sorted(self._known):
             self._by_predicate[fact[0]].append(fact)
-        self._looks = 0
+        self._examined = 0
 
     def reason(self, fact: Fact) -> str:
         """Say why nothing makes the fact true: "cook needs (hot stove), which nothing makes
@@ -62,7 +62,7 @@ class UnachievableFacts:
         """
         said: list[str] = []
         seen = {fact}
-        for _ in range(DEEPEST):
+        for _ in range(MAX_CHAIN):
             found = self._nearest(fact)
             if found is None:
                 break
@@ -79,16 +79,19 @@ class UnachievableFacts:
     def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
         """Find the way to a fact that lacks least, and what; None if no way lacks anything."""
         best: tuple[str, list[Atom]] | None = None
-        for way in self._ways(fact):
-            self._looks = 0
+        for achiever in self._achievers(fact):
+            self._examined = 0
             lacks = self._missing_preconditions(
-                list(way.conditions), way.binding, way.types, len(way.conditions) + 1
+                list(achiever.conditions),
+                achiever.binding,
+                achiever.types,
+                len(achiever.conditions) + 1,
             )
             if lacks and (best is None or len(lacks) < len(best[1])):
-                best = way.name, lacks
+                best = achiever.name, lacks
         return best
 
-    def _ways(self, fact: Fact) -> Iterator[Achiever]:
+    def _achievers(self, fact: Fact) -> Iterator[Achiever]:
         domain = self._task.domain
         for action in domain.actions:
             for effect in action.effects:
@@ -98,22 +101,22 @@ class UnachievableFacts:
                         *necessary_atoms(effect.condition),
                     )
                     parameters = (*action.parameters, *effect.parameters)
-                    yield from self._way(
+                    yield from self._achiever(
                         action.name, effect.atom, conditions, _typed(parameters), fact
                     )
 
         for rule in domain.derived:
             types = {**_typed(rule.parameters), **_inner(rule.body)}
-            yield from self._way(
+            yield from self._achiever(
                 f"being {rule.head.predicate}", rule.head, necessary_atoms(rule.body), types, fact
             )
 
         for stream in self._streams:
             declared = stream.declaration
             for atom in declared.certified:
-                yield from self._way(stream.name, atom, declared.domain, {}, fact)
+                yield from self._achiever(stream.name, atom, declared.domain, {}, fact)
 
-    def _way(
+    def _achiever(
         self,
         name: str,
         head: Atom,
@@ -147,8 +150,8 @@ class UnachievableFacts:
             return self._missing_preconditions(rest, binding, types, fewer)
 
         for fact in self._by_predicate[atom.predicate]:
-            self._looks += 1
-            if self._looks > MAX_FACTS_EXAMINED:
+            self._examined += 1
+            if self._examined > MAX_FACTS_EXAMINED:
                 break
             grown = self._matched(atom, fact, binding, types)
             if grown is None:
