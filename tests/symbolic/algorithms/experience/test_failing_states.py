@@ -25,9 +25,9 @@ def instance(stream: str, *inputs: str) -> OptimisticInstance:
     return OptimisticInstance(BoundStream(declared, lambda: None, ()), inputs, (), (), (WAY,), 1)
 
 
-def facts_of(*made: OptimisticInstance) -> OptimisticFacts:
-    several = {WAY: list(made)} if len(made) > 1 else {}
-    return OptimisticFacts(producers={WAY: made[0]}, alternatives=several, instances=list(made))
+def facts_of(first: OptimisticInstance, *others: OptimisticInstance) -> OptimisticFacts:
+    made = [first, *others]
+    return OptimisticFacts(producers={WAY: first}, alternatives={WAY: made} if others else {}, instances=made)
 
 
 def task(initial: frozenset[Fact] = frozenset()) -> InstantiatedTask:
