@@ -129,10 +129,12 @@ class Fingers:
         if pressing != self._pressed:
             self._pressed = pressing
             self._stick(pressing)
+
         bullet.setPhysicsEngineParameter(
             numSolverIterations=HOLDING_ITERATIONS if pressing else ITERATIONS,
             physicsClientId=self._client,
         )
+
         for joint in self._joints:
             if pressing:
                 bullet.setJointMotorControl2(
@@ -167,6 +169,7 @@ class Fingers:
             bullet.changeDynamics(
                 self._robot, joint, frictionAnchor=int(sticks), physicsClientId=self._client
             )
+
             if not sticks:
                 touching = bullet.getContactPoints(
                     self._robot, linkIndexA=joint, physicsClientId=self._client
