@@ -32,7 +32,7 @@ class View:
     what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN|PROBLEM")]
     """A plan.json of tamp-solve, a problem.yaml, or a shipped one."""
     problem: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """The problem, instead of the file that the plan names."""
+    """The problem, or a shipped one's name, instead of the file that the plan names."""
     html: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """Write one HTML file that needs no network."""
     allow_outside: bool = False
