@@ -195,7 +195,7 @@ def _random_urdf(rng: np.random.Generator) -> tuple[str, float, float, str]:
     from scipy.spatial.transform import Rotation
 
     from tamp.geometric.loading.load import load_scene
-    from tamp.geometric.stability.stable_poses import resting_of
+    from tamp.geometric.stability.stable_poses import stable_faces_of
 
     number = int(rng.integers(1000))
     scale = float(rng.uniform(0.5, 0.9))
@@ -206,7 +206,7 @@ def _random_urdf(rng: np.random.Generator) -> tuple[str, float, float, str]:
             "robot: {model: panda_mobile, base: [0, 0, 0]}\nroom: {x: [-1, 1], y: [-1, 1]}\n"
             f"bodies:\n  blob: {{{entry}, at: [1.0, 1.0, 0.5], fixed: false}}\ngoal: (hand-empty)\n"
         )
-        faces = resting_of(load_scene(path).scene.bodies["blob"]).faces
+        faces = stable_faces_of(load_scene(path).scene.bodies["blob"]).faces
     if not faces:
         return "", 0.0, 0.0, ""
     face = max(faces, key=lambda face: face.angle)

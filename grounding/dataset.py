@@ -37,10 +37,10 @@ class Example:
     """One labelled scene.
 
     Attributes:
-        situation: Argument 1 stands where the label is about.
+        situation: The body stands where the label is about.
         holds: Whether the relation holds.
         kind: The sample's type, such as "among others" or "floating".
-        names: The bodies' templates: argument 0, argument 1, the others.
+        names: The bodies' templates: the support, the body, the others.
         scales: Of those bodies, in the same order.
     """
 

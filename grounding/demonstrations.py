@@ -16,7 +16,7 @@ from grounding.random_poses import afloat, on_ground, random_rest, random_turn
 from grounding.scenes import LabelledScene, SampledScene, Scenes, free, resting
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
-from tamp.geometric.stability.stable_poses import resting_pose
+from tamp.geometric.stability.placement import resting_pose
 from tamp.simulation.drop import Drops
 
 Kinds = Mapping[str, float]

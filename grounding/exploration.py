@@ -49,7 +49,7 @@ DRAWN, MOVED, SLID = 12, 6, 8
 """Poses that are drawn in a scene, that one which was found is moved to, and that it is slid to."""
 
 CROWDED = 0.8
-"""The share of scenes with bodies on or in argument 0 (the paper's share of the positive
+"""The share of scenes with bodies on or in the support (the paper's share of the positive
 samples).
 """
 
@@ -242,7 +242,7 @@ class Explorer:
 
 
 def uniform(scene: SampledScene, rng: Random) -> Array:
-    """Sample T_world_body uniformly: anywhere in argument 0's box, grown by half its largest half
+    """Sample T_world_body uniformly: anywhere in the support's box, grown by half its largest half
     extent, turned in any way; (4, 4).
     """
     low, high = scene.support.region.box
@@ -253,7 +253,7 @@ def uniform(scene: SampledScene, rng: Random) -> Array:
 
 
 def slid(scene: SampledScene, pose: Array, rng: Random) -> Array:
-    """Sample T_world_body anywhere in argument 0's box, as high as before and tilted alike, turned
+    """Sample T_world_body anywhere in the support's box, as high as before and tilted alike, turned
     by any angle; (4, 4).
     """
     low, high = scene.support.region.box

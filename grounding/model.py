@@ -11,7 +11,7 @@ from tamp.geometric.scene.pose import Array
 
 
 class Model(Protocol):
-    """A generator and a classifier over situations. Poses are T_world_body of argument 1, shape (n,
+    """A generator and a classifier over situations. Poses are T_world_body of the body, shape (n,
     4, 4).
     """
 
@@ -20,7 +20,7 @@ class Model(Protocol):
         way.
 
         Args:
-            situation: Argument 1 stands anywhere in it; only its form matters, and, to some models,
+            situation: The body stands anywhere in it; only its form matters, and, to some models,
                 where it starts.
             count: How many are wanted.
             rng: The only source of randomness.
@@ -28,7 +28,7 @@ class Model(Protocol):
         ...
 
     def classify(self, situation: RelationScene, poses: Array) -> Array:
-        """Return the probability that the relation holds with argument 1 at each of the poses,
+        """Return the probability that the relation holds with the body at each of the poses,
         shape (n,).
 
         Not a number from a model that is a generator only.

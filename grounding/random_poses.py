@@ -12,7 +12,7 @@ from grounding.body_geometry import BodyGeometry
 from grounding.relation_scene import Placed
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP
-from tamp.geometric.stability.stable_poses import resting_pose
+from tamp.geometric.stability.placement import resting_pose
 
 
 def random_rest(

@@ -175,7 +175,11 @@ def shipped_grounding(relation: str, name: str) -> Grounding:
 def _grounding(model: Model) -> Grounding:
     from grounding.paper.planner_adapter import SnappingSampler
     from grounding.paper.runtime import PaperModel
+    from grounding.relational.model import RelationalModel
+    from grounding.relational.planner_adapter import PlacingSampler
 
+    if isinstance(model, RelationalModel):
+        return PlacingSampler(model)
     return SnappingSampler(model) if isinstance(model, PaperModel) else Grounding(model)
 
 

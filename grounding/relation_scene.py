@@ -68,12 +68,15 @@ class Region:
 
 @dataclass(frozen=True, eq=False)
 class RelationScene:
-    """Argument 0 (support or container), argument 1 (the body), and the surroundings.
+    """The body, the support or container that it is related to, and the surroundings.
+
+    What the paper numbers, the support first, has names here; where arguments stand in an order, it
+    is the planner's.
 
     Attributes:
-        support: Argument 0.
+        support: The body that carries the region.
         region: The surface or cavity of it that is meant.
-        body: Argument 1, where it is now: at its start, or where a demonstration has it.
+        body: What is placed, where it is now: at its start, or where a demonstration has it.
         others: The surroundings: bodies within SURROUNDINGS of an argument, neither of the two.
     """
 

@@ -11,8 +11,10 @@ from numpy.random import Generator as Random
 
 from grounding.model import Model
 from grounding.relation_scene import relation_scene_of
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import SNAP_HEIGHT, Placement, placement_on
+from tamp.geometric.stability.stable_poses import stable_faces_of
 
 
 class Grounding:
@@ -27,7 +29,7 @@ class Grounding:
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-    ) -> list[Pose]:
+    ) -> Sequence[Placement | Pose]:
         """Propose at most `count` world poses of body `arguments[0]` on or in `arguments[1]`, the
         best first.
         """
@@ -55,6 +57,29 @@ class Proposer:
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-    ) -> list[Pose]:
-        """Propose poses as the grounding does."""
+    ) -> Sequence[Placement | Pose]:
+        """Propose as the grounding does."""
         return self._grounding.propose(scene, arguments, count, rng)
+
+
+def laid(
+    scene: Scene, arguments: Sequence[str], rotation: Array, T_world_body: Array
+) -> Placement | Pose:
+    """Return the placement on a face near a pose; the pose itself where it is far above or below.
+
+    Args:
+        scene: The planner's.
+        arguments: Names of the body and of the surface or cavity.
+        rotation: What turns the body's face down, (3, 3), as `stable_faces` has it.
+        T_world_body: Shape (4, 4).
+    """
+    pose, region = Pose.from_matrix(T_world_body), scene.region(arguments[1])
+    stable = stable_faces_of(scene.bodies[arguments[0]])
+    index = stable.index_of(rotation)
+    if index is None:
+        return pose
+
+    T_region_body = scene.world_pose(region).inverse() @ pose
+    if abs(T_region_body.position[2] - stable.ways[index].height) > SNAP_HEIGHT:
+        return pose
+    return placement_on(index, stable.ways[index], T_region_body, region.name)

@@ -46,7 +46,7 @@ GAP = 0.001
 
 @dataclass(frozen=True, eq=False)
 class LabelledScene:
-    """One labelled scene: what `Dataset` keeps of it. Index 0 is argument 0, index 1 the body.
+    """One labelled scene: what `Dataset` keeps of it. Index 0 is the support, index 1 the body.
 
     Attributes:
         columns: Numbers that are kept beside, the same names in every scene of a data set.
@@ -67,10 +67,10 @@ class SampledScene:
     """A scene without a pose for its body.
 
     Attributes:
-        names, scales: Of argument 0 and the body.
-        stand: Argument 0.
+        names, scales: Of the support and the body.
+        stand: The support.
         support: Of what it is made, with its region at its size.
-        body: Argument 1.
+        body: What is placed.
         others: Names, scales and places of all other bodies.
     """
 
@@ -132,7 +132,7 @@ class Scenes:
         self._scaled: dict[tuple[str, float], BodyGeometry] = {}
 
     def draw(self, rng: Random, *, crowded: bool = True) -> SampledScene:
-        """Sample a scene; `crowded` has bodies on or in argument 0."""
+        """Sample a scene; `crowded` has bodies on or in the support."""
         name, scale = pick(self._supports, rng), random_scale(SUPPORT_SCALES[self.split], rng)
         support = self._supports[name]
         support = replace(support, region=scaled_region(support.region, scale))

@@ -14,7 +14,8 @@ from grounding.separation import Obstacles, separations
 from tamp.geometric.samplers.placements import KEEP_FACE, position_inside
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
-from tamp.geometric.stability.stable_poses import SLACK, SNAP_HEIGHT, SNAP_TILT, Face, resting_pose
+from tamp.geometric.stability.placement import SNAP_HEIGHT, resting_pose
+from tamp.geometric.stability.stable_poses import SLACK, SNAP_TILT, Face
 
 DEPTH = 0.001
 """Bodies may lie this deep in each other, metres."""

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from tamp.errors import InputError as InputError
     from tamp.geometric.scene.pose import Pose as Pose
     from tamp.geometric.scene.scene import Scene as Scene
+    from tamp.geometric.stability.placement import Placement as Placement
     from tamp.plan.write import write_plan as write_plan
     from tamp.planner.problem import Problem as Problem
     from tamp.planner.problem import load_problem as load_problem
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from tamp.planner.solve import solve as solve
     from tamp.stream import Call as Call
     from tamp.stream import Rejection as Rejection
+    from tamp.stream import RejectionKind as RejectionKind
     from tamp.symbolic.algorithms.result import Outcome as Outcome
 
 _HOMES = {
@@ -26,9 +28,11 @@ _HOMES = {
     "Call": "tamp.stream",
     "InputError": "tamp.errors",
     "Outcome": "tamp.symbolic.algorithms.result",
+    "Placement": "tamp.geometric.stability.placement",
     "Pose": "tamp.geometric.scene.pose",
     "Problem": "tamp.planner.problem",
     "Rejection": "tamp.stream",
+    "RejectionKind": "tamp.stream",
     "Scene": "tamp.geometric.scene.scene",
     "Solution": "tamp.planner.solution",
     "load_problem": "tamp.planner.problem",

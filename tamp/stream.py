@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import Any
 
 from tamp.system.deadline import Deadline
@@ -50,6 +51,38 @@ class Call:
     refused: Callable[[Any, str], None] = _unseen
 
 
+class RejectionKind(Enum):
+    """The kinds of causes for which a stream gives no value; code decides by these, never by words.
+
+    The values are the names under which files and recordings may list them.
+    """
+
+    COLLISION = "collision"
+    """Something is hit: `bodies` are what was hit, fixed or movable."""
+    BLOCKED = "blocked"
+    """No path leads past `bodies`, all of them movable."""
+    NO_MOTION = "no-motion"
+    """No path was found among the fixed bodies alone; `bodies` are those straight ahead."""
+    UNREACHABLE = "unreachable"
+    """The arm does not get there."""
+    NO_STANCE = "no-stance"
+    """The base cannot stand there, or not leave."""
+    UNSTABLE = "unstable"
+    """The body does not rest there."""
+    TOO_LARGE = "too-large"
+    """The body does not fit there, or not into the hand."""
+    NO_GRASP = "no-grasp"
+    """No grasp of the body was found."""
+    TOO_HEAVY = "too-heavy"
+    """The robot cannot carry the body."""
+    UNLIKELY = "unlikely"
+    """A classifier says no, or cannot tell."""
+    FAULT = "fault"
+    """A function of a user's, or a learned one, did not keep its contract."""
+    OTHER = "other"
+    """Anything else; the words say what."""
+
+
 @dataclass(frozen=True, slots=True)
 class Rejection:
     """One try of a stream that produced no value, and why.
@@ -60,11 +93,36 @@ class Rejection:
             them first. Empty when nothing that could be moved is to blame.
         given_up: Whether the stream ends here without having tried everything: that it ended then
             proves nothing.
+        kind: The cause as data; BLOCKED for a rejection that names blockers and no kind.
+        bodies: The objects that were met, by name, whether or not they could be moved; the blockers
+            where nothing else is said.
     """
 
     reason: str
     blockers: tuple[str, ...] = ()
     given_up: bool = False
+    kind: RejectionKind = RejectionKind.OTHER
+    bodies: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.blockers and self.kind is RejectionKind.OTHER:
+            object.__setattr__(self, "kind", RejectionKind.BLOCKED)
+        if not self.bodies:
+            object.__setattr__(self, "bodies", tuple(self.blockers))
+
+    @property
+    def in_the_way(self) -> tuple[str, ...]:
+        """Return the objects that were hit or that block the way; empty for other causes."""
+        met = self.kind in (RejectionKind.COLLISION, RejectionKind.BLOCKED)
+        return self.bodies if met else ()
+
+    @classmethod
+    def hits(cls, *others: str, who: str = "", blockers: tuple[str, ...] = ()) -> Rejection:
+        """Return the rejection for a collision of `who` (by default what is asked about) with any
+        of the others, of which some may be moved away.
+        """
+        reason = f"{who} hits {' or '.join(others)}".lstrip()
+        return cls(reason, blockers, kind=RejectionKind.COLLISION, bodies=others)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,20 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # of torch: two workers with two threads each wait for one another
 
 import signal
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from tests import shape_checks
+
+# Before any test imports the geometric wing; pytest-xdist's workers know the environment, not the command line.
+if "--no-shapes" in sys.argv:
+    os.environ["TAMP_TESTS_NO_SHAPES"] = "1"
+if "TAMP_TESTS_NO_SHAPES" not in os.environ:
+    shape_checks.install()
 
 # No deadline: two shared cores and a first compilation make single examples slow. Derandomised: a red run repeats.
 settings.register_profile("tamp", deadline=None, derandomize=True)
@@ -20,6 +29,15 @@ settings.load_profile("tamp")
 
 # A shell that runs the tests in the background has them ignore Ctrl-C, and with them every process that they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--no-shapes", action="store_true", help="do not check the shapes of arrays in tamp.geometric")
+
+
+def pytest_runtest_setup() -> None:
+    """Check the shapes of each function's first calls in this test."""
+    shape_checks.begin_test()
 
 
 @pytest.fixture(scope="session")

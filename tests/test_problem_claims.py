@@ -10,6 +10,8 @@ import pytest
 from tamp import load_problem, solve
 from tamp.geometric.samplers.placements import SurfacePlacements
 from tamp.geometric.scene.pose import Pose
+from tamp.geometric.stability.placement import placed_pose
+from tamp.geometric.stability.stable_poses import stable_faces_of
 
 
 def test_the_last_object_fits_in_a_twentieth_of_the_packed_top(rng: np.random.Generator) -> None:
@@ -18,7 +20,9 @@ def test_the_last_object_fits_in_a_twentieth_of_the_packed_top(rng: np.random.Ge
     standing = {name: scene.bodies[name].pose for name in scene.movable if name not in ("soup_can", "sugar_box")}
 
     def free(body: str, others: dict[str, Pose], count: int) -> list[Pose]:
-        poses = SurfacePlacements().propose(scene, (body, "cupboard_top"), count, rng)
+        T_world_region, faces = scene.world_pose(scene.region("cupboard_top")), stable_faces_of(scene.bodies[body])
+        proposed = SurfacePlacements().propose(scene, (body, "cupboard_top"), count, rng)
+        poses = [placed_pose(faces, placement, T_world_region) for placement in proposed]
         return [pose for pose in poses if not any(pair(body, pose, name, at) for name, at in others.items())]
 
     cans = free("soup_can", standing, 100)

@@ -12,9 +12,11 @@ from numpy.random import Generator as Random
 from grounding.body_geometry import BodyGeometry
 from grounding.random_poses import afloat
 from grounding.relation_scene import relation_scene_of
-from grounding.runtime import Grounding
+from grounding.runtime import Grounding, laid
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement
+from tamp.geometric.stability.stable_poses import Face
 
 TOGETHER = 4
 """Proposals from one start: a network takes as long for these as for one."""
@@ -33,31 +35,42 @@ class SnappingSampler(Grounding):
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-    ) -> list[Pose]:
-        """Propose `count` world poses of body `arguments[0]` on or in `arguments[1]`, unordered."""
+    ) -> list[Placement | Pose]:
+        """Propose `count` placements of body `arguments[0]` on or in `arguments[1]`, unordered; a
+        pose where it is far from the region, or the body rests on no face.
+        """
         support = relation_scene_of(scene, arguments).support
-        poses: list[Pose] = []
-        while len(poses) < count:
+        proposals: list[Placement | Pose] = []
+        while len(proposals) < count:
             situation = relation_scene_of(scene, arguments, afloat(support, rng))
-            proposed = self.model.propose(situation, min(TOGETHER, count - len(poses)), rng)
-            poses += [Pose.from_matrix(snapped(situation.body.form, pose)) for pose in proposed]
-        return poses
+            proposed = self.model.propose(situation, min(TOGETHER, count - len(proposals)), rng)
+            for pose in proposed:
+                face = nearest_face(situation.body.form, pose)
+                if face is None:
+                    proposals.append(Pose.from_matrix(pose))
+                    continue
+                turned = snapped(situation.body.form, face, pose)
+                proposals.append(laid(scene, arguments, face.rotation, turned))
+
+        return proposals
 
 
-def snapped(form: BodyGeometry, pose: Array) -> Array:
-    """Turn the pose about the body's middle onto the nearest stable face, the lowest point as high
-    as it was.
+def nearest_face(form: BodyGeometry, pose: Array) -> Face | None:
+    """Return the stable face that is nearest to being down at T_world_body (4, 4), if there is
+    any.
+    """
+    return max(form.faces, key=lambda face: float(face.rotation[2] @ pose[2, :3]), default=None)
+
+
+def snapped(form: BodyGeometry, face: Face, pose: Array) -> Array:
+    """Turn the pose about the body's middle onto a stable face, the lowest point as high as it was.
 
     Args:
-        form: The body's; one without stable faces is left as it is.
+        form: The body's.
+        face: One of its faces.
         pose: T_world_body, shape (4, 4).
     """
-    if not form.faces:
-        return pose
-
-    # the world's up in the body's frame, were it on that face
-    ups = np.array([face.rotation[2] for face in form.faces])
-    up = ups[np.argmax(ups @ pose[2, :3])]
+    up = face.rotation[2]  # the world's up in the body's frame, were it on that face
     before = pose[2, :3]
     axis, cosine = np.cross(up, before), float(up @ before)
     cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])

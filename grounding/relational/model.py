@@ -60,18 +60,28 @@ class RelationalModel:
         """Propose at most `count` poses T_world_body, the best first; none for a body that rests on
         no face.
         """
+        return self.propose_on_faces(situation, count, rng)[0]
+
+    def propose_on_faces(
+        self, situation: RelationScene, count: int, rng: Random
+    ) -> tuple[Array, Array]:
+        """Propose poses T_world_body, (n, 4, 4), and what turns the face down that each means, (n,
+        3, 3).
+        """
         view = RegionFrame(situation)
         if not len(view.faces):
-            return np.zeros((0, 4, 4))
+            return np.zeros((0, 4, 4)), np.zeros((0, 3, 3))
         poses, scores = np.zeros((0, 4, 4)), np.zeros(0)
+        faces = np.zeros(0, dtype=np.intp)
         for turn in range(ROUNDS):
             drawn = self.proposals.draw(view, max(BEST_OF << turn, 2 * count), rng)
             poses = np.concatenate([poses, drawn.poses])
+            faces = np.concatenate([faces, drawn.face])
             scores = np.concatenate([scores, self._scores(drawn)])
             if (scores > HOPELESS).sum() >= count:
                 break
         best = np.argsort(-scores, kind="stable")[:count]
-        return view.T_world_region @ poses[best]
+        return view.T_world_region @ poses[best], view.rotations[faces[best]]
 
     def classify(self, situation: RelationScene, poses: Array) -> NDArray[np.float64]:
         """Return the probability that the relation holds with the body at each pose T_world_body,

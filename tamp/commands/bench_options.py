@@ -12,25 +12,20 @@ import tyro
 from tamp.errors import InputError
 from tamp.system.options import read_command
 
+Count = Annotated[int, tyro.conf.arg(metavar="COUNT")]
+ResultFile = Annotated[Path, tyro.conf.arg(metavar="FILE")]
+
 
 @dataclass(frozen=True)
-class Run:
-    """Run problems x samplers x seeds; the same command goes on where it was interrupted."""
+class Runs:
+    """The options of all commands that make runs."""
 
     problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
     """Shipped problems' names, or files."""
-    samplers: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("default", "uniform")
-    """NAME or NAME:alone for all relations that have it; on=NAME,inside=NAME; or default: the
-    problem's own. In on=NAME it may also be a file, as for tamp-solve --sampler:
-    on=weights.safetensors, or on=mine.py, which is run."""
-    seeds: Annotated[int, tyro.conf.arg(metavar="COUNT")] = 10
+    seeds: Count = 10
     """How many seeds each; all samplers get the same ones."""
-    first: Annotated[int, tyro.conf.arg(metavar="SEED")] = 0
-    """The first seed."""
     time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
     """Of one run."""
-    algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
-    """adaptive or incremental."""
     jobs: Annotated[
         int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")
     ] = None
@@ -39,36 +34,36 @@ class Run:
         str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")
     ] = None
     """Run on a Ray cluster: its address, auto, or local."""
-    out: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("bench.jsonl")
+    out: ResultFile = Path("bench.jsonl")
     """Where the results are, one JSON line a run; what is there is not run again."""
     quiet: bool = False
     """No progress, only the tables."""
 
 
 @dataclass(frozen=True)
-class Fig8:
+class Run(Runs):
+    """Run problems x samplers x seeds; the same command goes on where it was interrupted."""
+
+    samplers: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("default", "uniform")
+    """NAME or NAME:alone for all relations that have it; on=NAME,inside=NAME; or default: the
+    problem's own. In on=NAME it may also be a file, as for tamp-solve --sampler:
+    on=weights.safetensors, or on=mine.py, which is run."""
+    first: Annotated[int, tyro.conf.arg(metavar="SEED")] = 0
+    """The first seed."""
+    algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
+    """adaptive or incremental."""
+
+
+@dataclass(frozen=True)
+class Fig8(Runs):
     """The paper's comparison: every sampler there is, 100 runs of 30 s each, then tables and
     pictures.
     """
 
-    problems: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME...")] = ("four_objects",)
-    """Shipped problems' names, or files."""
-    seeds: Annotated[int, tyro.conf.arg(metavar="COUNT")] = 100
+    seeds: Count = 100
     """How many runs each."""
-    time: Annotated[float, tyro.conf.arg(metavar="SECONDS")] = 30.0
-    """Of one run."""
-    jobs: Annotated[
-        int | None, tyro.conf.arg(metavar="COUNT", help_behavior_hint="(default: one a core)")
-    ] = None
-    """Runs at a time."""
-    ray: Annotated[
-        str | None, tyro.conf.arg(metavar="ADDRESS", help_behavior_hint="(optional)")
-    ] = None
-    """Run on a Ray cluster: its address, auto, or local."""
-    out: Annotated[Path, tyro.conf.arg(metavar="FILE")] = Path("fig8.jsonl")
+    out: ResultFile = Path("fig8.jsonl")
     """Where the results are; the pictures come into a folder of the same name without .jsonl."""
-    quiet: bool = False
-    """No progress, only the tables."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +113,7 @@ def parsed(arguments: list[str]) -> Command:
     return chosen
 
 
-def _check(chosen: Run | Fig8) -> None:
+def _check(chosen: Runs) -> None:
     if math.isnan(chosen.time) or not 0.0 < chosen.time < math.inf:
         raise InputError(f"--time: the time must be positive and finite, not {chosen.time:g}")
     for name, value in (("seeds", chosen.seeds), ("jobs", chosen.jobs)):

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,8 +23,11 @@ from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Part, Scene
-from tamp.geometric.stability.stable_poses import Resting, resting_of
+from tamp.geometric.stability.stable_poses import StableFaces, stable_faces_of
 from tamp.geometric.values import Grasp
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 @dataclass
@@ -89,7 +93,9 @@ class Context:
         return Passage(self.scene, self.robot)
 
     @cached_property
-    def fixed_parts(self) -> tuple[list[tuple[str, Part, Pose]], Array, Array]:
+    def fixed_parts(
+        self,
+    ) -> tuple[list[tuple[str, Part, Pose]], Float[Array, "n 3"], Float[Array, "n 3"]]:
         """List of the fixed bodies: name, part and pose of the body; and all parts' lowest and
         highest corners, (n, 3).
         """
@@ -99,19 +105,19 @@ class Context:
         return parts, boxes[:, 0], boxes[:, 1]
 
     @cached_property
-    def home(self) -> Array:
+    def home(self) -> Float[Array, " 7"]:
         """Return the arm's configuration between actions, shape (7,)."""
         arm = self.scene.robot.arm
         return np.array(self.robot.home if arm is None else arm)
 
     @cached_property
-    def carrying_up(self) -> Array:
+    def carrying_up(self) -> Float[Array, " 3"]:
         """Return the direction of up in the tool's frame while the arm is at home, shape (3,)."""
         return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
 
-    def resting(self, body: str) -> Resting:
+    def stable_faces(self, body: str) -> StableFaces:
         """Return the ways in which a body can rest."""
-        return resting_of(self.scene.bodies[body])
+        return stable_faces_of(self.scene.bodies[body])
 
     def radius(self, body: str) -> float:
         """Return the radius of a sphere around the body's frame that contains the body, metres."""
@@ -120,7 +126,9 @@ class Context:
             self._radii[body] = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
         return self._radii[body]
 
-    def conf(self, base: tuple[float, float, float] | Array, arm: Array) -> Array:
+    def conf(
+        self, base: tuple[float, float, float] | Float[Array, " 3"], arm: Float[Array, " 7"]
+    ) -> Float[Array, " 10"]:
         """Return the configuration (10,) of a base and an arm."""
         return np.concatenate([np.asarray(base, dtype=float), arm])
 

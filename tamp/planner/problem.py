@@ -16,7 +16,7 @@ from tamp.geometric.samplers.choice import Grounding, Registry, mix
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
-from tamp.planner.initial_state import Initial, initial_state
+from tamp.planner.initial_state import InitialState, initial_state
 from tamp.planner.own_relations import decided
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
@@ -187,7 +187,7 @@ def _read(
     return _Files(loaded, parsed, domain_path, declared, streams_path)
 
 
-def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
+def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
     """Say the scene in the domain's words, with the facts that the file adds; parse the goal."""
     loaded, domain = files.loaded, files.domain
     start = initial_state(loaded.scene, domain, holding)

@@ -17,7 +17,7 @@ from tamp.symbolic.pddl.structs import Fact
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownAction:
     """An action: its name, the scene's objects among its arguments, when it starts and ends
     (seconds).
 
@@ -37,7 +37,7 @@ class Shown:
 
 
 @dataclass(frozen=True, eq=False)
-class Stay:
+class PoseInterval:
     """The pose of a body from `since` on: T_world_body, or, while it is held, T_tool_body; shape
     (4, 4).
     """
@@ -48,7 +48,7 @@ class Stay:
 
 
 @dataclass(frozen=True, eq=False)
-class Film:
+class Timeline:
     """A plan as motion, or a scene that stands still.
 
     Attributes:
@@ -63,10 +63,10 @@ class Film:
 
     scene: Scene
     robot: Robot
-    actions: tuple[Shown, ...]
+    actions: tuple[ShownAction, ...]
     times: Array
     rows: Array
-    stays: Mapping[str, tuple[Stay, ...]]
+    stays: Mapping[str, tuple[PoseInterval, ...]]
 
     @property
     def duration(self) -> float:
@@ -88,18 +88,20 @@ class Film:
         return poses
 
 
-def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
+def timeline_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Timeline:
     """Follow a plan from the scene's start; without one nothing moves."""
     arm = robot.home if scene.robot.arm is None else scene.robot.arm
     maker = _Maker(scene, robot, np.array([*scene.robot.base, *arm, robot.opening]))
     places = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
     facts = () if plan is None else (*plan.initial, *plan.certified)
-    actions: list[Shown] = []
+    actions: list[ShownAction] = []
     for action in () if plan is None else plan.actions:
         objects = tuple(places[name] for name in action.arguments if name in places)
         end = action.start + action.duration
         actions.append(
-            Shown(action.name, objects, action.start, end, _where(action, facts, places, scene))
+            ShownAction(
+                action.name, objects, action.start, end, _where(action, facts, places, scene)
+            )
         )
         clock = action.start
         for segment in action.segments:
@@ -107,7 +109,7 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
             clock += float(segment.times[-1])
     times = np.maximum.accumulate(np.array(maker.times))
     stays = {name: tuple(stays) for name, stays in maker.stays.items()}
-    return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
+    return Timeline(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
 
 
 def _where(
@@ -137,7 +139,7 @@ class _Maker:
         self.times: list[float] = [0.0]
         self.rows: list[Array] = [row]
         self.stays = {
-            name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))]
+            name: [PoseInterval(0.0, False, np.array(scene.bodies[name].pose.matrix))]
             for name in scene.movable
         }
         self._names = {name.lower(): name for name in scene.movable}
@@ -148,7 +150,7 @@ class _Maker:
         if segment.detach in self._names:
             body = self._names[segment.detach]
             tool = self._kinematics.tool(self.rows[-1][:10])
-            self.stays[body].append(Stay(clock, False, tool @ self.stays[body][-1].T))
+            self.stays[body].append(PoseInterval(clock, False, tool @ self.stays[body][-1].T))
         columns = {"base": slice(0, 3), "arm": slice(3, 10), "gripper": slice(10, 11)}[segment.part]
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
@@ -158,21 +160,23 @@ class _Maker:
             self.times.append(clock + float(time))
             self.rows.append(row)
         if segment.attach is not None and segment.attach.body in self._names:
-            held = Stay(self.times[-1], True, segment.attach.T_tool_body)
+            held = PoseInterval(self.times[-1], True, segment.attach.T_tool_body)
             self.stays[self._names[segment.attach.body]].append(held)
 
 
-def tool_path(film: Film, kinematics: Kinematics) -> Array:
-    """Return the tool's positions at the film's times, shape (n, 3), metres in the world."""
-    return np.array([kinematics.tool(row[:10])[:3, 3] for row in film.rows])
+def tool_path(timeline: Timeline, kinematics: Kinematics) -> Array:
+    """Return the tool's positions at the timeline's times, shape (n, 3), metres in the world."""
+    return np.array([kinematics.tool(row[:10])[:3, 3] for row in timeline.rows])
 
 
-def holding(film: Film) -> list[bool]:
-    """Check whether something is in the hand between each of the film's times and the next."""
+def holding(timeline: Timeline) -> list[bool]:
+    """Check whether something is in the hand between each of the timeline's times and the next."""
     spans = [
-        (stay.since, after.since if after else film.duration)
-        for stays in film.stays.values()
+        (stay.since, after.since if after else timeline.duration)
+        for stays in timeline.stays.values()
         for stay, after in pairwise([*stays, None])
         if stay is not None and stay.held
     ]
-    return [any(start <= a and b <= end for start, end in spans) for a, b in pairwise(film.times)]
+    return [
+        any(start <= a and b <= end for start, end in spans) for a, b in pairwise(timeline.times)
+    ]

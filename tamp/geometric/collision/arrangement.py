@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tamp.geometric.collision.fcl_pairs import Exact
 from tamp.geometric.collision.kernels import FLOOR, FREE, SELF, UNDECIDED
 from tamp.geometric.collision.tables import CENTRE, FRAME, ON_FLOOR, RADIUS, Tables
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 PADDING = 0.002
 """Metres: a transit state is free only when everything is at least this far from everything else.
@@ -74,7 +78,7 @@ class Arrangement:
         self.stats = Statistics()
         self._exact = exact
 
-    def free(self, conf: Array) -> bool:
+    def free(self, conf: Float[Array, " 10"]) -> bool:
         """Check whether everything is at least PADDING apart at `conf`."""
         self.stats.states += 1
         try:
@@ -88,7 +92,7 @@ class Arrangement:
         self.stats.states_undecided += 1
         return self._scan(conf, PADDING) is None
 
-    def edge_free(self, start: Array, end: Array) -> bool:
+    def edge_free(self, start: Float[Array, " 10"], end: Float[Array, " 10"]) -> bool:
         """Check whether the straight line between two configurations is free of collision. Yaw
         turns the way that the numbers go.
 
@@ -114,7 +118,7 @@ class Arrangement:
                 return False
         return True
 
-    def hits(self, conf: Array, padding: float = 0.0) -> tuple[str, str] | None:
+    def hits(self, conf: Float[Array, " 10"], padding: float = 0.0) -> tuple[str, str] | None:
         """Return the names of a colliding pair, nearer than `padding` metres (with 0: that
         intersects or touches); None when free.
 
@@ -129,7 +133,7 @@ class Arrangement:
         return None if code == FREE else self._exact.names(*pair_of(answer))
 
     def path_hits(
-        self, path: Array, step: float = 0.002, padding: float = 0.0
+        self, path: Float[Array, "n 10"], step: float = 0.002, padding: float = 0.0
     ) -> tuple[str, str] | None:
         """Return the `hits` along the polyline `path` (n, 10), in states between which no point of
         the robot moves more than `step` metres; pieces that the kernel proves free are not sampled.

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import fcl
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box, Cylinder, Part, Shape, Sphere
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 class FclBody:
@@ -21,7 +26,7 @@ class FclBody:
         self._T_body_part = [part.pose.matrix for part in parts]
         self._at: list[Array | None] = [None] * len(parts)
 
-    def place(self, index: int, T_world_body: Array) -> fcl.CollisionObject:
+    def place(self, index: int, T_world_body: Float[Array, "4 4"]) -> fcl.CollisionObject:
         """Place part `index` with the body at `T_world_body` (4, 4)."""
         if self._at[index] is not T_world_body:
             matrix = T_world_body @ self._T_body_part[index]

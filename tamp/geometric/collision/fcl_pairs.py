@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from tamp.geometric.collision.robot_tables import RobotParts
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Part
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 FLOOR_PART = Part(Box((40.0, 40.0, 1.0)), Pose((0.0, 0.0, -0.5)))
 
@@ -48,7 +52,7 @@ class Exact:
         self._standing = standing
         self._floor = floor
 
-    def nearer(self, conf: Array, part: int, other: int, padding: float) -> bool:
+    def nearer(self, conf: Float[Array, " 10"], part: int, other: int, padding: float) -> bool:
         """Check whether that pair (as in `sweep.pair_of`) is nearer than `padding` metres at
         `conf`; 0: intersects.
         """

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Cylinder, Hull, Part, Scene
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 Placed = tuple[str, Pose]
 
@@ -51,7 +55,7 @@ class HandCollisions:
 
     def hits(
         self,
-        tools: Sequence[Array],
+        tools: Sequence[Float[Array, "4 4"]],
         opening: float,
         attachment: Attachment | None,
         others: Iterable[Placed],

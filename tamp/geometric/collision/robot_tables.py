@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from tamp.geometric.collision.tables import FRAME, ON_FLOOR, Rows, pose_rows
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.spheres import link_covers
 from tamp.geometric.scene.pose import Array, Pose
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +82,11 @@ class RobotTables:
         self._T_flange_tool = (robot.T_flange_hand @ robot.T_hand_tool).matrix
 
     def complete(
-        self, opening: float, held: str | None, T_tool_parts: Array, held_rows: Array
+        self,
+        opening: float,
+        held: str | None,
+        T_tool_parts: Float[Array, "k 4 4"],
+        held_rows: Float[Array, "k width"],
     ) -> RobotParts:
         """Complete the rows with the fingers at `opening` metres and a body in the hand.
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Shape, Sphere
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 POINT, BOX, CYLINDER, HULL = 0, 1, 2, 3
 """Kinds of convex cores; a sphere is a point with a margin."""
@@ -55,7 +58,7 @@ class Tables(NamedTuple):
     obstacles: Array
     obstacle_poses: Array
 
-    def packed(self) -> Array:
+    def packed(self) -> Float[Array, " packed"]:
         """Pack all tables into one vector, which is what the kernels take: Python hands over one
         array in a microsecond less than nine. It starts with the offset, rows and columns of each;
         `unpack` reads it.
@@ -71,7 +74,7 @@ class Tables(NamedTuple):
         )
 
 
-def pose_rows(matrices: Array) -> Array:
+def pose_rows(matrices: Float[Array, "n 4 4"]) -> Float[Array, "n 12"]:
     """Return homogeneous matrices (n, 4, 4) as rows (n, 12) of the tables."""
     return np.concatenate([matrices[:, :3, :3].reshape(-1, 9), matrices[:, :3, 3]], axis=1)
 
@@ -85,7 +88,9 @@ class Rows:
         self._vertex_count = 0
         self._leaf_count = 0
 
-    def row(self, part: Part, cover: tuple[Array, float] | None = None) -> Array:
+    def row(
+        self, part: Part, cover: tuple[Float[Array, "k 4"], float] | None = None
+    ) -> Float[Array, " width"]:
         """Build the row of one part (WIDTH,), without its pose; `cover`: leaves (k, 4) in the
         part's frame, slack.
         """
@@ -105,11 +110,11 @@ class Rows:
             self._leaf_count += len(leaves)
         return row
 
-    def vertices(self) -> Array:
+    def vertices(self) -> Float[Array, "3 v"]:
         """Return all hulls' vertices, (3, v)."""
         return np.ascontiguousarray(np.concatenate([np.zeros((0, 3)), *self._vertices]).T)
 
-    def leaves(self) -> Array:
+    def leaves(self) -> Float[Array, "l 4"]:
         """Return all leaves, (l, 4)."""
         return np.ascontiguousarray(np.concatenate([np.zeros((0, 4)), *self._leaves]))
 
@@ -136,7 +141,9 @@ def _core(shape: Shape) -> tuple[int, Array, Array, float, float]:
     )
 
 
-def world_box(rows: Array, poses: Array) -> tuple[Array, Array]:
+def world_box(
+    rows: Float[Array, "n width"], poses: Float[Array, "n 12"]
+) -> tuple[Float[Array, "n 3"], Float[Array, "n 3"]]:
     """Compute low and high corners (n, 3) of the world's boxes around parts (n, WIDTH) at poses (n,
     12).
     """

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from tamp.geometric.collision.fcl_bodies import FclBody, depth, gap
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 NEAR = 0.0005
 """Metres of air up to which two bodies count as touching."""
@@ -65,7 +68,7 @@ class Touching:
         """Check whether two bodies at these poses are a pair that touches at the start."""
         return other_pose == self._scene.bodies[other].pose and other in self.touched(body, pose)
 
-    def way_out(self, body: str, pose: Pose, lift: float) -> Array:
+    def way_out(self, body: str, pose: Pose, lift: float) -> Float[Array, " 3"]:
         """Return the lift-off direction of a body at a pose, (3,), metres: straight up, and away
         from what it touches beside it.
         """
@@ -96,7 +99,7 @@ class Touching:
 
         return self._ways[body, lift]
 
-    def separates(self, body: str, T_world_body: Iterable[Array], other: str) -> bool:
+    def separates(self, body: str, T_world_body: Iterable[Float[Array, "4 4"]], other: str) -> bool:
         """Check whether a body that is moved through poses (4, 4) leaves one that it touches, and
         stays away.
         """

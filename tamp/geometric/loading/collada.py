@@ -7,6 +7,7 @@ whatever they write.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,11 +17,16 @@ from tamp.errors import InputError
 from tamp.geometric.loading.xml_file import read_xml
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
 _MOST_INSTANCES = 10_000
 _MOST_DEPTH = 100
 
 
-def read_collada(path: Path, most: int) -> tuple[Array, NDArray[np.int64]]:
+def read_collada(
+    path: Path, most: int
+) -> tuple[Float[Array, "n 3"], Int[NDArray[np.int64], "m 3"]]:
     """Read vertices (n, 3) in metres and triangles (m, 3) of all that the file's scene shows, or of
     all its geometries when it has no scene.
 

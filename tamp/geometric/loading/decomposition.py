@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from scipy.spatial import ConvexHull, QhullError
 
 from tamp.geometric.scene.convex import TOLERANCE, directions, simplified, thickened
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 MOST_PIECES = 16
 _GRID = 40
@@ -51,7 +55,9 @@ class _Piece:
     filled: float
 
 
-def decompose(vertices: Array, faces: NDArray[np.integer], most: int = MOST_PIECES) -> list[Array]:
+def decompose(
+    vertices: Float[Array, "n 3"], faces: Int[NDArray[np.integer], "m 3"], most: int = MOST_PIECES
+) -> list[Float[Array, "_ 3"]]:
     """Decompose a mesh into convex pieces, vertices (n, 3) each, that contain the surface, and the
     solid when the surface is closed.
 

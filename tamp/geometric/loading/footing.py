@@ -8,12 +8,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Sphere
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 GAP = 0.0095
 """Metres of air below a body that still count as resting: 0.5 mm less than the judge allows."""
@@ -128,7 +132,7 @@ class Ground:
         return Footing(on, outside(point, xy[carrying.any(axis=1)]))
 
 
-def center_of_mass(body: Body) -> Array:
+def center_of_mass(body: Body) -> Float[Array, " 3"]:
     """Compute the centre of mass in the body's frame, metres, shape (3,): the one that its file
     gives, or of parts of one density.
     """
@@ -142,7 +146,7 @@ def center_of_mass(body: Body) -> Array:
     return np.average(centres, axis=0, weights=[volume for volume, _ in masses])
 
 
-def outside(point: Array, points: Array) -> float:
+def outside(point: Float[Array, " 2"], points: Float[Array, "n 2"]) -> float:
     """Compute the metres by which a point (2,) is outside of the convex hull of points (n, 2); not
     positive inside of it.
     """
@@ -151,14 +155,16 @@ def outside(point: Array, points: Array) -> float:
     return float((point @ directions - (points @ directions).max(axis=0)).max())
 
 
-def body_points(body: Body) -> Array:
+def body_points(body: Body) -> Float[Array, "n 3"]:
     """Return points on the surfaces of the body's parts that reach their extents, in its own frame,
     shape (n, 3), metres.
     """
     return np.concatenate([part.pose.apply(_points(part)) for part in body.parts])
 
 
-def vertical(part: Part, T_world_part: Array, xy: Array) -> tuple[Array, Array]:
+def vertical(
+    part: Part, T_world_part: Float[Array, "4 4"], xy: Float[Array, "n 2"]
+) -> tuple[Float[Array, " n"], Float[Array, " n"]]:
     """Intersect a part with vertical lines at xy (n, 2): the heights (n,) at which they enter and
     leave it; (inf, -inf) where they miss it.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from tamp.errors import InputError
 from tamp.geometric.loading.mesh_file import read_triangles
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Int
 
 LARGEST = 5.0
 SMALLEST = 0.001
@@ -107,7 +110,7 @@ def _merged(mesh: Any, digits: int | None) -> Any:
     return mesh
 
 
-def open_edges(faces: NDArray[np.integer]) -> int:
+def open_edges(faces: Int[NDArray[np.integer], "m 3"]) -> int:
     """Count the boundary edges, not run through as often forwards as backwards; 0 for a closed
     (watertight), consistently turned surface.
 

@@ -6,6 +6,7 @@ import importlib.util
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scaling import scale_part, scale_pose
 from tamp.geometric.scene.scene import Cylinder, Part, Sphere, Visual
 from tamp.system.files import shipped
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 Scale = tuple[float, float, float]
 SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf", ".urdf")
@@ -125,7 +129,7 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
     )
 
 
-def mesh_triangles(mesh: Mesh) -> Array | None:
+def mesh_triangles(mesh: Mesh) -> Float[Array, "n 3 3"] | None:
     """Return the triangles (n, 3, 3) of the mesh files among several parts, in the body's frame,
     metres; None without any.
     """

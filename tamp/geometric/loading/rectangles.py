@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 _GRID = 24
 
 
-def inscribed(polygon: Array) -> Array:
+def inscribed(polygon: Float[Array, "n 2"]) -> Float[Array, " 4"]:
     """Find the largest inscribed rectangle along the axes in a convex polygon (n, 2),
     counter-clockwise or not: x0, x1, y0, y1.
 
@@ -42,7 +47,9 @@ def _sides(polygon: Array, xs: Array) -> tuple[Array, Array]:
     return floor, ceiling
 
 
-def largest_of_union(rectangles: Array, blocked: Array) -> tuple[float, float, float, float]:
+def largest_of_union(
+    rectangles: Float[Array, "n 4"], blocked: Float[Array, "m 4"]
+) -> tuple[float, float, float, float]:
     """Find the largest rectangle in a union of rectangles (n, 4: x0, x1, y0, y1) and out of others
     (m, 4).
     """

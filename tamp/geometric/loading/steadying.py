@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from tamp.geometric.loading.footing import (
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 TIP = math.radians(20.0)
 """A body that does not stand as it was given is tipped at most this far onto the face beside,
@@ -126,7 +130,7 @@ def _tipped(
     return tipped, found
 
 
-def tip(body: Body) -> Array | None:
+def tip(body: Body) -> Float[Array, "3 3"] | None:
     """Compute the rotation (3, 3), in the world, by which a body on a plane rolls until it lies
     still; None beyond TIP.
     """

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.outline import outline
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Surface
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 NARROWEST = 0.05
 """Metres: a face that is narrower carries something only where nothing wider is level and free."""
@@ -60,7 +64,10 @@ class _Rectangle:
 
 
 def top_of(
-    name: str, parts: tuple[Part, ...], stance: Pose = Pose(), triangles: Array | None = None
+    name: str,
+    parts: tuple[Part, ...],
+    stance: Pose = Pose(),
+    triangles: Float[Array, "n 3 3"] | None = None,
 ) -> Surface | None:
     """Find the highest level rectangle on which another body may stand, as the surface `name`.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
 SHORTCUTS = 30
@@ -21,9 +25,9 @@ PATIENCE = 5
 
 def plan_arm(
     checker: Checker,
-    base: Array,
-    start: Array,
-    goals: Array,
+    base: Float[Array, " 3"],
+    start: Float[Array, " 7"],
+    goals: Float[Array, "... 7"],
     robot: Limits,
     rng: np.random.Generator,
     deadline: Deadline,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 YAW = (2,)
 WEIGHTS = np.array([1.0, 1.0, 0.5])
@@ -35,9 +39,9 @@ EdgeTest = Callable[[Array, Array], bool]
 
 def plan_base(
     checker: Checker,
-    arm: Array,
-    start: Array,
-    goal: Array,
+    arm: Float[Array, " 7"],
+    start: Float[Array, " 3"],
+    goal: Float[Array, " 3"],
     room: Room,
     rng: np.random.Generator,
     deadline: Deadline,

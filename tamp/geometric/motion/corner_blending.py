@@ -11,11 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 EdgeTest = Callable[[Array, Array], bool]
 
@@ -83,7 +87,7 @@ class Corner:
         return self.reach or self.window
 
     @property
-    def bend(self) -> Array:
+    def bend(self) -> Float[Array, " d"]:
         """Second derivative within the rounding; zero for a corner that is not rounded."""
         return (
             (self.after - self.before) / (2.0 * self.reach)
@@ -91,19 +95,21 @@ class Corner:
             else np.zeros_like(self.before)
         )
 
-    def shares(self) -> Array:
+    def shares(self) -> Float[Array, " k"]:
         """Return parameters in [0, 1] between which the chords of the rounding run, evenly spaced
         in the station.
         """
         return np.linspace(0.0, 1.0, int(np.clip(np.ceil(2.0 * self.reach / CHORD), 2, 8)) + 1)
 
-    def curve(self) -> Array:
+    def curve(self) -> Float[Array, "k d"]:
         """Compute the rounding at those parameters, shape (chords + 1, d)."""
         t = self.shares()[:, None]
         return self.vertex + self.reach * (t**2 * self.after - (1 - t) ** 2 * self.before)
 
 
-def corners(path: Array, acceleration: Array, edge_free: EdgeTest | None = None) -> list[Corner]:
+def corners(
+    path: Float[Array, "n d"], acceleration: Float[Array, " d"], edge_free: EdgeTest | None = None
+) -> list[Corner]:
     """Decide how to pass each vertex of a path; at its ends the motion rests.
 
     A corner is rounded if `edge_free` certifies the chords of the rounding. Vertices that sample a

@@ -7,7 +7,7 @@ analysis", T-RO 2018.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,12 +15,17 @@ from tamp.geometric.motion.corner_blending import Rail
 from tamp.geometric.motion.without_pyplot import undrawn
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 with undrawn():
     from toppra.algorithm import TOPPRA
     from toppra.constraint import LinearConstraint
 
 
-def speeds(rail: Rail, velocity: Array, acceleration: Array) -> Array | None:
+def speeds(
+    rail: Rail, velocity: Float[Array, " d"], acceleration: Float[Array, " d"]
+) -> Float[Array, " m"] | None:
     """Compute the fastest rate of the station at each node, from rest to rest.
 
     Args:

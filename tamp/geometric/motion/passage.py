@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box, Scene
 from tamp.geometric.stability.hulls import part_mesh
 from tamp.geometric.stability.slices import cut, distances
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 FINEST = 0.03
 """Side of the cells into which the floor is divided at least, metres."""
@@ -108,14 +112,14 @@ class Passage:
                         found.append(Slice(name, corners))
         return found
 
-    def clearance(self, points: Array) -> Array:
+    def clearance(self, points: Float[Array, "n 2"]) -> Float[Array, " n"]:
         """Compute the distances (n,) of points (n, 2) from the slices; infinite without any."""
         least = np.full(len(points), np.inf)
         for piece in self.slices:
             np.minimum(least, distances(points, piece.corners), out=least)
         return least
 
-    def open_towards(self, target: Array, reach: float) -> bool:
+    def open_towards(self, target: Float[Array, " 2"], reach: float) -> bool:
         """Check whether the disc gets within `reach` metres of a point (2,) in a straight line, or
         in two.
         """
@@ -195,7 +199,7 @@ class Passage:
 
         return np.array(best).reshape(free.shape), before
 
-    def closed(self, low: Array, high: Array, reach: float) -> Gap | None:
+    def closed(self, low: Float[Array, " 2"], high: Float[Array, " 2"], reach: float) -> Gap | None:
         """Return the gap that keeps the base from within `reach` metres of a box (2,), (2,); None
         unless that is proven.
         """
@@ -215,7 +219,7 @@ class Passage:
             int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
         )
 
-    def narrow(self, goal: Array) -> Gap | None:
+    def narrow(self, goal: Float[Array, " 2"]) -> Gap | None:
         """Find the narrowest place on the widest way to a base position (2,), where the base hardly
         fits through it.
         """

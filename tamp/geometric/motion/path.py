@@ -7,15 +7,21 @@ base's yaw) is therefore stored unwrapped: 3.1 then 3.2, not 3.1 then -3.08.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 TURN = 2.0 * np.pi
 
 
-def nearest(reference: Array, conf: Array, periodic: Sequence[int] = ()) -> Array:
+def nearest(
+    reference: Float[Array, " d"], conf: Float[Array, " d"], periodic: Sequence[int] = ()
+) -> Float[Array, " d"]:
     """Return `conf`, shape (d,), with its periodic coordinates moved by whole turns to within half
     a turn of `reference`.
     """
@@ -27,7 +33,7 @@ def nearest(reference: Array, conf: Array, periodic: Sequence[int] = ()) -> Arra
     return moved
 
 
-def unwrap(path: Array, periodic: Sequence[int] = ()) -> Array:
+def unwrap(path: Float[Array, "n d"], periodic: Sequence[int] = ()) -> Float[Array, "n d"]:
     """Return the same path, shape (n, d), with no edge turning the longer way round. The first row
     stays as it is.
     """
@@ -37,7 +43,9 @@ def unwrap(path: Array, periodic: Sequence[int] = ()) -> Array:
     return np.array(rows)
 
 
-def edge_lengths(path: Array, weights: Array | None = None) -> Array:
+def edge_lengths(
+    path: Float[Array, "n d"], weights: Float[Array, " d"] | None = None
+) -> Float[Array, " n-1"]:
     """Compute the Euclidean length of each edge, shape (n - 1,), each coordinate scaled by its
     weight.
     """
@@ -45,12 +53,16 @@ def edge_lengths(path: Array, weights: Array | None = None) -> Array:
     return np.linalg.norm(steps if weights is None else steps * weights, axis=1)
 
 
-def length(path: Array, weights: Array | None = None) -> float:
+def length(path: Float[Array, "n d"], weights: Float[Array, " d"] | None = None) -> float:
     """Compute the length of the whole path, in the weighted unit."""
     return float(edge_lengths(path, weights).sum())
 
 
-def at(path: Array, distances: Array, weights: Array | None = None) -> Array:
+def at(
+    path: Float[Array, "n d"],
+    distances: Float[Array, " m"],
+    weights: Float[Array, " d"] | None = None,
+) -> Float[Array, "m d"]:
     """Interpolate the configurations at `distances` (m,) along the path, in the weighted unit;
     shape (m, d).
     """
@@ -58,7 +70,7 @@ def at(path: Array, distances: Array, weights: Array | None = None) -> Array:
     return np.stack([np.interp(distances, stations, column) for column in path.T], axis=-1)
 
 
-def without_repeats(path: Array) -> Array:
+def without_repeats(path: Float[Array, "n d"]) -> Float[Array, "k d"]:
     """Return the path without rows that equal their predecessor; at least one row stays."""
     keep = np.concatenate([[True], np.any(np.diff(path, axis=0) != 0.0, axis=1)])
     return path[keep]

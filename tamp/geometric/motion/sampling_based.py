@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import ompl.base as ob
@@ -19,6 +19,9 @@ import ompl.util as ou
 
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 EdgeTest = Callable[[Array, Array], bool]
 
@@ -46,7 +49,7 @@ class JointSpace:
         """Return the numbers of a state."""
         return state[0 : len(self.lower)]
 
-    def write(self, state: Any, conf: Array) -> None:
+    def write(self, state: Any, conf: Float[Array, " d"]) -> None:
         """Put the numbers into a state."""
         state[0 : len(self.lower)] = [float(value) for value in conf]
 
@@ -83,7 +86,7 @@ class PlaneSpace:
         """Return the numbers of a state."""
         return state.getX(), state.getY(), state.getYaw()
 
-    def write(self, state: Any, conf: Array) -> None:
+    def write(self, state: Any, conf: Float[Array, " d"]) -> None:
         """Put the numbers into a state, the yaw wrapped into [-pi, pi): pi itself is out of OMPL's
         bounds.
         """
@@ -115,15 +118,15 @@ class _WholeEdges(ob.MotionValidator):
 
 def connect(
     space: JointSpace | PlaneSpace,
-    start: Array,
-    goals: Sequence[Array],
+    start: Float[Array, " d"],
+    goals: Sequence[Float[Array, " d"]],
     edge_free: EdgeTest,
     *,
     seed: int,
     checks: int,
     deadline: Deadline,
     reach: float,
-) -> tuple[Array | None, int]:
+) -> tuple[Float[Array, "n d"] | None, int]:
     """Search a path from `start` to any of `goals`, all of which the caller knows to be free and
     within the limits.
 
@@ -202,7 +205,9 @@ def connect(
     return np.array([space.read(state) for state in states]), validator.checks
 
 
-def curve(plane: PlaneSpace, start: Array, end: Array, step: float) -> Array:
+def curve(
+    plane: PlaneSpace, start: Float[Array, " 3"], end: Float[Array, " 3"], step: float
+) -> Float[Array, "n 3"]:
     """Sample the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape
     (n, 3).
 

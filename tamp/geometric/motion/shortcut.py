@@ -9,25 +9,29 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.motion.path import edge_lengths, nearest, without_repeats
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 GAIN = 0.01  # a cut that saves less than this share of the path is not worth an edge check
 
 
 def shortcut(
-    path: Array,
+    path: Float[Array, "n d"],
     edge_free: Callable[[Array, Array], bool],
     rng: np.random.Generator,
     *,
     tries: int,
     patience: int,
-    weights: Array | None = None,
+    weights: Float[Array, " d"] | None = None,
     periodic: Sequence[int] = (),
-) -> tuple[Array, int]:
+) -> tuple[Float[Array, "m d"], int]:
     """Shorten a path between the same ends by edges that are free or parts of the given path's
     edges.
 

@@ -7,12 +7,16 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.motion.corner_blending import TICK, Corner, Rail, corners, lay
 from tamp.geometric.motion.path import without_repeats
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,9 +35,9 @@ class Timed:
 
 
 def time_path(
-    path: Array,
-    velocity: Array,
-    acceleration: Array,
+    path: Float[Array, "n d"],
+    velocity: Float[Array, " d"],
+    acceleration: Float[Array, " d"],
     edge_free: Callable[[Array, Array], bool] | None = None,
 ) -> Timed:
     """Time a path, from rest to rest, as fast as the limits allow.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from eaik.IK_HP import HPRobot
@@ -11,6 +12,9 @@ from eaik.IK_HP import HPRobot
 from tamp.geometric.robot import arm_kernels
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 TOLERANCE = 1e-6
 """Metres, and entries of the rotation matrix, by which a solution's FK may miss the pose."""
@@ -46,8 +50,11 @@ class ArmIK:
         self._reach = _reach(origins)
 
     def solve(
-        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
-    ) -> Array:
+        self,
+        T_base_tool: Float[Array, "4 4"],
+        enough: int | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> Float[Array, "n 7"]:
         """Solve inverse kinematics: joint angles (n, 7) within the limits that put the tool at
         T_base_tool (4, 4), in a deterministic order.
 
@@ -95,8 +102,11 @@ class ArmIK:
         return np.concatenate(found) if found else np.empty((0, 7))
 
     def follow(
-        self, T_base_tools: Sequence[Array], q_start: Array, jump: float = 0.3
-    ) -> Array | None:
+        self,
+        T_base_tools: Sequence[Float[Array, "4 4"]],
+        q_start: Float[Array, " 7"],
+        jump: float = 0.3,
+    ) -> Float[Array, "k 7"] | None:
         """Return joint angles (k, 7) along tool poses (4, 4) that lie close together, continuing
         from q_start.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,9 @@ import pinocchio  # pyright: ignore[reportMissingImports]
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 class Kinematics:
@@ -59,7 +63,9 @@ class Kinematics:
             (f.child, f.origin.matrix, f.origin.rotation @ np.array(f.axis)) for f in robot.fingers
         )
 
-    def link_poses(self, conf: Array, opening: float) -> dict[str, Array]:
+    def link_poses(
+        self, conf: Float[Array, " 10"], opening: float
+    ) -> dict[str, Float[Array, "4 4"]]:
         """Compute T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
         data, links = self._data, self.robot.links
         pinocchio.forwardKinematics(self._model, data, conf)
@@ -76,16 +82,16 @@ class Kinematics:
             poses[name] = T_world_hand @ T_hand_finger
         return poses
 
-    def tool(self, conf: Array) -> Array:
+    def tool(self, conf: Float[Array, " 10"]) -> Float[Array, "4 4"]:
         """Compute T_world_tool, shape (4, 4)."""
         pinocchio.forwardKinematics(self._model, self._data, conf)
         return pinocchio.updateFramePlacement(self._model, self._data, self._tool).homogeneous
 
-    def arm_tool(self, arm: Array) -> Array:
+    def arm_tool(self, arm: Float[Array, " 7"]) -> Float[Array, "4 4"]:
         """Compute T_base_tool, shape (4, 4), at joint angles (7,)."""
         return self.tool(np.concatenate([(0.0, 0.0, 0.0), arm]))
 
-    def jacobian(self, conf: Array) -> Array:
+    def jacobian(self, conf: Float[Array, " 10"]) -> Float[Array, "6 10"]:
         """Compute the Jacobian of the tool by conf, shape (6, 10), in the world's axes: the tool
         origin's velocity above the angular one.
         """
@@ -93,7 +99,7 @@ class Kinematics:
         return pinocchio.computeFrameJacobian(self._model, self._data, conf, self._tool, frame)
 
 
-def base_matrix(base: Array) -> Array:
+def base_matrix(base: Float[Array, " coordinates"]) -> Float[Array, "4 4"]:
     """Return T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
     cos, sin = math.cos(base[2]), math.sin(base[2])
     return np.array([[cos, -sin, 0, base[0]], [sin, cos, 0, base[1]], [0, 0, 1, 0], [0, 0, 0, 1.0]])

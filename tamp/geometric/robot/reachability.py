@@ -6,12 +6,16 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 BROAD = 0.1
 """The share of samples that do not follow the table, so that every base pose within reach can be
@@ -62,7 +66,9 @@ class Reachability:
         self._cumulative = np.cumsum(weights.reshape(*counts.shape[:2], -1), axis=2)
         self._foot = np.array(robot.T_base_arm.position[:2])
 
-    def sample(self, T_world_tool: Array, rng: np.random.Generator, count: int) -> Array:
+    def sample(
+        self, T_world_tool: Float[Array, "4 4"], rng: np.random.Generator, count: int
+    ) -> Float[Array, "count 3"]:
         """Sample base poses x, y, yaw (count, 3) in metres and radians, in random order; collisions
         are not looked at.
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Array, float]]:
+
+def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"], float]]:
     """Load the shipped cover of each part by (link, number): centres and radii (k, 4) in the part's
     frame, and its slack.
 

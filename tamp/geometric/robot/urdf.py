@@ -5,10 +5,14 @@ from __future__ import annotations
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,7 @@ def read_joints(urdf: Path) -> dict[str, Joint]:
     return joints
 
 
-def read_collision_vertices(urdf: Path) -> dict[str, Array]:
+def read_collision_vertices(urdf: Path) -> dict[str, Float[Array, "_ 3"]]:
     """Read all vertices (n, 3) of each link's collision mesh (OBJ) in the link's frame, metres.
 
     Raises:

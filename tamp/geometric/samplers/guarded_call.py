@@ -1,18 +1,22 @@
-"""Asking a generator that anyone may have written: what comes back are poses, in time, or the
-reason why not.
+"""Asking a generator that anyone may have written: what comes back are placements or poses, in
+time, or the reason why not.
 """
 
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import islice
 
 from numpy.random import Generator as Random
 
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Room, Scene
+from tamp.geometric.scene.scene import Body, Room, Scene
+from tamp.geometric.stability.placement import Placement
+from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
@@ -32,8 +36,9 @@ def ask(
     rng: Random,
     deadline: Deadline,
     seconds: float = math.inf,
-) -> list[Pose]:
-    """Ask for at most `count` poses, best first, of finite numbers and with unit quaternions.
+) -> list[Placement | Pose]:
+    """Ask for at most `count` proposals, best first: poses of finite numbers and with unit
+    quaternions, placements on a face that the body has in a region that there is.
 
     Args:
         generator: Of any behaviour.
@@ -45,7 +50,7 @@ def ask(
         seconds: How long the generator may take.
 
     Raises:
-        Misbehaved: It raised, took too long, or proposed not a single pose among what it proposed.
+        Misbehaved: It raised, took too long, or proposed nothing of use among what it proposed.
     """
     limit = Deadline(min(seconds, deadline.left()))
     try:
@@ -66,28 +71,62 @@ def ask(
 
 def _proposed(
     generator: Generator, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-) -> list[Pose]:
-    return _poses(generator.propose(scene, arguments, count, rng), count, scene.room)
+) -> list[Placement | Pose]:
+    regions = frozenset((*scene.surfaces, *scene.cavities))
+    limits = _Limits(scene.bodies.get(arguments[0]), regions, scene.room)
+    return _proposals(generator.propose(scene, arguments, count, rng), count, limits)
 
 
-def _poses(proposed: object, count: int, room: Room) -> list[Pose]:
+@dataclass(frozen=True, eq=False)
+class _Limits:
+    """The body, regions and room that proposals are about, noted before the generator has the scene
+    in its hands.
+    """
+
+    body: Body | None
+    regions: frozenset[str]
+    room: Room
+
+
+def _proposals(proposed: object, count: int, limits: _Limits) -> list[Placement | Pose]:
     if not isinstance(proposed, Iterable):
         raise Misbehaved(f"it proposes a {type(proposed).__name__}, not a list of poses")
-    poses: list[Pose] = []
+    proposals: list[Placement | Pose] = []
     wrong = ""
     for item in islice(proposed, count):
         try:
-            poses.append(_pose(item, room))
+            checked = _placement if isinstance(item, Placement) else _pose
+            proposals.append(checked(item, limits))
         except Misbehaved as error:
             wrong = str(error)
-    if wrong and not poses:
+    if wrong and not proposals:
         raise Misbehaved(wrong)
-    return poses
+    return proposals
 
 
-def _pose(item: object, room: Room) -> Pose:
+def _placement(item: Placement, limits: _Limits) -> Placement:
+    try:
+        region, face = str(item.region), operator.index(item.face)
+        x, y, yaw = (float(number) for number in (item.x, item.y, item.yaw))
+    except (TypeError, ValueError):
+        raise Misbehaved("it proposes a placement without three numbers and a face") from None
+    if region not in limits.regions:
+        raise Misbehaved(f"it proposes a placement in '{region:.40}', which there is not")
+
+    ways = 0 if limits.body is None else len(stable_faces_of(limits.body).ways)
+    if not 0 <= face < ways:
+        raise Misbehaved(f"it proposes face {face} of a body that rests on {ways}")
+    if not all(math.isfinite(number) for number in (x, y, yaw)):
+        raise Misbehaved("it proposes numbers that are not finite, or no rotation")
+    if max(abs(x), abs(y)) > FAR:
+        raise Misbehaved(f"it proposes a position more than {FAR:g} m away")
+    return Placement(region, face, x, y, yaw)
+
+
+def _pose(item: object, limits: _Limits) -> Pose:
     if not isinstance(item, Pose):
         raise Misbehaved(f"it proposes a {type(item).__name__}, not a pose")
+    room = limits.room
     try:
         x, y, z = (float(number) for number in item.position)
         a, b, c, d = (float(number) for number in item.quaternion)
@@ -106,5 +145,5 @@ def _pose(item: object, room: Room) -> Pose:
     return Pose((x, y, z), (a / norm, b / norm, c / norm, d / norm))
 
 
-STRANGERS = tuple(function.__code__ for function in (_proposed, _poses, _pose))
+STRANGERS = tuple(function.__code__ for function in (_proposed, _proposals, _placement, _pose))
 """Of an alarm: what here runs a generator's own code."""

@@ -13,7 +13,8 @@ from numpy.random import Generator as Random
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Scene, Surface
-from tamp.geometric.stability.stable_poses import Face, resting_of, resting_pose
+from tamp.geometric.stability.placement import Placement, placement_on, resting_pose
+from tamp.geometric.stability.stable_poses import Face, stable_faces_of
 
 KEEP_FACE = 0.85
 """The share of `surface` placements that keep the face that is down at the start, when it fits."""
@@ -33,33 +34,34 @@ class SurfacePlacements:
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-    ) -> list[Pose]:
-        """Propose world poses at rest in the region `arguments[1]`; none when no stable face fits
+    ) -> list[Placement]:
+        """Propose placements at rest in the region `arguments[1]`; none when no stable face fits
         under its ceiling.
         """
         body, region_name = arguments
-        region = scene.surfaces.get(region_name) or scene.cavities[region_name]
+        region = scene.region(region_name)
         room = region.clearance if isinstance(region, Surface) else region.size[2]
-        resting = resting_of(scene.bodies[body])
-        faces = [face for face in resting.faces if face.extent + 2 * CONTACT_GAP <= room]
-        if (
-            not faces
-            and resting.lying is not None
-            and resting.lying.extent + 2 * CONTACT_GAP <= room
-        ):
-            faces = [resting.lying]
-
+        stable = stable_faces_of(scene.bodies[body])
+        low = [face.extent + 2 * CONTACT_GAP <= room for face in stable.ways]
+        steady = len(stable.faces)  # what lies on a curved side does so where nothing else is left
+        faces = [number for number in range(steady) if low[number]]
+        faces = faces or [number for number in range(steady, len(low)) if low[number]]
         if not faces:
             return []
-        T_world_region = scene.world_pose(region)
-        poses: list[Pose] = []
-        for _ in range(count):
-            face = faces[0] if rng.random() < KEEP_FACE else faces[int(rng.integers(len(faces)))]
-            yaw = rng.uniform(-math.pi, math.pi)
-            x, y = position_inside(face, yaw, region.size, rng)
-            poses.append(T_world_region @ resting_pose(face, yaw, x, y))
 
-        return poses
+        T_world_region = scene.world_pose(region)
+        T_region_world = T_world_region.inverse()
+        placements: list[Placement] = []
+        for _ in range(count):
+            index = faces[0] if rng.random() < KEEP_FACE else faces[int(rng.integers(len(faces)))]
+            face, yaw = stable.ways[index], rng.uniform(-math.pi, math.pi)
+            x, y = position_inside(face, yaw, region.size, rng)
+            # A pose of the world rounds them in the last bit, on which whole plans can hang: so
+            # that seeds keep theirs, the numbers are those that it holds.
+            T_world_body = T_world_region @ resting_pose(face, yaw, x, y)
+            placements.append(placement_on(index, face, T_region_world @ T_world_body, region.name))
+
+        return placements
 
 
 class UniformPlacements:
@@ -71,7 +73,7 @@ class UniformPlacements:
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Pose]:
         """Propose world poses; most of them float, sink or lean."""
-        region = scene.surfaces.get(arguments[1]) or scene.cavities[arguments[1]]
+        region = scene.region(arguments[1])
         support = scene.bodies[region.body]
         low, high = bounds(support.parts, support.pose)
         margin = GROWTH * float((high - low).max()) / 2

@@ -12,23 +12,26 @@ from numpy.random import Generator as Random
 from tamp.geometric.scene.classifier import Classifier as Classifier
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement
 
 
 @runtime_checkable
 class Generator(Protocol):
     """Proposes poses of a relation's first argument that may make the relation hold.
 
-    What it proposes is advice: the stream that asks puts each pose to rest and certifies it, or
-    rejects it. One that is not hand-made shares the work with the hand-made one (`mixture`), and is
-    asked no more in a run in which it raises, repeats itself, proposes nothing of use, or takes
-    more than a tenth of the time.
+    What it proposes is advice: the stream that asks certifies each that rests, or rejects it. One
+    that is not hand-made shares the work with the hand-made one (`mixture`), and is asked no more
+    in a run in which it raises, repeats itself, proposes nothing of use, or takes more than a tenth
+    of the time.
     """
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
-    ) -> list[Pose]:
-        """Propose at most `count` world poses of body `arguments[0]`, the best first; an empty list
-        when there will be none.
+    ) -> Sequence[Pose | Placement]:
+        """Propose at most `count` placements or world poses of body `arguments[0]`, the best first;
+        an empty list when there will be none.
+
+        A pose is laid onto the face and the region that it is nearest to; a placement says which.
 
         Args:
             scene: The scene at that step of the plan: other bodies where they will be, the proposed

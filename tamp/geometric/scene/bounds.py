@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Part, Sphere
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-def bounds(parts: Iterable[Part], pose: Pose) -> tuple[Array, Array]:
+
+def bounds(parts: Iterable[Part], pose: Pose) -> tuple[Float[Array, " 3"], Float[Array, " 3"]]:
     """Compute the axis-aligned bounding box of the parts of a body at `pose`: its lowest and its
     highest corner.
 

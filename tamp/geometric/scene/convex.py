@@ -4,11 +4,16 @@ nearly flat.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
 TOLERANCE = 0.0005
 """Metres that a point may lie outside of a simplified hull."""
@@ -17,7 +22,9 @@ _BLOCK = 20_000
 _THINNEST = 0.001
 
 
-def hull_of(points: Array) -> tuple[Array, NDArray[np.integer]]:
+def hull_of(
+    points: Float[Array, "k 3"],
+) -> tuple[Float[Array, "n 3"], Int[NDArray[np.integer], "m 3"]]:
     """Compute vertices (n, 3) and outward faces (m, 3) of the convex hull of points; flat points
     are thickened to 1 mm.
 
@@ -37,7 +44,7 @@ def hull_of(points: Array) -> tuple[Array, NDArray[np.integer]]:
     return points[order], faces
 
 
-def simplified(points: Array) -> Array:
+def simplified(points: Float[Array, "n 3"]) -> Float[Array, "m 3"]:
     """Simplify a hull: corners of it, as few as keep every point within 0.5 mm of the hull."""
     corners, _ = hull_of(points)
     chosen = np.unique(np.argmax(corners @ directions(24).T, axis=0))
@@ -68,7 +75,7 @@ def _outermost(points: Array, equations: Array) -> tuple[NDArray[np.int64], Arra
     return index, best
 
 
-def thickened(points: Array) -> Array:
+def thickened(points: Float[Array, "n 3"]) -> Float[Array, "m 3"]:
     """Return the points; when they lie within 1 mm of a plane, moved 0.5 mm to both sides of it."""
     centred = points - points.mean(axis=0)
     # The right singular vector of the least singular value is the normal of the best plane.
@@ -81,7 +88,7 @@ def thickened(points: Array) -> Array:
     return np.concatenate([points + normal * _THINNEST / 2, points - normal * _THINNEST / 2])
 
 
-def directions(count: int) -> Array:
+def directions(count: int) -> Float[Array, "n 3"]:
     """Return the six axis directions, and about `count` spread evenly over the sphere (Fibonacci),
     shape (n, 3).
     """

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
-def outline(points: Array) -> Array:
+
+def outline(points: Float[Array, "n 2"]) -> Float[Array, "m 2"]:
     """Compute the corners of the convex hull of points (n, 2), counterclockwise (Andrew's monotone
     chain).
     """

@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 Array = NDArray[np.float64]
 
@@ -25,7 +29,7 @@ class Pose:
     quaternion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
 
     @cached_property
-    def matrix(self) -> Array:
+    def matrix(self) -> Float[Array, "4 4"]:
         """Return the homogeneous matrix, shape (4, 4), read-only."""
         x, y, z, w = self.quaternion
         matrix = np.array(
@@ -56,7 +60,7 @@ class Pose:
         return matrix
 
     @property
-    def rotation(self) -> Array:
+    def rotation(self) -> Float[Array, "3 3"]:
         """Return the rotation matrix, shape (3, 3)."""
         return self.matrix[:3, :3]
 
@@ -66,7 +70,7 @@ class Pose:
         return math.atan2(self.matrix[1, 0], self.matrix[0, 0])
 
     @classmethod
-    def from_matrix(cls, matrix: Array) -> Pose:
+    def from_matrix(cls, matrix: Float[Array, "4 4"]) -> Pose:
         """Build a pose from a homogeneous matrix, shape (4, 4)."""
         return cls(_floats3(matrix[:3, 3]), quaternion_from_matrix(matrix[:3, :3]))
 
@@ -98,12 +102,12 @@ class Pose:
         x, y, z, w = self.quaternion
         return Pose(_floats3(-rotation @ np.array(self.position)), (-x, -y, -z, w))
 
-    def apply(self, points: Array) -> Array:
+    def apply(self, points: Float[Array, "n 3"]) -> Float[Array, "n 3"]:
         """Express points of the inner frame in the outer one. Shape (n, 3), metres."""
         return points @ self.rotation.T + self.matrix[:3, 3]
 
 
-def quaternion_from_matrix(rotation: Array) -> tuple[float, float, float, float]:
+def quaternion_from_matrix(rotation: Float[Array, "3 3"]) -> tuple[float, float, float, float]:
     """Convert a rotation matrix, shape (3, 3), to the unit quaternion x, y, z, w with w >= 0
     (Shepperd's method).
     """

@@ -203,6 +203,10 @@ class Scene:
         """Return names of the others."""
         return tuple(name for name, body in self.bodies.items() if not body.movable)
 
+    def region(self, name: str) -> Surface | Cavity:
+        """Return the surface or the cavity of a name; KeyError where there is none."""
+        return self.surfaces[name] if name in self.surfaces else self.cavities[name]
+
     def world_pose(self, place: Surface | Cavity) -> Pose:
         """Return T_world_surface or T_world_cavity; the body that carries it stands at its
         start.

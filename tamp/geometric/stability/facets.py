@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tamp.geometric.scene.pose import Array
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
+
 SAME_FACET = 0.9995
 """Triangles whose normals' cosine is at least this belong to one facet."""
 
 
-def facet_normals(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:
+def facet_normals(
+    vertices: Float[Array, "n 3"], triangles: Int[NDArray[np.int64], "m 3"]
+) -> list[Float[Array, " 3"]]:
     """Compute outward normals, those of one flat facet once; largest facets first."""
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     cross = np.cross(b - a, c - a)
@@ -28,7 +34,7 @@ def facet_normals(vertices: Array, triangles: NDArray[np.int64]) -> list[Array]:
     return normals
 
 
-def rotation_to_down(normal: Array) -> Array:
+def rotation_to_down(normal: Float[Array, " 3"]) -> Float[Array, "3 3"]:
     """Compute the smallest rotation that turns a unit vector to -z."""
     axis = np.array([-normal[1], normal[0], 0.0])  # normal x (-z)
     sine, cosine = float(np.linalg.norm(axis)), float(-normal[2])
@@ -39,7 +45,7 @@ def rotation_to_down(normal: Array) -> Array:
     return np.eye(3) + sine * cross + (1 - cosine) * cross @ cross
 
 
-def tipping_angle(base: Array, centre: Array, height: float) -> float:
+def tipping_angle(base: Float[Array, "k 2"], centre: Float[Array, " 2"], height: float) -> float:
     """Compute the tilt, radians, that brings the centre of mass over the nearest edge of the base;
     negative when outside.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +12,16 @@ from tamp.geometric.scene.outline import outline as outline
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 SIDES = 32
 """Sides of the prism that stands for a cylinder."""
 
 Triangles = NDArray[np.int64]
 
 
-def body_hull(body: Body) -> tuple[Array, Triangles]:
+def body_hull(body: Body) -> tuple[Float[Array, "n 3"], Triangles]:
     """Compute vertices (n, 3) and triangles (m, 3), outward, of the convex hull of all parts.
     Metres.
     """
@@ -36,7 +40,7 @@ def body_hull(body: Body) -> tuple[Array, Triangles]:
     return vertices, triangles
 
 
-def centre_of_mass(body: Body) -> Array:
+def centre_of_mass(body: Body) -> Float[Array, " 3"]:
     """Return the centre of mass that its file gives, or of its parts, all of one density; in the
     body's frame, shape (3,), metres.
     """
@@ -46,7 +50,7 @@ def centre_of_mass(body: Body) -> Array:
     return np.average(np.array(centres), axis=0, weights=np.array(volumes))
 
 
-def part_mesh(part: Part) -> tuple[Array, Triangles]:
+def part_mesh(part: Part) -> tuple[Float[Array, "n 3"], Triangles]:
     """Return vertices (n, 3) and triangles (m, 3), outward, of one part in its body's frame; within
     it where round.
     """

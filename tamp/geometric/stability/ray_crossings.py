@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,9 @@ from numpy.typing import NDArray
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 Planes = NDArray[np.intp]
 
@@ -64,12 +68,14 @@ class Solid:
         self._cumulative = np.cumsum(np.concatenate(areas))
         self.centre = centre_of_mass(body)
 
-    def extent(self, direction: Array) -> tuple[float, float]:
+    def extent(self, direction: Float[Array, " 3"]) -> tuple[float, float]:
         """Compute the least and the largest coordinate of the body along a direction (3,)."""
         along = self._corners.reshape(-1, 3) @ direction
         return float(along.min()), float(along.max())
 
-    def surface_points(self, rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    def surface_points(
+        self, rng: np.random.Generator, count: int
+    ) -> tuple[Float[Array, "count 3"], Float[Array, "count 3"]]:
         """Draw points (count, 3), uniform by area over all parts' surfaces, and their outward
         normals (count, 3).
         """
@@ -79,7 +85,9 @@ class Solid:
         weights = np.stack([1 - u, u * (1 - v), u * v], axis=1)
         return np.einsum("ij,ijk->ik", weights, self._corners[index]), self._normals[index]
 
-    def crossings(self, origins: Array, directions: Array) -> tuple[Array, Array, Planes, Planes]:
+    def crossings(
+        self, origins: Float[Array, "k 3"], directions: Float[Array, "*k 3"]
+    ) -> tuple[Float[Array, "k p"], Float[Array, "k p"], Planes, Planes]:
         """Intersect lines from `origins` (k, 3) along `directions` (k, 3), or (3,) for all, with
         each of the p parts.
 
@@ -99,11 +107,11 @@ class Solid:
         rows = np.arange(len(origins))[:, None]
         return enter[rows, start_plane], leave[rows, end_plane], start_plane, end_plane
 
-    def normals(self, planes: Planes) -> Array:
+    def normals(self, planes: Planes) -> Float[Array, "... 3"]:
         """Return outward normals (..., 3) of planes."""
         return self._normals[planes]
 
-    def solid_at(self, origin: Array, direction: Array) -> Contact | None:
+    def solid_at(self, origin: Float[Array, " 3"], direction: Float[Array, " 3"]) -> Contact | None:
         """Find the stretch of solid that contains, or begins at, the origin of a line; None where
         there is none.
         """

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.stability.hulls import outline
 
+if TYPE_CHECKING:
+    from jaxtyping import Float, Int
 
-def cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array | None:
+
+def cut(
+    vertices: Float[Array, "n 3"], triangles: Int[NDArray[np.int64], "m 3"], height: float
+) -> Float[Array, "k 2"] | None:
     """Cut a convex mesh with a level plane into a polygon; None where it does not meet it, or only
     just.
     """
@@ -27,7 +34,7 @@ def cut(vertices: Array, triangles: NDArray[np.int64], height: float) -> Array |
     return corners if len(corners) >= 3 else None
 
 
-def distances(points: Array, corners: Array) -> Array:
+def distances(points: Float[Array, "n 2"], corners: Float[Array, "k 2"]) -> Float[Array, " n"]:
     """Compute the distances of points (n, 2) from a convex polygon; zero inside."""
     inside = np.ones(len(points), dtype=bool)
     least = np.full(len(points), np.inf)

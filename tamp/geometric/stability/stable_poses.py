@@ -1,4 +1,4 @@
-"""Stable poses: which ways up a body can rest, and what certifies that it rests somewhere."""
+"""Stable poses: which ways up a body can rest."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Cavity, Sphere, Surface
+from tamp.geometric.scene.scene import Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
-from tamp.stream import Rejection
 
-SNAP_HEIGHT = 0.03
-"""A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
-for `on`), metres."""
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 SNAP_TILT = math.radians(15.0)
 """A proposal tilted less than this from a stable face, or than the face withstands, is laid onto
@@ -42,14 +41,11 @@ metres."""
 LEAN = 0.002
 """By so much a curved side carries beyond its lowest points: meshes have few of them, metres."""
 
-BALANCE = 0.015
-"""How far inside the supported part of an overhanging base the centre of mass must lie, metres."""
-
 
 @lru_cache(maxsize=512)
-def resting_of(body: Body) -> Resting:
+def stable_faces_of(body: Body) -> StableFaces:
     """Return the ways in which a body can rest, worked out once for each body."""
-    return Resting(body)
+    return StableFaces(body)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +71,7 @@ class Face:
     centre: Array
 
 
-class Resting:
+class StableFaces:
     """The stable faces of one body, the one it rests on at the start first.
 
     The centre of mass is that of the convex hull of all parts, which is exact for one convex part.
@@ -116,76 +112,27 @@ class Resting:
             return None
         return curved_face(self.body)
 
-    @property
+    @cached_property
     def ways(self) -> tuple[Face, ...]:
         """Return the stable faces, and the curved side that it lies on."""
         return self.faces if self.lying is None else (*self.faces, self.lying)
 
-    def nearest(self, rotation: Array) -> Face | None:
-        """Return the stable face onto which the body, let go under this rotation, tips back; None
-        when it may tip over.
+    def nearest(self, rotation: Float[Array, "3 3"]) -> int | None:
+        """Find the way onto which the body, let go under this rotation (3, 3), tips back: an index
+        of `ways`; None when it may tip over.
         """
-        down = -rotation[2]
-        best = max(self.ways, key=lambda face: float(-face.rotation[2] @ down), default=None)
-        if best is None or float(-best.rotation[2] @ down) < math.cos(max(SNAP_TILT, best.angle)):
+        if not self.ways:
             return None
-        return best
+        cosines = [float(face.rotation[2] @ rotation[2]) for face in self.ways]
+        best = max(range(len(cosines)), key=cosines.__getitem__)
+        return best if cosines[best] >= math.cos(max(SNAP_TILT, self.ways[best].angle)) else None
 
-
-def rest(
-    resting: Resting, proposal: Pose, region: Surface | Cavity, T_world_region: Pose
-) -> Pose | Rejection:
-    """Put a proposed pose to rest in a region, or say why it cannot.
-
-    The result touches the region (up to CONTACT_GAP) with a stable face whose support lies inside
-    the region.
-    """
-    face = resting.nearest(proposal.rotation)
-    if face is None:
-        return Rejection("stands on no stable face")
-    T_region_body = T_world_region.inverse() @ proposal
-    room = region.clearance if isinstance(region, Surface) else region.size[2]
-    if face.extent + 2 * CONTACT_GAP > room:
-        return Rejection(f"too tall ({face.extent:.2f} m, room for {room:.2f} m)")
-    bottom = T_region_body.position[2] - face.height
-    if abs(bottom) > SNAP_HEIGHT:
-        return Rejection("too high" if bottom > 0 else "too low")
-    yaw = _yaw_between(face.rotation, T_region_body.rotation)
-    return settle(
-        face, yaw, T_region_body.position[0], T_region_body.position[1], region, T_world_region
-    )
-
-
-def settle(
-    face: Face, yaw: float, x: float, y: float, region: Surface | Cavity, T_world_region: Pose
-) -> Pose | Rejection:
-    """Return the pose on `face`, turned by `yaw`, the body's frame above (x, y) of the region;
-    rejected when it overhangs.
-    """
-    c, s = math.cos(yaw), math.sin(yaw)
-    turn = np.array([[c, -s], [s, c]])
-    half = np.array(region.size[:2]) / 2
-    outline = face.outline @ turn.T + (x, y)
-    if isinstance(region, Cavity):
-        if (np.abs(outline) > half).any():
-            return Rejection("protrudes")
-    else:
-        base = face.base @ turn.T + (x, y)
-        centre = turn @ face.centre + (x, y)
-        if (np.abs(base) > half).any() and not _balanced(base, centre, half):
-            return Rejection("overhangs")
-    return T_world_region @ resting_pose(face, yaw, x, y)
-
-
-def resting_pose(face: Face, yaw: float, x: float, y: float) -> Pose:
-    """Compute the body's pose in the region's frame, on `face`, turned by `yaw` radians, its frame
-    above (x, y) metres.
-    """
-    c, s = math.cos(yaw), math.sin(yaw)
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ face.rotation
-    matrix[:3, 3] = (x, y, face.height + CONTACT_GAP)
-    return Pose.from_matrix(matrix)
+    def index_of(self, rotation: Float[Array, "3 3"]) -> int | None:
+        """Find the way that this rotation (3, 3) turns down, exactly: an index of `ways`."""
+        for number, face in enumerate(self.ways):
+            if (face.rotation == rotation).all():
+                return number
+        return None
 
 
 def fits(face: Face, size: Sequence[float]) -> bool:
@@ -195,25 +142,6 @@ def fits(face: Face, size: Sequence[float]) -> bool:
     widths = np.ptp(face.outline @ directions, axis=0)
     depths = np.ptp(face.outline @ np.stack([-directions[1], directions[0]]), axis=0)
     return bool(((widths <= size[0] + SLACK) & (depths <= size[1] + SLACK)).any())
-
-
-def _balanced(base: Array, centre: Array, half: Array) -> bool:
-    """Check whether the centre of mass lies well inside both the base and the surface."""
-    if (np.abs(centre) > half - BALANCE).any():
-        return False
-    edges = np.roll(base, -1, axis=0) - base
-    lengths = np.linalg.norm(edges, axis=1)
-    offsets = centre - base
-    distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(
-        lengths, 1e-12
-    )
-    return bool((distances > BALANCE).all())
-
-
-def _yaw_between(reference: Array, rotation: Array) -> float:
-    """Compute the turn about z that brings `reference` nearest to `rotation`."""
-    relative = rotation @ reference.T
-    return math.atan2(relative[1, 0] - relative[0, 1], relative[0, 0] + relative[1, 1])
 
 
 def stable_faces(body: Body) -> list[Face]:

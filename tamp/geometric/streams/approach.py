@@ -44,7 +44,7 @@ def test_approach(
     loaded = (
         f"loaded with {hit}, which is fixed: " if context.scene.bodies[hit].support == body else ""
     )
-    return Rejection(f"{loaded or _flat(context, body, pose, hit)}hand hits {hit}")
+    return Rejection.hits(hit, who=f"{loaded or _flat(context, body, pose, hit)}hand")
 
 
 def test_approach_clear(
@@ -55,7 +55,7 @@ def test_approach_clear(
     """
     if body == other or approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
         return True
-    return Rejection(f"hits {other}", (other,))
+    return Rejection.hits(other, blockers=(other,))
 
 
 def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:

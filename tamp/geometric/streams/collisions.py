@@ -28,7 +28,7 @@ def test_pose_clear(
     """Test whether two movable bodies at these poses are apart."""
     if body == other or not context.collisions.pair(body, pose, other, other_pose, NEIGHBOUR):
         return True
-    return Rejection(f"hits {other}", (other,))
+    return Rejection.hits(other, blockers=(other,))
 
 
 def test_reach_clear(
@@ -59,7 +59,7 @@ def test_reach_clear(
         for path in (reach.approach, reach.lift)
     )
     if not (empty.free(home) and loaded.free(home)):
-        return Rejection(f"base hits {other}", (other,))
+        return Rejection.hits(other, who="base", blockers=(other,))
 
     out = lift[-1]
     aside = np.array([approach[0], out])
@@ -68,10 +68,10 @@ def test_reach_clear(
         or lift_hits(context, pose, grasp, lift, place, HAIR)
         or empty.path_hits(aside, padding=HAIR)
     ):
-        return Rejection(f"hits {other}", (other,))
+        return Rejection.hits(other, blockers=(other,))
 
     if not (empty.free(out) and loaded.free(out)):
-        return Rejection(f"hits {other}", (other,))
+        return Rejection.hits(other, blockers=(other,))
     return True
 
 

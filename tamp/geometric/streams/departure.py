@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +14,15 @@ from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp
 
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
 FINE = 4
 """Looks between two configurations at how a body leaves what it touches."""
 
 
 def lift_hits(
-    context: Context, pose: Pose, grasp: Grasp, lift: Array,
+    context: Context, pose: Pose, grasp: Grasp, lift: Float[Array, "n 10"],
     others: Mapping[str, Pose] | None = None, padding: float = 0.0,
 ) -> tuple[str, str] | None:  # fmt: skip
     """Return the first pair that collides while a held body is lifted off a pose, as

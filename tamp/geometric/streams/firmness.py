@@ -10,11 +10,15 @@ edge of the patch and by friction forces that oppose.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 GRAVITY = 9.81
 """Metres per second squared."""
@@ -41,9 +45,14 @@ EDGE = 0.002
 
 
 def strain(
-    body: Body, centre: Array, T_body_tool: Array, width: float, patches: Sequence[Array],
-    force: float, ups: Sequence[Array],
-) -> float:  # fmt: skip
+    body: Body,
+    centre: Float[Array, " 3"],
+    T_body_tool: Float[Array, "4 4"],
+    width: float,
+    patches: Sequence[Float[Array, "_ 3"]],
+    force: float,
+    ups: Sequence[Float[Array, " 3"]],
+) -> float:
     """Compute the share that a body's weight uses up of what two pads can hold; without a unit, at
     1 it slips.
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Sphere
 from tamp.geometric.stability.ray_crossings import Solid
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 STEP = math.radians(15)
 """Spacing of approach directions about the closing axis."""
@@ -23,14 +27,18 @@ LEVEL_CLOSING = 0.3
 stands on little."""
 
 
-def straight(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
+def straight(
+    axes: list[Float[Array, " 3"]], up: Float[Array, " 3"]
+) -> list[tuple[Float[Array, " 3"], Float[Array, " 3"]]]:
     """List closing and approach directions from above and from the sides."""
     return [
         (axis, a) for axis in axes for a in _approaches(axis, up, math.pi / 2) if a @ up < LEVEL
     ]
 
 
-def slanted(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
+def slanted(
+    axes: list[Float[Array, " 3"]], up: Float[Array, " 3"]
+) -> list[tuple[Float[Array, " 3"], Float[Array, " 3"]]]:
     """List closing and approach directions 30, 45 and 60 degrees from straight down."""
     level = [axis for axis in axes if abs(axis @ up) < LEVEL_CLOSING]
     return [
@@ -39,8 +47,8 @@ def slanted(axes: list[Array], up: Array) -> list[tuple[Array, Array]]:
 
 
 def closing_axes(
-    body: Body, solid: Solid, up: Array, widest: float, rng: np.random.Generator
-) -> list[Array]:
+    body: Body, solid: Solid, up: Float[Array, " 3"], widest: float, rng: np.random.Generator
+) -> list[Float[Array, " 3"]]:
     """List directions (3,) in which the fingers may close, each with both signs.
 
     A box's edges; for other bodies the horizontal directions in which they are narrowest, and some
@@ -80,7 +88,9 @@ def _approaches(closing: Array, up: Array, step: float) -> list[Array]:
     return [math.cos(a) * first + math.sin(a) * second for a in angles(step)]
 
 
-def across(closing: Array, up: Array) -> tuple[Array, Array]:
+def across(
+    closing: Float[Array, " 3"], up: Float[Array, " 3"]
+) -> tuple[Float[Array, " 3"], Float[Array, " 3"]]:
     """Return two unit vectors (3,) perpendicular to the closing axis and each other; the first
     looks down.
     """
@@ -91,7 +101,7 @@ def across(closing: Array, up: Array) -> tuple[Array, Array]:
 
 
 @cache
-def angles(step: float) -> Array:
+def angles(step: float) -> Float[Array, " n"]:
     """Return angles all around, `step` radians apart."""
     return np.arange(0.0, 2 * math.pi - 1e-9, step)
 
@@ -101,7 +111,7 @@ def _perpendicular(axis: Array) -> Array:
     return other / np.linalg.norm(other)
 
 
-def cross(first: Array, second: Array) -> Array:
+def cross(first: Float[Array, " 3"], second: Float[Array, " 3"]) -> Float[Array, " 3"]:
     """Compute `np.cross` of two vectors (3,), in a tenth of the time."""
     (a, b, c), (x, y, z) = first.tolist(), second.tolist()
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.ray_crossings import Solid
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 CONE = math.atan(0.4)
 """Half angle of the friction cone at a contact, radians."""
@@ -69,7 +73,7 @@ class HandFit:
         """Return the largest width that is grasped, metres."""
         return self._robot.opening - CLEARANCE
 
-    def close(self, T_body_tool: Array) -> Closed | None:
+    def close(self, T_body_tool: Float[Array, "4 4"]) -> Closed | None:
         """Close the hand at a pose (4, 4).
 
         None when the open hand hits the body there or while drawing back along its axis, when the

@@ -5,12 +5,16 @@ has a figure that holds.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.streams.approach import LIFT
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 ABOVE = 0.9
 """Nothing below this is too high for the arm, metres: no need to measure."""
@@ -35,7 +39,7 @@ AROUND = 0.05
 """Places nearer to each other than this are taken for one, metres."""
 
 
-def too_high(context: Context, point: Array) -> str | None:
+def too_high(context: Context, point: Float[Array, " 3"]) -> str | None:
     """Say that a point (3,) is higher than the hand reaches there; None where it is not."""
     x, y, z = (float(value) for value in point)
     if z < ABOVE:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from tamp.geometric.streams.approach import LIFT, RETREAT
 from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.heights import too_high
 from tamp.geometric.values import BaseConf, Grasp, Reach
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 STEP = 0.01
 """Spacing of the tool poses along the last stretch, metres,"""
@@ -46,9 +50,6 @@ SOLUTIONS = 24
 BRANCHES = 3
 """and those of them from which the approach is tried."""
 
-UNREACHED = ("out of reach", "no straight approach")
-"""Reasons behind which there may be one with a figure."""
-
 
 def inverse_kinematics(
     context: Context, body: str, pose: Pose, grasp: Grasp, call: Call
@@ -79,9 +80,9 @@ def inverse_kinematics(
             reason = found
 
         if reason is not None:
-            if reason.reason in UNREACHED:
+            if reason.kind is RejectionKind.UNREACHABLE:
                 high = too_high(context, T_world_tool[:3, 3])
-                reason = reason if high is None else Rejection(high)
+                reason = reason if high is None else replace(reason, reason=high)
             failures += 1
             yield reason if failures < PATIENCE else replace(reason, given_up=True)
 
@@ -94,14 +95,14 @@ def _standing(
     """
     room = context.scene.room
     if not (room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1]):
-        return Rejection("base outside of the room")
+        return Rejection("base outside of the room", kind=RejectionKind.NO_STANCE)
     home = context.conf(base, context.home)
     for held, who in ((None, "base"), (grasp, f"{body} carried here")):
         among = context.fixed_only(held)
         if not among.free(home):
-            return Rejection(f"{who} hits {_other(among.hits(home, PROBE))}")
+            return _collision(among.hits(home, PROBE), who)
     if not _can_leave(context, grasp, base, home) and call.rng.random() >= NOOK:
-        return Rejection("base stands in a nook")
+        return Rejection("base stands in a nook", kind=RejectionKind.NO_STANCE)
     return None
 
 
@@ -128,14 +129,14 @@ def _reaching(
     )
     solutions = context.ik.solve(T_base_tool)
     if len(solutions) == 0:
-        return Rejection("out of reach")
+        return Rejection("out of reach", kind=RejectionKind.UNREACHABLE)
 
     # Nearest to home first: the arm's detours are shorter; a few random ones keep every branch
     # possible.
     order = np.argsort(
         np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions))
     )
-    reason = Rejection("no straight approach")
+    reason = Rejection("no straight approach", kind=RejectionKind.UNREACHABLE)
     up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
         grasp.body, pose, LIFT
     )
@@ -146,7 +147,7 @@ def _reaching(
     for conf in clear[:BRANCHES]:
         hit = empty.hits(conf)
         if hit is not None:
-            reason = Rejection(f"hits {_other(hit)}")
+            reason = _collision(hit)
             continue
 
         reach = _approach(context, T_base_tool, conf[3:], up)
@@ -162,11 +163,11 @@ def _reaching(
             or empty.path_hits(np.array([approach[0], lift[-1]]))
         )
         if hit is not None:
-            reason = Rejection(f"hits {_other(hit)}")
+            reason = _collision(hit)
             continue
 
         if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
-            reason = Rejection("no room before the approach")
+            reason = Rejection("no room before the approach", kind=RejectionKind.COLLISION)
             continue
 
         return BaseConf(float(base[0]), float(base[1]), float(base[2])), reach
@@ -193,7 +194,12 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
     return Reach(away[::-1].copy(), np.concatenate([up, out[1:]]))
 
 
-def follow_line(context: Context, T_base_tool: Array, offset: Array, q: Array) -> Array | None:
+def follow_line(
+    context: Context,
+    T_base_tool: Float[Array, "4 4"],
+    offset: Float[Array, " 3"],
+    q: Float[Array, " 7"],
+) -> Float[Array, "k 7"] | None:
     """Compute arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the
     base frame, from q.
     """
@@ -212,5 +218,8 @@ PROBE = 0.002
 """The padding of `free`, metres, with which its verdict is named."""
 
 
-def _other(pair: tuple[str, str] | None) -> str:
-    return "something" if pair is None else pair[1]
+def _collision(pair: tuple[str, str] | None, who: str = "") -> Rejection:
+    """Say what the exact test found to be hit; it may find nothing where a bound decided."""
+    if pair is None:
+        return replace(Rejection.hits("something", who=who), bodies=())
+    return Rejection.hits(pair[1], who=who)

@@ -5,7 +5,7 @@ they were shown.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,7 @@ from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.result import Failure, Planned
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 HARDEST = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
@@ -71,12 +71,13 @@ def plan_pick(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
     """Plan a pick: from home to the body, close the hand, and back home with it."""
+    opened = context.robot.opening
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
             yield found
             continue
+
         empty, loaded = found
-        opened = context.robot.opening
         yield Motion(
             (
                 Path("arm", np.concatenate([empty, reach.approach]), opened),
@@ -89,20 +90,22 @@ def plan_pick(
 def plan_place(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
-    """Plan a placement: from home with the body to its place, open the hand, and back home."""
-    for found in _transits(context, body, pose, grasp, base, reach, call):
-        if isinstance(found, Rejection):
-            yield found
-            continue
-        empty, loaded = found
-        opened = context.robot.opening
-        yield Motion(
-            (
-                Path("arm", np.concatenate([loaded, reach.lift[::-1][1:]]), grasp.opening, body),
-                Grip((grasp.opening, opened), detach=body),
-                Path("arm", np.concatenate([reach.approach[::-1], empty[::-1]]), opened),
-            )
-        )
+    """Plan a placement: a pick of the body from there, backwards."""
+    for found in plan_pick(context, body, pose, grasp, base, reach, call):
+        yield found if isinstance(found, Rejection) else _backwards(found)
+
+
+def _backwards(motion: Motion) -> Motion:
+    """Reverse a motion in time: paths run back, and a hand that closed on a body lets it go."""
+    segments: list[Path | Grip] = []
+    for segment in reversed(motion.segments):
+        if isinstance(segment, Path):
+            segments.append(replace(segment, points=segment.points[::-1]))
+        else:
+            held = None if segment.attach is None else segment.attach.body
+            segments.append(Grip((segment.opening[1], segment.opening[0]), detach=held))
+
+    return Motion(tuple(segments))
 
 
 def _transits(
@@ -179,9 +182,9 @@ def _diagnosed(
             if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any()
             else None
         )
-        if gap is not None:
-            return Rejection(f"no motion even without the movable bodies: {gap.text}{where}")
-        return Rejection(f"no motion even without the movable bodies: {failure.value}{where}")
+        failed = failure.value if gap is None else gap.text
+        what = f"no motion even without the movable bodies: {failed}{where}"
+        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(ahead))
 
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
@@ -191,9 +194,10 @@ def _diagnosed(
         if not _free(context.collisions.arrangement({name: pose}, attachment, fixed=False), confs)
     )
     if not blockers:
-        return Rejection("no motion found")
+        return Rejection("no motion found", kind=RejectionKind.NO_MOTION)
 
-    return Rejection(f"way blocked by {' and '.join(blockers)}", blockers)
+    what = f"way blocked by {' and '.join(blockers)}"
+    return Rejection(what, blockers, kind=RejectionKind.BLOCKED)
 
 
 def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list[str]:

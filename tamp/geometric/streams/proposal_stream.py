@@ -4,6 +4,7 @@ ones first.
 
 from __future__ import annotations
 
+import math
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
@@ -18,8 +19,9 @@ from tamp.geometric.samplers.mixture import Account, Ledger, Mixture, sidelined
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement, placed_pose
 from tamp.geometric.streams.collisions import NEIGHBOUR
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 BATCH = 16
 """Poses asked of a generator at once."""
@@ -32,8 +34,11 @@ STALE = 3
 """Batches without anything new, or misbehaviours of a generator that is alone, after which it is
 asked no more."""
 
-Judge = Callable[[Pose], Pose | Rejection]
-"""Puts a proposal to rest and certifies it, or says why not."""
+Proposal = Placement | Pose
+"""What a sampler says: a placement, or T_world_body to be snapped to a region."""
+
+Judge = Callable[[Proposal], Pose | Rejection]
+"""Certifies that a proposal rests, and where, or says why not."""
 
 
 def draw(
@@ -88,7 +93,8 @@ def draw(
         None,
     )
     if unruly is not None:
-        yield Rejection(f"{unruly.account.name}: {unruly.wrong}", given_up=True)
+        what = f"{unruly.account.name}: {unruly.wrong}"
+        yield Rejection(what, given_up=True, kind=RejectionKind.FAULT)
 
 
 @dataclass
@@ -109,10 +115,10 @@ class _Source:
     scene: Scene
     rng: Random
     ended: bool = False
-    batch: deque[Pose] = field(default_factory=deque[Pose])
+    batch: deque[Proposal] = field(default_factory=deque[Proposal])
     clear: bool = False
     clash: Pose | None = None
-    seen: set[tuple[float, ...]] = field(default_factory=set[tuple[float, ...]])
+    seen: set[tuple[object, ...]] = field(default_factory=set[tuple[object, ...]])
     strikes: int = 0
     wrong: str = ""
 
@@ -180,7 +186,7 @@ class _Drawer:
             if isinstance(pose, Rejection):
                 refused[pose] += 1
                 self.ledger.judged(source.account, pose.reason)
-                self.call.refused(proposal, pose.reason)
+                self.call.refused(self._posed(proposal), pose.reason)
                 continue
 
             hit = next((name for name in self.poses if self._near(pose, name)), None)
@@ -239,7 +245,7 @@ class _Drawer:
 
     def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
         """Ask a generator beside the trusted one no more; alone it has a few more tries."""
-        refused[Rejection(f"{source.account.name}: {what}")] += 1
+        refused[Rejection(f"{source.account.name}: {what}", kind=RejectionKind.FAULT)] += 1
         source.wrong = what
         if not self.alone:
             source.batch.clear()
@@ -250,16 +256,32 @@ class _Drawer:
         source.strikes += 1
         source.ended = source.strikes >= STALE
 
-    def _is_new(self, source: _Source, pose: Pose) -> bool:
-        """Check whether the generator has not proposed this pose, to a tenth of a millimetre, in
-        this call before.
+    def _posed(self, proposal: Proposal) -> Pose:
+        """Return T_world_body of what was proposed."""
+        if isinstance(proposal, Pose):
+            return proposal
+        faces, scene = self.context.stable_faces(self.arguments[0]), self.context.scene
+        T_world_region = scene.world_pose(scene.region(proposal.region))
+        return placed_pose(faces, proposal, T_world_region)
+
+    def _is_new(self, source: _Source, proposal: Proposal) -> bool:
+        """Check whether the generator has not proposed this, to a tenth of a millimetre, in this
+        call before.
         """
-        sign = 1.0 if pose.quaternion[3] >= 0.0 else -1.0
-        key = (
-            *(round(x, 4) for x in pose.position),
-            *(round(sign * q, 3) for q in pose.quaternion),
-        )
+        key = _rounded(proposal)
         if key in source.seen:
             return False
         source.seen.add(key)
         return True
+
+
+def _rounded(proposal: Proposal) -> tuple[object, ...]:
+    """Round a proposal to a tenth of a millimetre and a thousandth of a turn's measure."""
+    if isinstance(proposal, Placement):
+        place = (round(proposal.x, 4), round(proposal.y, 4))
+        turn = (round(math.cos(proposal.yaw), 3), round(math.sin(proposal.yaw), 3))
+        return (proposal.region, proposal.face, *place, *turn)
+
+    sign = 1.0 if proposal.quaternion[3] >= 0.0 else -1.0
+    place = (round(x, 4) for x in proposal.position)
+    return (*place, *(round(sign * q, 3) for q in proposal.quaternion))

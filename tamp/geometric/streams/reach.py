@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +13,10 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.flat import too_flat
 from tamp.geometric.streams.heights import too_high
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 PAD = 0.02
 """How far the fingers reach beyond the tool's origin, metres."""
@@ -26,11 +30,13 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
     """
     flat = too_flat(context, body, pose)
     if flat is not None:
-        return Rejection(flat)
+        return Rejection(flat, kind=RejectionKind.NO_GRASP)
     return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
 
 
-def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
+def within_reach(
+    context: Context, low: Float[Array, " 3"], high: Float[Array, " 3"]
+) -> bool | Rejection:
     """Check whether the arm could touch a box with corners `low` and `high` (3,) from some place in
     the room.
 
@@ -45,9 +51,7 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
         lowest = np.array((*(low + high)[:2] / 2, low[2]))
         measured = too_high(context, lowest) if side == "high" else None
         most = f"too {side}: at {low[2]:.2f} m, {robot.name} reaches {shoulder[2] + span:.2f} m"
-        return Rejection(
-            f"out of reach ({f'{measured}, not to {low[2]:.2f} m' if measured else most})"
-        )
+        return _out_of_reach(f"{measured}, not to {low[2]:.2f} m" if measured else most)
 
     offset = math.hypot(shoulder[0], shoulder[1])
     horizontal = math.hypot(
@@ -55,10 +59,14 @@ def within_reach(context: Context, low: Array, high: Array) -> bool | Rejection:
         max(low[1] - room.y[1] - offset, room.y[0] - offset - high[1], 0.0),
     )
     if math.hypot(horizontal, vertical) > span:
-        return Rejection(f"out of reach ({horizontal:.2f} m outside of the room)")
+        return _out_of_reach(f"{horizontal:.2f} m outside of the room")
 
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
-    return True if gap is None else Rejection(f"out of reach ({gap.text})")
+    return True if gap is None else _out_of_reach(gap.text)
+
+
+def _out_of_reach(how: str) -> Rejection:
+    return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE)
 
 
 def arm_length(robot: Robot) -> float:

@@ -7,6 +7,7 @@ What is not proven is said as well, but as given up: a run that ends with it cla
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,7 +29,7 @@ from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
 from tamp.geometric.streams.hand_fit import CONE
 from tamp.geometric.streams.reach import within_reach
-from tamp.stream import Rejection
+from tamp.stream import Rejection, RejectionKind
 
 ROUNDED = 0.97
 """Of a width measured on the polyhedron that stands for a curved body, so much is certain."""
@@ -62,12 +63,20 @@ def no_grasp(body: Body, opening: float) -> Rejection:
             f": no side of {body.name} is under {100 * least:.1f} cm, "
             f"the hand opens {100 * opening:.0f} cm"
         )
-        return Rejection(f"no grasp was found{wide if least > opening else ''}", given_up=True)
+        return Rejection(
+            f"no grasp was found{wide if least > opening else ''}",
+            given_up=True,
+            kind=RejectionKind.NO_GRASP,
+        )
+
     if width > opening + HALF_MILLIMETRE:
-        return Rejection(f"no grasp: every width is over the hand's {opening * 100:.0f} cm")
+        what = f"no grasp: every width is over the hand's {opening * 100:.0f} cm"
+        return Rejection(what, kind=RejectionKind.TOO_LARGE)
+
     return Rejection(
         f"no grasp was found ({100 * width:.1f} cm wide, the hand opens {100 * opening:.0f} cm)",
         given_up=True,
+        kind=RejectionKind.NO_GRASP,
     )
 
 
@@ -95,11 +104,11 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
             f"{region.name} is on {region.body}, which may be moved; "
             "only fixed bodies can be put things on"
         )
-        return Rejection(what, given_up=True)
+        return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
 
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
-    ways = context.resting(body).ways
+    ways = context.stable_faces(body).ways
     if not ways:
         ball = all(isinstance(part.shape, Sphere) for part in shape.parts)
         reason = (
@@ -107,20 +116,22 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
             if ball
             else f"{body} rests on no stable face"
         )
-        return Rejection(reason, given_up=True)
+        return Rejection(reason, given_up=True, kind=RejectionKind.UNSTABLE)
 
     low = [face for face in ways if face.extent + 2 * CONTACT_GAP <= room]
     if not low:
         least = min(face.extent for face in ways)
         what = f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)"
-        return Rejection(what, given_up=_could_fit(shape, room, None))
+        may = _could_fit(shape, room, None)
+        return Rejection(what, given_up=may, kind=RejectionKind.TOO_LARGE)
 
     if isinstance(region, Cavity) and not any(fits(face, region.size) for face in low):
         size, space = (
             " x ".join(f"{length:.2f}" for length in box) for box in (_extents(low[0]), region.size)
         )
         what = f"protrudes ({body} takes {size} m, {region.name} has {space} m)"
-        return Rejection(what, given_up=_could_fit(shape, room, region))
+        may = _could_fit(shape, room, region)
+        return Rejection(what, given_up=may, kind=RejectionKind.TOO_LARGE)
 
     return _out_of_reach(context, body, region, room)
 
@@ -132,7 +143,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     Wherever it rests, its centre of mass is over the region and well inside the side that is down;
     so a disc around it, just above the region, must be free.
     """
-    shape, ways = context.scene.bodies[body], context.resting(body).ways
+    shape, ways = context.scene.bodies[body], context.stable_faces(body).ways
     if len(shape.parts) != 1 or not ways:
         return None
 
@@ -162,7 +173,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
 
     if not (least < radius - cell).all():
         return None
-    return Rejection(f"every place there hits {' or '.join(names)}")
+    return Rejection.hits(*names, who="every place there")
 
 
 def _room_around(face: Face) -> float:
@@ -189,7 +200,7 @@ def _out_of_reach(
     )
     reachable = within_reach(context, *bounds((box,), context.scene.world_pose(region)))
     return (
-        Rejection(f"{region.name} is {reachable.reason}")
+        replace(reachable, reason=f"{region.name} is {reachable.reason}")
         if isinstance(reachable, Rejection)
         else None
     )

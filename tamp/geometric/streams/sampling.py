@@ -9,13 +9,13 @@ from tamp.geometric.context import Context
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
-from tamp.geometric.stability.stable_poses import rest
+from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
 from tamp.geometric.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.streams.proposal_stream import draw
 from tamp.geometric.streams.refusals import covered, no_grasp, no_room
 from tamp.geometric.values import Grasp
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 HOPELESS = 32
 """Tries without any success after which it is worth asking whether a region is covered altogether.
@@ -28,7 +28,7 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
     def refused(grasp: Grasp) -> Rejection | None:
         carried = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
         hit = carried.hits(context.conf(_middle(context), context.home), padding=0.002)
-        return None if hit is None else Rejection(f"carried at home, {hit[0]} hits {hit[1]}")
+        return None if hit is None else Rejection.hits(hit[1], who=f"carried at home, {hit[0]}")
 
     shape, found = context.scene.bodies[body], False
     too_heavy = _too_heavy(shape, context.robot)
@@ -39,7 +39,7 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
         found = True
         yield grasp
     if found:
-        yield Rejection("no further grasp was found", given_up=True)
+        yield Rejection("no further grasp was found", given_up=True, kind=RejectionKind.NO_GRASP)
     else:
         yield no_grasp(context.scene.bodies[body], context.robot.opening)
 
@@ -50,7 +50,8 @@ def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
     """
     if body.mass > robot.payload:
         return Rejection(
-            f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg"
+            f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg",
+            kind=RejectionKind.TOO_HEAVY,
         )
     holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY
     if body.mass > holds:
@@ -58,7 +59,8 @@ def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
             f"{body.name} weighs {body.mass:g} kg and would slip: "
             f"with its friction of {body.friction:g} the fingers"
         )
-        return Rejection(f"{what}, at {robot.force:g} N, hold {holds:.2g} kg", given_up=True)
+        what += f", at {robot.force:g} N, hold {holds:.2g} kg"
+        return Rejection(what, given_up=True, kind=RejectionKind.TOO_HEAVY)
     return None
 
 
@@ -78,18 +80,24 @@ def _placements(
     context: Context, relation: str, body: str, region: Surface | Cavity, call: Call
 ) -> Iterator[Pose | Rejection]:
     T_world_region = context.scene.world_pose(region)
-    resting = context.resting(body)
+    faces = context.stable_faces(body)
     refusal = no_room(context, body, region)
     if refusal is not None:
         yield refusal
         return
 
-    def judge(proposal: Pose) -> Pose | Rejection:
-        pose = rest(resting, proposal, region, T_world_region)
+    def judge(proposal: Placement | Pose) -> Pose | Rejection:
+        if isinstance(proposal, Pose):
+            snapped = snap_to_region(faces, proposal, region, T_world_region)
+            if isinstance(snapped, Rejection):
+                return snapped
+            proposal = snapped
+
+        pose = certified_pose(faces, proposal, region, T_world_region)
         if isinstance(pose, Rejection):
             return pose
         hit = context.collisions.between(body, pose, {})
-        return pose if hit is None else Rejection(f"hits {hit}")
+        return pose if hit is None else Rejection.hits(hit)
 
     failures = 0.0
     for result in draw(

@@ -5,7 +5,7 @@ classifier.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -14,9 +14,10 @@ from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.classifier import LIKELY, Classifier, probability
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.stability.stable_poses import rest
+from tamp.geometric.scene.scene import Cavity, Surface
+from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
 from tamp.geometric.streams.proposal_stream import draw
-from tamp.stream import Call, Rejection
+from tamp.stream import Call, Rejection, RejectionKind
 
 
 def sample_relation(
@@ -44,24 +45,20 @@ def sample_relation(
     }
 
     scene = context.scene
-    regions = [
-        place
+    regions = {
+        place.name: place
         for place in (*scene.surfaces.values(), *scene.cavities.values())
         if place.body in scene.fixed
-    ]
+    }
 
-    def certified(proposal: Pose) -> Pose | Rejection:
-        rested = [
-            rest(context.resting(body), proposal, region, scene.world_pose(region))
-            for region in regions
-        ]
-        pose = next((pose for pose in rested if isinstance(pose, Pose)), None)
-        if pose is None:
-            return Rejection("rests nowhere")
+    def certified(proposal: Placement | Pose) -> Pose | Rejection:
+        pose = _rested(context, body, proposal, regions)
+        if isinstance(pose, Rejection):
+            return pose
 
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
-            return Rejection(f"hits {hit}")
+            return Rejection.hits(hit)
         if judge is None:
             return pose
 
@@ -73,6 +70,31 @@ def sample_relation(
     yield from draw(
         context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
     )
+
+
+def _rested(
+    context: Context,
+    body: str,
+    proposal: Placement | Pose,
+    regions: Mapping[str, Surface | Cavity],
+) -> Pose | Rejection:
+    """Certify that a proposal rests in its region, or a pose in the first that it is nearest to."""
+    faces, scene = context.stable_faces(body), context.scene
+    if isinstance(proposal, Placement):
+        region = regions.get(proposal.region)
+        if region is None:  # on a body that moves
+            return Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
+        return certified_pose(faces, proposal, region, scene.world_pose(region))
+
+    for region in regions.values():
+        T_world_region = scene.world_pose(region)
+        placement = snap_to_region(faces, proposal, region, T_world_region)
+        if isinstance(placement, Rejection):
+            continue
+        pose = certified_pose(faces, placement, region, T_world_region)
+        if isinstance(pose, Pose):
+            return pose
+    return Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
 
 
 def test_relation(
@@ -90,14 +112,18 @@ def fails_relation(
     """Test whether the classifier says that the relation does not hold."""
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
-        return Rejection("cannot tell")
-    return True if number < LIKELY else Rejection(f"likely ({number:.2f})")
+        return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
+    if number < LIKELY:
+        return True
+    return Rejection(f"likely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
 
 def _answer(number: float) -> bool | Rejection:
     if math.isnan(number):
-        return Rejection("cannot tell")
-    return True if number >= LIKELY else Rejection(f"unlikely ({number:.2f})")
+        return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
+    if number >= LIKELY:
+        return True
+    return Rejection(f"unlikely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
 
 def _probability(

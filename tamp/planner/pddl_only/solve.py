@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from tamp.errors import InputError
 from tamp.planner.pddl_only.problem import SymbolicProblem
 from tamp.symbolic.algorithms.explanation.explanation import explain_infeasible
-from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
+from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import type_facts
 from tamp.symbolic.algorithms.result import Outcome, StreamTask
 from tamp.symbolic.pddl.structs import Formula, Task
@@ -191,7 +191,7 @@ def _why(
 ) -> tuple[str, ...]:
     task = problem.task
     facts = {*task.initial, *type_facts(task), *instantiated.reachable, *instantiated.initial}
-    missing = Missing(task, (), facts, {**task.domain.constants, **task.objects})
+    missing = UnachievableFacts(task, (), facts, {**task.domain.constants, **task.objects})
 
     def towards(goal: Formula) -> InstantiatedTask:
         return instantiate(replace(task, goal=goal))

@@ -189,5 +189,5 @@ def test_the_same_question_has_the_same_answer(robot: Robot, kinematics: Kinemat
     for conf in confs:
         conf.flags.writeable = False
     answers = [first.free(conf) for conf in confs]
-    assert answers == [second.free(conf) for conf in confs[::-1]][::-1] == [first.free(list(conf)) for conf in confs]
+    assert answers == [second.free(conf) for conf in confs[::-1]][::-1] == [first.free(conf.copy()) for conf in confs]
     assert True in answers and False in answers

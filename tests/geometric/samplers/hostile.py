@@ -13,8 +13,17 @@ from numpy.random import Generator as Random
 from tamp.geometric.samplers.placements import SurfacePlacements
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import placed_pose
+from tamp.geometric.stability.stable_poses import stable_faces_of
 
 Propose = Callable[[Scene, Sequence[str], int, Random], Any]
+
+
+def at_rest(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    """World poses that the hand-made sampler would take."""
+    T_world_region, faces = scene.world_pose(scene.region(arguments[1])), stable_faces_of(scene.bodies[arguments[0]])
+    placements = SurfacePlacements().propose(scene, arguments, count, rng)
+    return [placed_pose(faces, placement, T_world_region) for placement in placements]
 
 
 class Hostile:
@@ -63,13 +72,13 @@ def a_room_away(scene: Scene, arguments: Sequence[str], count: int, rng: Random)
 
 
 def sunken(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
-    poses = SurfacePlacements().propose(scene, arguments, count, rng)
+    poses = at_rest(scene, arguments, count, rng)
     return [Pose((pose.position[0], pose.position[1], pose.position[2] - 0.1), pose.quaternion) for pose in poses]
 
 
 def into_others(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
     """At rest, but where something stands already: the fluents know."""
-    z = SurfacePlacements().propose(scene, arguments, 1, rng)[0].position[2]
+    z = at_rest(scene, arguments, 1, rng)[0].position[2]
     others = [body.pose.position for name, body in scene.bodies.items() if body.movable and name != arguments[0]]
     spots = [others[int(rng.integers(len(others)))] for _ in range(count)]
     return [Pose((x + rng.normal(0, 1e-3), y + rng.normal(0, 1e-3), z)) for x, y, _ in spots]
@@ -77,7 +86,7 @@ def into_others(scene: Scene, arguments: Sequence[str], count: int, rng: Random)
 
 def at_the_edge(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
     """Accepted by the first tests, and all of it in one corner."""
-    poses = SurfacePlacements().propose(scene, arguments, 200, rng)
+    poses = at_rest(scene, arguments, 200, rng)
     return sorted(poses, key=lambda pose: pose.position[0] + pose.position[1])[:count]
 
 
@@ -99,7 +108,7 @@ def strings_inside(scene: Scene, arguments: Sequence[str], count: int, rng: Rand
 
 def arrays_inside(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
     """No tuples, as the type says, but usable."""
-    poses = SurfacePlacements().propose(scene, arguments, count, rng)
+    poses = at_rest(scene, arguments, count, rng)
     return [Pose(np.array(pose.position), np.array(pose.quaternion)) for pose in poses]
 
 

@@ -13,8 +13,8 @@ from numpy.random import Generator as Random
 from tamp import load_problem, solve
 from tamp.geometric.samplers.mixture import ENOUGH, PATIENCE, VAIN, Ledger, Mixture
 from tamp.geometric.samplers.placements import SurfacePlacements, UniformPlacements
-from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement
 from tamp.plan.write import plan_text
 from tamp.planner.report import summary
 from tamp.planner.solution import Solution
@@ -88,7 +88,7 @@ def test_alone_and_raising_is_reported() -> None:
 class Learned:
     """The hand-made one with more success: as good as a learned one may get."""
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Placement]:
         return SurfacePlacements().propose(scene, arguments, count, rng)
 
 

@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
-from tamp.geometric.stability.stable_poses import Face, resting_of
+from tamp.geometric.stability.stable_poses import Face, stable_faces_of
 from tests.geometric.streams.scenes import THINGS, problem_with
 
 
@@ -22,7 +22,7 @@ def body(*parts: Part) -> Body:
 
 
 def faces(shape: Shape) -> tuple[Face, ...]:
-    return resting_of(body(Part(shape))).faces
+    return stable_faces_of(body(Part(shape))).faces
 
 
 def test_a_box_rests_on_six_faces() -> None:
@@ -41,7 +41,7 @@ def test_a_box_rests_on_six_faces() -> None:
 
 def test_the_present_face_comes_first() -> None:
     lying = Body("thing", (Part(Box((0.05, 0.05, 0.3))),), Pose.from_xyz_rpy((0, 0, 1), (math.pi / 2, 0, 0)), True)
-    first = resting_of(lying).faces[0]
+    first = stable_faces_of(lying).faces[0]
     assert first.extent == pytest.approx(0.05)
     assert -first.rotation[2] @ -lying.pose.rotation[2] > 0.99
 
@@ -65,7 +65,7 @@ def test_a_part_at_a_side_moves_the_centre_and_the_tipping_edge() -> None:
     centre = centre_of_mass(shape)
     foot, tower = 0.2 * 0.06 * 0.02, 0.04 * 0.06 * 0.2
     assert centre == pytest.approx([0.08 * tower / (foot + tower), 0.0, (0.01 * foot + 0.12 * tower) / (foot + tower)])
-    standing = resting_of(shape).faces[0]
+    standing = stable_faces_of(shape).faces[0]
     assert standing.height == pytest.approx(0.0, abs=1e-9)
     assert standing.angle == pytest.approx(math.atan2(min(0.03, 0.1 - centre[0]), centre[2]))
 
@@ -79,7 +79,7 @@ def test_hull_and_centre_are_those_of_trimesh(name: str, tmp_path: Path) -> None
     assert ours.volume == pytest.approx(hull.volume, rel=1e-6)
     if len(thing.parts) == 1:
         assert centre_of_mass(thing) == pytest.approx(hull.center_mass, abs=1e-5)
-    found = resting_of(thing).faces
+    found = stable_faces_of(thing).faces
     assert found
     for face in found:
         turned = vertices @ face.rotation.T

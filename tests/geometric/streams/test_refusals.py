@@ -14,7 +14,8 @@ from benchmarks.awkward_scenes import scene
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 from tamp.geometric.stability.hulls import body_hull
-from tamp.geometric.stability.stable_poses import resting_of, settle
+from tamp.geometric.stability.placement import Placement, certified_pose
+from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.geometric.streams.approach import approach_hits
 from tamp.geometric.streams.flat import too_flat
 from tamp.geometric.streams.heights import highest
@@ -23,7 +24,7 @@ from tamp.geometric.streams.sampling import sample_grasp
 from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
-from tamp.stream import Rejection
+from tamp.stream import Rejection, RejectionKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.verification.verify import verify
 from tests.geometric.streams.scenes import call, problem_with, values
@@ -58,18 +59,18 @@ def test_a_mesh_proves_nothing_and_its_width_is_named() -> None:
 
 
 def test_a_can_that_lies_may_lie_elsewhere_and_a_ball_may_not() -> None:
-    lying = resting_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.4)))
+    lying = stable_faces_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.4)))
     assert lying.lying is not None and lying.lying.extent == pytest.approx(0.06, abs=1e-3)
     assert lying.lying.height == pytest.approx(0.03, abs=1e-3)
     nearest = lying.nearest(lying.body.pose.rotation)
-    assert nearest is lying.lying
-    assert resting_of(body(Cylinder(0.03, 0.2))).lying is None
-    assert resting_of(body(Sphere(0.03))).lying is None
-    assert resting_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.0), support=None)).lying is None
+    assert nearest is not None and lying.ways[nearest] is lying.lying
+    assert stable_faces_of(body(Cylinder(0.03, 0.2))).lying is None
+    assert stable_faces_of(body(Sphere(0.03))).lying is None
+    assert stable_faces_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.0), support=None)).lying is None
 
 
 def test_a_body_that_leans_does_not_rest_so() -> None:
-    assert resting_of(body(Box((0.05, 0.05, 0.3)), (0.5, 0.0, 0.0))).lying is None
+    assert stable_faces_of(body(Box((0.05, 0.05, 0.3)), (0.5, 0.0, 0.0))).lying is None
 
 
 LYING = "cylinder: {radius: 0.03, height: 0.25}, rpy: [90 deg, 0 deg, 0 deg]"
@@ -107,7 +108,8 @@ def test_a_lying_can_fits_under_a_ceiling_that_it_cannot_stand_under(tmp_path: P
 
 def test_a_sphere_is_refused_in_words_without_a_proof(tmp_path: Path) -> None:
     refused = refusal("sphere: 0.03", "cupboard_top", tmp_path)
-    assert refused == Rejection("a sphere rests on no stable face (thing)", given_up=True)
+    words = "a sphere rests on no stable face (thing)"
+    assert refused == Rejection(words, given_up=True, kind=RejectionKind.UNSTABLE)
 
 
 def test_the_measured_height_is_reached_and_a_hand_higher_is_not(tmp_path: Path) -> None:
@@ -247,9 +249,11 @@ def test_no_place_is_free_where_all_are_called_taken(tmp_path: Path, rng: np.ran
         stand = context.scene.surfaces["stand"]
         found = False
         for _ in range(400):
-            face = context.resting("cup").faces[int(rng.integers(len(context.resting("cup").faces)))]
-            x, y = (rng.uniform(-side / 2, side / 2) for side in stand.size)
-            pose = settle(face, rng.uniform(-3, 3), x, y, stand, context.scene.world_pose(stand))
+            faces = context.stable_faces("cup")
+            face = int(rng.integers(len(faces.faces)))
+            x, y = (float(rng.uniform(-side / 2, side / 2)) for side in stand.size)
+            placement = Placement("stand", face, x, y, rng.uniform(-3, 3))
+            pose = certified_pose(faces, placement, stand, context.scene.world_pose(stand))
             found |= isinstance(pose, Pose) and context.collisions.between("cup", pose, {}) is None
         proof = covered(context, "cup", stand)
         assert proof is None or not found

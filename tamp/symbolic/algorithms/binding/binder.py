@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Fact
 from tamp.system.deadline import Deadline, OutOfTime
 
@@ -39,7 +39,7 @@ class Binder:
         self._streams = streams
         self._experience = experience
         self._deadline = deadline
-        self.units = 0
+        self.draws = 0
         self._met: list[tuple[Node, Instance]] = []
 
     def bind(
@@ -66,7 +66,7 @@ class Binder:
         values: dict[int, str] = {}
         levels: list[_Level] = []
 
-        spent_before = self.units
+        spent_before = self.draws
         self._met.clear()
         refusals = 0
 
@@ -94,8 +94,8 @@ class Binder:
                     values.pop(variable, None)
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
-                if not conflict or self.units - spent_before > budget:
-                    if self.units == spent_before:
+                if not conflict or self.draws - spent_before > budget:
+                    if self.draws == spent_before:
                         # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
@@ -131,7 +131,7 @@ class Binder:
             if not instance.exhausted:
                 if self._deadline.passed:
                     raise OutOfTime
-                self.units += 1
+                self.draws += 1
                 self._note(node, instance, self._streams.draw(instance) is not None)
 
     def _enter(
@@ -202,7 +202,7 @@ class Binder:
                 raise OutOfTime
             if instance.exhausted:
                 break
-            self.units += 1
+            self.draws += 1
             outputs = self._streams.draw(instance)
             self._note(node, instance, outputs is not None)
             if outputs is not None and offer(outputs):
@@ -216,22 +216,24 @@ class Binder:
 
     def _note(self, node: Node, instance: Instance, success: bool) -> None:
         if success or instance.last is None:
-            self._experience.note(node.fact, None)
+            self._experience.record(node.fact, None)
             return
         if node.stream.is_fluent and instance.last.blockers:
             present = _present(node, instance.last.blockers)
             if present:
-                self._experience.note_nogood(node.fact, present, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
                 return
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
             words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
             if not any(word.startswith(MARK) for word in words):
                 call = (node.stream.name, node.guess[0])
-                self._experience.note_exact(call, node.stream.declaration.fluents, present)
+                self._experience.record_failing_state(
+                    call, node.stream.declaration.fluents, present
+                )
             if present:  # nobody says what of the state is to blame
-                self._experience.note_nogood(node.fact, present, instance.last.reason)
-        self._experience.note(node.fact, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
+        self._experience.record(node.fact, instance.last)
 
     def _blame(
         self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]
