@@ -5,9 +5,7 @@ imported when they are used.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +18,9 @@ from grounding.relational.measures import Measures, RegionFrame
 from grounding.relational.model import relational_weights
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
+from grounding.train_options import NETWORKS as NETWORKS
+from grounding.train_options import OPTIONS as OPTIONS
+from grounding.train_options import TrainArgs as TrainArgs
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
@@ -27,16 +28,6 @@ RANKS_FROM = 100
 """Labelled scenes from which on the ranker takes part; with fewer it does harm (LEARNING.md,
 section 3).
 """
-
-NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
-
-OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "scheme": NETWORKS,
-    "departures": NETWORKS,
-    "iterations": NETWORKS,
-    "encoder": ("mlp-pc", "gnn-pc", "tree-pc"),
-}
-"""Fields of TrainArgs that only some models have."""
 
 SHOWN = 500
 """Labels that one of the paper's classifiers is asked of again."""
@@ -46,35 +37,6 @@ ITERATIONS = 30_000
 
 Say = Callable[[str], None]
 """What is told how far it is."""
-
-
-@dataclass(frozen=True)
-class TrainArgs:
-    """The training options.
-
-    Attributes:
-        samples: How many scenes of the data set; None for all.
-        seed: Of initial weights and batches.
-        demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
-        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier
-            or both; None for the relation's headline scheme.
-        departures: What is done otherwise than in the paper, of its networks: any of
-            `grounding.paper.training.DEPARTURES`.
-        iterations: Of the paper's networks; None for the paper's 30,000.
-        encoder: Weights of an encoder of clouds, which the models on clouds need.
-        state: Where an interrupted training of the paper's networks goes on from, and is saved.
-        commit: Of the code, for the card.
-    """
-
-    samples: int | None = None
-    seed: int = 0
-    demonstrations: int = 2000
-    scheme: str | None = None
-    departures: tuple[str, ...] | None = None
-    iterations: int | None = None
-    encoder: Path | None = None
-    state: Path | None = None
-    commit: str = ""
 
 
 def train(

@@ -23,7 +23,7 @@ from grounding.paper.oracle import published_oracle
 from grounding.relation_scene import RelationScene
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP
-from tamp.geometric.stability.stable_poses import resting_pose
+from tamp.geometric.stability.placement import resting_pose
 
 SPREADS = (0.5, 0.7, 0.9)
 """Shares of a region's sides that are used; nearer to its middle a body is rarely outside, farther
