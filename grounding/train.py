@@ -35,12 +35,14 @@ SHOWN = 500
 ITERATIONS = 30_000
 """Of the paper's networks: of the classifier, and then of the generator."""
 
+DEFAULTS = TrainArgs()
+
 Say = Callable[[str], None]
 """What is told how far it is."""
 
 
 def train(
-    data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None
+    data: Dataset, model: str, args: TrainArgs = DEFAULTS, progress: Say = lambda line: None
 ) -> Weights:
     """Train a grounding.
 
@@ -88,7 +90,7 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
 
 
 def train_relational(
-    data: Dataset, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None, *, flow: bool
+    data: Dataset, args: TrainArgs = DEFAULTS, progress: Say = lambda line: None, *, flow: bool
 ) -> Weights:
     """Train a relational grounding of the first scenes of a data set: demonstrations to transfer,
     or a flow, and the ranker.
