@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from tamp.symbolic.algorithms.binding.binder import Binder
-
 from tamp.symbolic.algorithms.binding.levels import Level, Levels
 from tests.symbolic.algorithms.binding.shelf import planned
 
