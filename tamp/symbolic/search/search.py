@@ -16,6 +16,7 @@ from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS, Heu
 from tamp.symbolic.search.lazy import lazy
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.packed import selection
+from tamp.symbolic.search.packed.restarts import STALLED, greedy_with_restarts
 from tamp.symbolic.search.packed.search import fits, packed_lazy
 from tamp.symbolic.search.successors import Price, Successors
 from tamp.system.deadline import Deadline
@@ -72,6 +73,7 @@ def search(
     deadline: Deadline | None = None,
     below: float = math.inf,
     audit: Callable[[], bool] | None = None,
+    seed: int = 0,
 ) -> Result:
     """Search for a plan.
 
@@ -92,6 +94,8 @@ def search(
             prices. Not for the greedy searches, which keep to the first way to each state.
         audit: Asked once, when the search turns out not to be a short one: whether it is proven
             that there is no plan.
+        seed: Of the random orders in which greedy search without a limit begins anew where it
+            stalls.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
@@ -108,6 +112,8 @@ def search(
         return SearchSpace(successors, heuristics, limit, deadline, below, audit)
 
     def packed(run: SearchSpace) -> Plan | None:
+        if search == "greedy" and limit is None:
+            return greedy_with_restarts(run, names, seed)
         return packed_lazy(run, names, math.inf if search == "greedy" else weight)
 
     if packable and selection.pays(0):
@@ -116,7 +122,10 @@ def search(
     else:
         run = space([HEURISTICS[name](successors) for name in names])
         if packable:
-            run.too_slow = lambda: selection.pays(run.patience * successors.entries)
+            run.too_slow = lambda: (
+                (search == "greedy" and limit is None and run.expanded >= STALLED)
+                or selection.pays(run.patience * successors.entries)
+            )
         try:
             plan, reason = _attempt(run, lambda run: SEARCHES[search](run, weight))
         except TooSlow:

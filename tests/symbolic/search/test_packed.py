@@ -7,14 +7,16 @@ from random import Random
 
 import pytest
 
+import tamp.symbolic.search.search as search_module
 from benchmarks.classical_domains import GENERATORS
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask
-from tamp.symbolic.search.packed import selection
-from tamp.symbolic.search.packed.packing import pairs_of, signed, words_of
+from tamp.symbolic.search.packed import restarts, selection
 from tamp.symbolic.search.packed import search as packed_search
+from tamp.symbolic.search.packed.packing import pairs_of, signed, words_of
 from tamp.symbolic.search.search import Result, search
+from tests.symbolic.search.interpreter import Interpreter
 from tests.symbolic.search.test_prices import instances, random_prices
 from tests.symbolic.search.test_random_tasks import random_task
 
@@ -27,6 +29,10 @@ WAYS = (
 )
 
 
+STALL = 10**9
+"""No restarts: those are the compiled loop's alone."""
+
+
 def told(result: Result) -> tuple[object, ...]:
     plan = None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
     return plan, result.reason, result.expanded, result.evaluated
@@ -34,6 +40,8 @@ def told(result: Result) -> tuple[object, ...]:
 
 def compare(monkeypatch: pytest.MonkeyPatch, instantiated: InstantiatedTask, price: dict, **options: object) -> Result:
     """Search in both loops, and once from the one into the other."""
+    monkeypatch.setattr(restarts, "STALLED", STALL)
+    monkeypatch.setattr(search_module, "STALLED", STALL)
     results: list[Result] = []
     for pays in (lambda entries: False, lambda entries: True, lambda entries: entries > 0):
         monkeypatch.setattr(selection, "pays", pays)
@@ -150,3 +158,42 @@ def test_only_what_was_made_of_these_sources_counts_as_compiled(
     assert selection.compiled_before()
     (tmp_path / f"{selection.SOURCES[0]}.py").write_text("another")
     assert not selection.compiled_before()
+
+
+def test_luby_numbers() -> None:
+    assert [restarts.luby(k) for k in range(1, 16)] == [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]
+
+
+@pytest.mark.parametrize("heuristic", ["ff+landmarks", "ff"])
+def test_a_search_that_stalls_begins_anew_and_finds_a_plan(heuristic: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same seed gives the same plan, whichever loop it begins in; it holds by the book."""
+    for module in (restarts, search_module):
+        monkeypatch.setattr(module, "STALLED", 50)
+    monkeypatch.setattr(restarts, "UNIT", 200)
+    domain, problem = GENERATORS["depot"](8, Random(1))
+    task = parse_task(problem, parse_domain(domain))
+    instantiated = instantiate(task)
+    found: dict[tuple[int, bool], Result] = {}
+    for seed, packed in ((0, False), (0, True), (1, True), (2, True)):
+        monkeypatch.setattr(selection, "pays", lambda entries, packed=packed: packed)
+        found[seed, packed] = result = search(instantiated, search="greedy", heuristic=heuristic, seed=seed)
+        assert result.plan is not None
+        steps = [(operator.name, operator.arguments) for operator in result.plan.operators]
+        assert Interpreter(task).run(steps) == result.plan.cost
+    assert found[0, False].plan == found[0, True].plan
+    assert found[0, True].expanded > 50
+
+
+def test_restarts_prove_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (restarts, search_module):
+        monkeypatch.setattr(module, "STALLED", 2)
+    monkeypatch.setattr(restarts, "UNIT", 3)
+    seen = 0
+    for seed in range(150):
+        instantiated = instantiate(random_task(Random(seed)))
+        monkeypatch.setattr(selection, "pays", lambda entries: True)
+        packed = search(instantiated, search="greedy", heuristic="ff+landmarks")
+        plain = search(instantiated, search="greedy", heuristic="ff+landmarks", limit=10**6)
+        assert (packed.plan is None, packed.reason) == (plain.plan is None, plain.reason)
+        seen += packed.expanded > 2
+    assert seen >= 5

@@ -23,6 +23,8 @@ class Task(NamedTuple):
         pre_starts: Conditions of operator i: words, what must be set and what must not.
         eff_starts: Effects of operator i: words, what is kept and what is added.
         con_starts: Conditional effects of operator i, each with condition and effect.
+        pre_touched: For each operator the words of its conditions, one bit for each residue.
+        eff_touched: Likewise those of its effects, the conditional ones too.
         watch_starts: For each fact the operators to try where it holds.
         always: Those to try everywhere.
         strata_starts: Axioms of each stratum, each with condition and head.
@@ -56,6 +58,8 @@ class Task(NamedTuple):
     con_eff_words: int
     con_eff_keep: int
     con_eff_add: int
+    pre_touched: int
+    eff_touched: int
     watch_starts: int
     watch: int
     watch_mask: int

@@ -15,16 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from tamp.symbolic.search.packed import estimates, loops, states
+from tamp.symbolic.search.packed import basics, estimates, loops, states
 from tamp.symbolic.search.packed.arrays import Relaxed, Scratch, Space, Task
 from tamp.symbolic.search.packed.selection import digest
 from tamp.system.compilation import njit
 
-SOURCES = (estimates, states, loops)
+SOURCES = (basics, estimates, states, loops)
 
 DIGEST = digest()
 
-_names: dict[str, Any] = {**vars(estimates), **vars(states), **vars(loops)}
+_names: dict[str, Any] = {**vars(basics), **vars(estimates), **vars(states), **vars(loops)}
 _INNER = {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 

@@ -10,69 +10,7 @@ from __future__ import annotations
 
 import math
 
-
-def heap_push(ints, reals, keys, ties, items, size, key, tie, item):
-    """Push an item onto a heap of so many: the lowest key is first, among equals the lowest tie."""
-    k = size
-    while k > 0:
-        parent = (k - 1) >> 1
-        other = reals[keys + parent]
-        if other < key or (other == key and ints[ties + parent] <= tie):
-            break
-        reals[keys + k] = other
-        ints[ties + k] = ints[ties + parent]
-        ints[items + k] = ints[items + parent]
-        k = parent
-    reals[keys + k] = key
-    ints[ties + k] = tie
-    ints[items + k] = item
-
-
-def heap_pop(ints, reals, keys, ties, items, size):
-    """Remove the first of a heap of so many: its item is read before."""
-    last = size - 1
-    key, tie, item = reals[keys + last], ints[ties + last], ints[items + last]
-    k = 0
-    while True:
-        child = 2 * k + 1
-        if child >= last:
-            break
-        if child + 1 < last:
-            one, two = reals[keys + child], reals[keys + child + 1]
-            if two < one or (two == one and ints[ties + child + 1] < ints[ties + child]):
-                child += 1
-        other = reals[keys + child]
-        if not (other < key or (other == key and ints[ties + child] < tie)):
-            break
-        reals[keys + k] = other
-        ints[ties + k] = ints[ties + child]
-        ints[items + k] = ints[items + child]
-        k = child
-    reals[keys + k] = key
-    ints[ties + k] = tie
-    ints[items + k] = item
-
-
-def holds(ints, starts, words, need, absent, i, state):
-    """Check a condition in a state."""
-    for k in range(ints[starts + i], ints[starts + i + 1]):
-        word = ints[state + ints[words + k]]
-        if word & ints[need + k] != ints[need + k] or word & ints[absent + k] != 0:
-            return False
-    return True
-
-
-def has(ints, state, fact):
-    """Check that a fact is in a state."""
-    return (ints[state + (fact >> 6)] >> (fact & 63)) & 1
-
-
-def contains(ints, starts, facts, i, state):
-    """Check that a state has all facts of row i."""
-    for k in range(ints[starts + i], ints[starts + i + 1]):
-        if not has(ints, state, ints[facts + k]):
-            return False
-    return True
+from tamp.symbolic.search.packed.basics import contains, has, heap_pop, heap_push
 
 
 def trigger(ints, reals, t, x, state):
@@ -226,7 +164,7 @@ def explore(ints, reals, t, r, x, closed):
 
 
 def relaxed_plan(ints, reals, t, r, x):
-    """Extract a relaxed plan into x.plan (`heuristics.loops.kernels.relaxed_plan`): cost, length."""
+    """Extract a relaxed plan into x.plan, as `heuristics.loops.kernels` does: cost, length."""
     for fact in range(r.facts):
         ints[x.seen + fact] = 0
         reals[x.bounds + fact] = math.inf

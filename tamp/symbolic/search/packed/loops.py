@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import math
 
+from tamp.symbolic.search.packed.basics import heap_pop, heap_push
 from tamp.symbolic.search.packed.estimates import (
     explore,
-    heap_pop,
-    heap_push,
     landmarks,
     paid,
     relax,
@@ -21,12 +20,14 @@ from tamp.symbolic.search.packed.estimates import (
     trigger,
 )
 from tamp.symbolic.search.packed.states import (
+    achievers,
     applicable,
     apply,
     close_state,
     covers,
     place_of,
     preferred,
+    shuffle,
 )
 
 EXHAUSTED, GOAL, GROW, PAUSE, FOUND, LIMITED = 0, 1, 2, 3, 4, 5
@@ -36,10 +37,11 @@ around, the goal state's turn has come, no more states may be expanded."""
 NODES, ENTRIES, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6
 """Places of the counters."""
 
-UNTIL, LIMIT, BOOST = 7, 8, 9
-"""Places of what is given: expanded states until a pause, at most, and turns after progress."""
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 7, 8, 9, 10, 11
+"""Places of what is given: expanded states until a pause, at most, turns after progress, whether
+what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
 
-SIZES = 10
+SIZES = 12
 """From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
 
 GOAL_ENTRY = -2
@@ -59,12 +61,9 @@ def pop(ints, reals, t, space, greedy):
         if ints[SIZES + k] and (chosen < 0 or ints[turns + k] < ints[turns + chosen]):
             chosen = k
     if chosen >= 0 and not greedy and ints[SIZES + chosen - kinds]:
-        # preferred, but by far too dear: a price was learned
-        if (
-            reals[space.keys + chosen * capacity]
-            > 2.0 * reals[space.keys + (chosen - kinds) * capacity]
-        ):
-            chosen = -1
+        usually = reals[space.keys + (chosen - kinds) * capacity]
+        dear = reals[space.keys + chosen * capacity] > 2.0 * usually
+        chosen = -1 if dear else chosen  # preferred, but by far too dear: a price was learned
     if chosen < 0 or (usual >= 0 and ints[turns + chosen] > ints[turns + usual]):
         chosen = usual
     if chosen < 0:
@@ -165,7 +164,12 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
     count = applicable(ints, t, x, x.closed)
     for k in range(count):
         ints[x.is_applicable + ints[x.applicable + k]] = 1
+    if ints[RANDOM]:
+        ints[RANDOM] = shuffle(ints, ints[RANDOM], x.applicable, count)
+        ints[RANDOM] = shuffle(ints, ints[RANDOM], x.plan, length)
     first = preferred(ints, t, x, space, node, x.closed, length)
+    if ints[ACHIEVERS]:
+        first = achievers(ints, t, r, x, space, node, first, count)
 
     cost, spent = reals[space.cost + node], reals[space.spent + node]
     base = ints[EXPANDED] * t.operators
@@ -189,7 +193,7 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         ints[PUSHED] += 1
         # among equals greedy search goes on from the state just expanded, weighted A* takes the
         # older
-        order = rank - base if greedy else ints[PUSHED]
+        order = rank - base if greedy and not ints[RANDOM] else ints[PUSHED]
         push(ints, reals, t, r, x, space, node, i, reached, order, rank < first, weight)
 
     for k in range(count):

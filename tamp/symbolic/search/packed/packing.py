@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache, reduce
 from itertools import accumulate, chain
-from typing import Any, TypeVar
+from operator import or_
+from typing import Any
 
 from tamp.symbolic.search.heuristics.landmarks import Landmarks
 from tamp.symbolic.search.heuristics.relaxation import Relaxation
@@ -16,7 +18,6 @@ WORD = 64
 MOST_BUCKETS = 4096
 """Costs in whole numbers below this have a bucket of their own."""
 
-T = TypeVar("T")
 Place = Callable[[Sequence[Any]], int]
 """Puts numbers into an array; returns where they begin."""
 
@@ -57,23 +58,20 @@ def pairs_of(one: State, other: State) -> list[tuple[int, int, int]]:
     return found
 
 
+def touched(state: State) -> int:
+    """Return the words that a set of facts touches, as bits; words 62 apart share one."""
+    found = 0
+    while state:
+        w = ((state & -state).bit_length() - 1) // WORD
+        found |= 1 << w % 62
+        state = state >> WORD * (w + 1) << WORD * (w + 1)
+    return found
+
+
 def effects_of(kept: State, added: State, every: State) -> list[tuple[int, int, int]]:
     """Return the words that effects change: number, bits that are kept, bits that are added."""
     deleted = every & ~kept
     return [(w, ~gone, more) for w, gone, more in pairs_of(deleted, added)]
-
-
-def cached(make: Callable[..., T]) -> Callable[..., T]:
-    """Return the function with its results kept: operators share conditions."""
-    known: dict[tuple[Any, ...], T] = {}
-
-    def call(*arguments: Any) -> T:
-        result = known.get(arguments)
-        if result is None:
-            result = known[arguments] = make(*arguments)
-        return result
-
-    return call
 
 
 def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Task:
@@ -87,12 +85,17 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
     """
     size = len(s.facts)
     words, every = (size + WORD - 1) // WORD or 1, (1 << size) - 1
-    conditions, changes = cached(pairs_of), cached(lambda k, a: effects_of(k, a, every))
+    conditions, changes = cache(pairs_of), cache(lambda k, a: effects_of(k, a, every))
     pre = Rows((conditions(b, a) for b, a in zip(s.before, s.absent, strict=True)), 3)
     eff = Rows((changes(k, a) for k, a in zip(s.kept, s.added, strict=True)), 3)
     effects = list(chain.from_iterable(s.conditional))
     con_pre = Rows((conditions(one[0], one[1]) for one in effects), 3)
     con_eff = Rows((changes(~one[3], one[2]) for one in effects), 3)
+    whole = [
+        reduce(or_, (one[3] | one[2] for one in more), every & ~k | a)
+        for k, a, more in zip(s.kept, s.added, s.conditional, strict=True)
+    ]
+    both = cache(touched)
     watch = Rows(([(i,) for i in s.watched.get(fact, ())] for fact in range(size)), 1)
 
     bodies, heads, strata, recursive = [], [], [0], []
@@ -113,6 +116,8 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
         *map(ints, (eff.starts, *eff.columns)),
         ints(list(accumulate(map(len, s.conditional), initial=0))),
         *map(ints, (con_pre.starts, *con_pre.columns, con_eff.starts, *con_eff.columns)),
+        ints([both(b | a) for b, a in zip(s.before, s.absent, strict=True)]),
+        ints(list(map(both, whole))),
         *map(ints, (watch.starts, *watch.columns, words_of(s.watch_mask, words), s.always)),
         *map(ints, (strata, recursive, body.starts, *body.columns)),
         ints([head // WORD for head in heads]), ints([signed(1 << head % WORD) for head in heads]),

@@ -39,13 +39,33 @@ def fits(names: Sequence[str], successors: Successors) -> bool:
 
 def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Plan | None:
     """Search as `lazy.lazy` does."""
-    return _PackedSearch(search, names, weight).plan()
+    return PackedSearch(search, names, weight).plan()
 
 
-class _PackedSearch:
-    """A search under way: its arrays, and what stops the loop now and then."""
+class Stalled(Exception):
+    """Says that a search has expanded as many states as it was to."""
 
-    def __init__(self, search: SearchSpace, names: Sequence[str], weight: float) -> None:
+
+class PackedSearch:
+    """A search under way: its arrays, and what stops the loop now and then.
+
+    Args:
+        search: The task, the limits, and the counts, which this one adds to.
+        names: The heuristics.
+        weight: Of the estimates; infinite is greedy search.
+        random: Shuffles operators that look alike; 0 keeps to their order. The older of equal
+            states then comes first, the younger otherwise.
+        achievers: Whether operators that reach a landmark for the first time are preferred too.
+    """
+
+    def __init__(
+        self,
+        search: SearchSpace,
+        names: Sequence[str],
+        weight: float,
+        random: int = 0,
+        achievers: bool = False,
+    ) -> None:
         from tamp.symbolic.search.packed import compiled
 
         self._compiled = compiled
@@ -65,7 +85,9 @@ class _PackedSearch:
         self._space, self._ints, self._reals = arena.begin(t, r, FIRST_NODES, entries)
         self._goal_price = GoalPrice(s)
         self._goal_cost = math.inf
+        self._seen = 0, 0
         self._begin(kinds)
+        self._ints[loops.RANDOM], self._ints[loops.ACHIEVERS] = random, achievers
 
     def _begin(self, kinds: int) -> None:
         """Set the counters, and put the initial state into the usual list of each heuristic."""
@@ -81,8 +103,20 @@ class _PackedSearch:
             reals[space.keys + place] = ints[space.ties + place] = ints[space.items + place] = 0
             ints[loops.SIZES + k] = 1
 
-    def plan(self) -> Plan | None:
-        """Run the loop until there is a plan, or nothing is left, or a limit is reached."""
+    @property
+    def expanded(self) -> int:
+        """Return how many states this search itself has expanded."""
+        return int(self._ints[loops.EXPANDED])
+
+    def plan(self, until: int = UNLIMITED) -> Plan | None:
+        """Run the loop until there is a plan, or nothing is left, or a limit is reached.
+
+        Args:
+            until: Expanded states after which the search pauses; it can go on later.
+
+        Raises:
+            Stalled: So many are expanded.
+        """
         search = self._search
         if not self._possible:
             search.evaluated = 1
@@ -90,11 +124,11 @@ class _PackedSearch:
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
         while True:
             n = self._ints
-            n[loops.UNTIL] = self._until()
+            n[loops.UNTIL] = self._until(until)
             why = self._compiled.RUN(
                 n, self._reals, self._t, self._r, self._x, self._space, self._weight, search.below
             )
-            search.expanded, search.evaluated = int(n[loops.EXPANDED]), int(n[loops.EVALUATED])
+            self._count()
             if why == loops.EXHAUSTED:
                 return None
             if why == loops.FOUND:
@@ -108,12 +142,20 @@ class _PackedSearch:
                 self._grow()
             else:
                 self._look_around()
+                if self.expanded >= until:
+                    raise Stalled
 
-    def _until(self) -> int:
+    def _count(self) -> None:
+        """Add to the counts of all searches what this one has done since."""
+        expanded, evaluated = self.expanded, int(self._ints[loops.EVALUATED])
+        self._search.expanded += expanded - self._seen[0]
+        self._search.evaluated += evaluated - self._seen[1]
+        self._seen = expanded, evaluated
+
+    def _until(self, most: int) -> int:
         """Return after how many expanded states the loop is to stop."""
-        search = self._search
-        until = search.expanded + LOOK_AROUND
-        if search.expanded < AUDIT_AFTER_STATES:
+        until = min(most, self.expanded + LOOK_AROUND)
+        if self.expanded < AUDIT_AFTER_STATES:
             until = min(until, AUDIT_AFTER_STATES)
         return until
 

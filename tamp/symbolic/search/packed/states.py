@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.packed.estimates import holds, trigger
+from tamp.symbolic.search.packed.basics import has, holds
+from tamp.symbolic.search.packed.estimates import trigger
 
 
 def close_state(ints, t, state):
@@ -119,24 +120,57 @@ def preferred(ints, t, x, space, node, closed, length):
         lost, gained = 0, 0
         for b in range(length):
             j = ints[x.plan + b]
-            if j == i:
-                continue
+            if j == i or not ints[t.eff_touched + i] & ints[t.pre_touched + j]:
+                continue  # what the one changes is nothing that the other asks for
             possible = holds(ints, t.pre_starts, t.pre_words, t.pre_need, t.pre_absent, j, x.after)
             if ints[x.is_applicable + j]:
                 lost += not possible
             else:
                 gained += possible
-        rank = (lost * (length + 1) + length - gained) * t.operators + i
+        rank = lost * (length + 1) + length - gained
         k = count
         while k > 0 and ints[x.ranks + k - 1] > rank:
             ints[x.ranks + k] = ints[x.ranks + k - 1]
+            ints[x.helpful + k] = ints[x.helpful + k - 1]
             k -= 1
         ints[x.ranks + k] = rank
+        ints[x.helpful + k] = i
         count += 1
     for k in range(count):
-        ints[x.helpful + k] = ints[x.ranks + k] % t.operators
         ints[x.is_helpful + ints[x.helpful + k]] = 1
     return count
+
+
+def achievers(ints, t, r, x, space, node, helpful, length):
+    """Add to the preferred operators those that reach a landmark for the first time; return all."""
+    for w in range(t.words):
+        ints[x.other + w] = 0
+    for k in range(r.marks):
+        fact = ints[r.mark_facts + k]
+        if not ints[r.mark_absent + k] and not has(ints, space.marks + node * r.mark_words, k):
+            ints[x.other + (fact >> 6)] |= 1 << (fact & 63)
+    for a in range(length):
+        i = ints[x.applicable + a]
+        for k in range(ints[t.eff_starts + i], ints[t.eff_starts + i + 1]):
+            new = ints[t.eff_add + k] & ints[x.other + ints[t.eff_words + k]]
+            if new != 0 and not ints[x.is_helpful + i]:
+                ints[x.is_helpful + i] = 1
+                ints[x.helpful + helpful] = i
+                helpful += 1
+    return helpful
+
+
+def shuffle(ints, random, first, length):
+    """Shuffle so many numbers by a xorshift generator (Marsaglia 2003); return its new state."""
+    for k in range(length - 1, 0, -1):
+        random ^= random << 13
+        random ^= (random >> 7) & 0x1FFFFFFFFFFFFFF
+        random ^= random << 17
+        other = ((random >> 3) & 0xFFFFFFFFFFFFFFF) % (k + 1)
+        kept = ints[first + k]
+        ints[first + k] = ints[first + other]
+        ints[first + other] = kept
+    return random
 
 
 def covers(ints, t, closed):
