@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 
-from tamp.symbolic.algorithms.binding.levels import Level, Levels, users_of
+from tamp.symbolic.algorithms.binding.levels import Level, Levels
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
@@ -53,9 +53,9 @@ class Binder:
             holds: Has the last word on values for all variables; what it refuses is not returned.
         """
         nodes = skeleton.nodes
-        makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
+        makers = skeleton.makers
         values: dict[int, str] = {}
-        levels = Levels(users_of(nodes, makers), fresh)
+        levels = Levels(skeleton.users, fresh)
 
         spent_before = self.draws
         self._met.clear()

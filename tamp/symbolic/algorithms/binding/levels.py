@@ -13,8 +13,6 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
 
-from tamp.symbolic.algorithms.binding.skeleton import Node
-
 
 @dataclass
 class Level:
@@ -23,18 +21,6 @@ class Level:
     candidates: Iterator[tuple[str, ...]]
     conflict: set[int]
     culprits: set[int] = field(default_factory=set[int])
-
-
-def users_of(nodes: Sequence[Node], makers: dict[int, int]) -> list[list[int]]:
-    """List for each node the later ones that take, or are shown, what it puts out."""
-    users: list[list[int]] = [[] for _ in nodes]
-    for index, node in enumerate(nodes):
-        seen = {makers[term] for term in node.inputs if isinstance(term, int)}
-        for (_, terms), _ in node.fluents:
-            seen.update(makers[term] for term in terms if isinstance(term, int) and term in makers)
-        for maker in seen:
-            users[maker].append(index)
-    return users
 
 
 class Levels:
