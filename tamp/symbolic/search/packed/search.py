@@ -23,8 +23,9 @@ from tamp.symbolic.search.successors import State, Successors
 KINDS = {"ff": 0, "landmarks": 1}
 """The heuristics that the compiled loop knows, by their numbers."""
 
-LOOK_AROUND = 100
-"""States after which it is asked whether the time is up."""
+LOOK_AROUND, MOST_ENTRIES = 100, 2_000_000
+"""States, and numbers that describe the task for each of them, after which it is asked whether the
+time is up: some hundredths of a second."""
 
 UNLIMITED = 1 << 62
 
@@ -86,6 +87,7 @@ class PackedSearch:
         self._goal_price = GoalPrice(s)
         self._goal_cost = math.inf
         self._seen = 0, 0
+        self._pace = max(1, min(LOOK_AROUND, MOST_ENTRIES // (1 + s.entries)))
         self._begin(kinds)
         self._ints[loops.RANDOM], self._ints[loops.ACHIEVERS] = random, achievers
 
@@ -154,7 +156,7 @@ class PackedSearch:
 
     def _until(self, most: int) -> int:
         """Return after how many expanded states the loop is to stop."""
-        until = min(most, self.expanded + LOOK_AROUND)
+        until = min(most, self.expanded + self._pace)
         if self.expanded < AUDIT_AFTER_STATES:
             until = min(until, AUDIT_AFTER_STATES)
         return until
