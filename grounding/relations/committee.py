@@ -1,0 +1,131 @@
+"""A committee of short conjunctions of intervals: which measures of the demonstrations are no
+coincidence.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grounding.relations.catalogue import catalogue, measure
+from grounding.relations.evidence import CLASSIFYING, Bounds, Evidence, Settings, centred
+from grounding.relations.search import conjunctions
+from grounding.relations.situation import Situations
+from tamp.geometric.scene.pose import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Committee:
+    """Conjunctions and their weights.
+
+    Attributes:
+        arguments: Of the relation.
+        used: Columns of the catalogue that are looked at, (u,).
+        zero: Middle of each measure's circle where it is an angle, by column of the catalogue,
+            (f,).
+        conditions: Rows of `used` of each member's conditions, -1 for none, (members, depth).
+        low: Bounds, (members, depth).
+        high: The same.
+        soft: What one step beyond a bound is, (members, depth).
+        weights: Of the members, sum 1, (members,).
+        scores: Their evidence in nats, (members,).
+        typical: Columns of the catalogue in which the demonstrations are alike, (t,).
+        median: Of the demonstrations in these, (t,).
+        spread: Their mean deviation and the resolution, (t,).
+        above: Whether less is never worse there, (t,).
+    """
+
+    arguments: int
+    used: NDArray[np.int64]
+    zero: Array
+    conditions: NDArray[np.int64]
+    low: Array
+    high: Array
+    soft: Array
+    weights: Array
+    scores: Array
+    typical: NDArray[np.int64]
+    median: Array
+    spread: Array
+    above: NDArray[np.bool_]
+    _period: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        period = np.array([one.period for one in catalogue(self.arguments)])
+        object.__setattr__(self, "_period", period)
+
+    def centred(self, values: Array) -> Array:
+        """Return measures with angles about the middle of the demonstrations'."""
+        return centred(values, self._period, self.zero)
+
+    def votes(self, values: Array) -> Array:
+        """Return each member's probability by centred measures (n, f), shape (n, members)."""
+        x = values[:, self.used[self.conditions]]
+        z = np.minimum(x - self.low, self.high - x) / self.soft
+        z = np.where(self.conditions >= 0, z, 2.0).min(axis=2)
+        empty = (self.conditions < 0).all(axis=1)
+        voted = 1.0 / (1.0 + np.exp(-np.clip(2.0 * z, -30.0, 30.0)))
+        return np.where(empty, 0.5, voted)
+
+    def predict(self, situations: Situations) -> Array:
+        """Return the probability that the relation holds in each situation, (n,)."""
+        return self.votes(self.centred(measure(situations))) @ self.weights
+
+    def margin(self, values: Array, like: float) -> Array:
+        """Return how far inside the members' bounds situations are, and how like the
+        demonstrations: what proposals are ranked by, (n,).
+        """
+        strong = self.weights > 0.01
+        conditions = self.conditions[strong]
+        x = values[:, self.used[conditions]]
+        z = np.minimum(x - self.low[strong], self.high[strong] - x) / self.soft[strong]
+        z = np.where(conditions >= 0, z, 2.0)
+        each = 2.0 * np.minimum(z, 0.0).sum(axis=2) + np.minimum(z, 2.0).min(axis=2)
+
+        off = values[:, self.typical] - self.median
+        off = np.where(self.above, off, np.abs(off)) / self.spread
+        return each @ self.weights[strong] - like * np.minimum(off, 4.0).sum(axis=1)
+
+
+def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
+    """Find the conjunctions that explain demonstrations, and weigh them."""
+    e, s = evidence, settings
+    bounds = Bounds.of(e, s)
+    found = conjunctions(e, s, bounds)
+
+    used = sorted({column for one in found.members for column in one}) or [0]
+    row = {column: index for index, column in enumerate(used)}
+    shape = (len(found.members), max([1, *map(len, found.members)]))
+    conditions = np.full(shape, -1, dtype=np.int64)
+    low, high, soft = np.full(shape, -np.inf), np.full(shape, np.inf), np.ones(shape)
+    for index, one in enumerate(found.members):
+        columns = list(one)
+        conditions[index, : len(one)] = [row[column] for column in columns]
+        low[index, : len(one)], high[index, : len(one)] = bounds.tightened(e, s, columns)
+        soft[index, : len(one)] = bounds.soft[columns]
+
+    cost = np.array([one.cost for one in e.measures])
+    gain = -np.log(bounds.within(e.base).mean(axis=0) + 0.01) - cost
+    typical = np.array([c for c in np.argsort(-gain)[:8] if gain[c] > 1.0 and e.allowed[c]], dtype=np.int64)
+    median = np.median(e.good, axis=0)
+    spread = bounds.scale + np.abs(e.good - median).mean(axis=0)
+
+    return Committee(
+        arguments=next(k for k in range(1, 9) if len(catalogue(k)) == len(e.measures)),
+        used=np.array(used, dtype=np.int64),
+        zero=e.zero,
+        conditions=conditions,
+        low=low,
+        high=high,
+        soft=soft,
+        weights=found.weights,
+        scores=found.scores,
+        typical=typical,
+        median=median[typical],
+        spread=spread[typical],
+        above=bounds.open_below[typical],
+    )
+
+

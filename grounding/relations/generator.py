@@ -1,0 +1,183 @@
+"""A generator: demonstrations carried over in the charts that the committee likes best, refined."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator as Random
+
+from grounding.relations.carrying import carry, trouble
+from grounding.relations.catalogue import measure
+from grounding.relations.chance import about_z, chance, drop, floor_of, highest
+from grounding.relations.charts import FREE, Carried, carried, charts
+from grounding.relations.committee import Committee
+from grounding.relations.situation import Situations
+from tamp.geometric.scene.pose import Array
+
+KEPT = 5
+"""Charts that are kept."""
+
+TRIED = 14
+"""Demonstrations, each in a chance situation, by which a chart is judged."""
+
+LIKE = 0.1
+"""Weight of being like the demonstrations, against being within the bounds."""
+
+FIRST, BEST, EACH = 32, 8, 3
+"""Candidates of a proposal; those that are refined; and how often each."""
+
+APART = (0.01, 0.15)
+"""Proposals of one call differ by so much, metres or radians."""
+
+ANY_WAY = np.zeros((0, 3))
+"""Down vectors of a body that may be put down in any way."""
+
+
+@dataclass(frozen=True, eq=False)
+class Generator:
+    """Proposes where argument 0 goes.
+
+    Attributes:
+        committee: What ranks proposals.
+        shown: Demonstrations in the charts that are kept.
+        level: What it is put onto: 0 for the furniture, j for the top of argument j, -j for the
+            floor of it.
+        steady: Whether it stands on a stable face wherever it was shown.
+    """
+
+    committee: Committee
+    shown: Carried
+    level: int
+    steady: bool
+
+    def propose(
+        self,
+        scene: Situations,
+        count: int,
+        rng: Random,
+        steady: Array = ANY_WAY,
+        blocked: Array | None = None,
+    ) -> tuple[Array, Array]:
+        """Propose at most `count` places of argument 0, the best first.
+
+        Args:
+            scene: One situation; argument 0 is anywhere.
+            count: How many.
+            rng: The only source of randomness.
+            steady: Down vectors of the ways in which it stands, in its own frame, (s, 3).
+            blocked: Not used by the relation: see `grounding.relations.grounding`.
+
+        Returns:
+            Rotations (n, 3, 3) and positions of the middle of its box (n, 3), T_world.
+        """
+        n = FIRST + 3 * (count - 1)
+        s = self._first(scene, n, rng)
+        score = self._score(s, steady)
+
+        best = np.argsort(-score, kind="stable")[: max(BEST, count)]
+        more = s.rows(np.repeat(best, EACH))
+        more.p[:, 0, :2] += rng.normal(0, 0.015, (len(more), 2))
+        more.R[:, 0] = about_z(rng.normal(0, 0.1, len(more))) @ more.R[:, 0]
+        drop(more, self._onto(more))
+
+        score = np.concatenate([score[best], self._score(more, steady)])
+        R = np.concatenate([s.R[best, 0], more.R[:, 0]])
+        p = np.concatenate([s.p[best, 0], more.p[:, 0]])
+        return _spread(R, p, score, count)
+
+    def _first(self, scene: Situations, n: int, rng: Random) -> Situations:
+        """Carry demonstrations over, or what is between two of them."""
+        s = scene.rows(np.zeros(n, dtype=np.intp))
+        chart = np.arange(n) % len(self.shown.codes)
+        one, other = rng.integers(0, len(self.shown.R), (2, n))
+        mix = np.where(rng.random(n) < 0.5, rng.uniform(0, 0.6, n), 0.0)[:, None]
+
+        outside = self.shown.outside[chart, one]
+        same = (outside == self.shown.outside[chart, other]).all(axis=1)[:, None]
+        first, second = self.shown.place[chart, one], self.shown.place[chart, other]
+        place = np.where(same, (1 - mix) * first + mix * second, first)
+        carry(
+            s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support,
+            self.shown.codes[chart], place, outside, self.shown.yaw[chart, one],
+            self.shown.R[one], rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)),
+            self._onto(s),
+        )  # fmt: skip
+        return s
+
+    def _onto(self, s: Situations) -> Array:
+        return onto(s, self.level)
+
+    def _score(self, s: Situations, steady: Array) -> Array:
+        """Return how good places are, (n,)."""
+        bad = np.empty(len(s))
+        down = steady if self.steady else ANY_WAY
+        trouble(
+            s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support, self._onto(s), down, bad
+        )
+        values = self.committee.centred(measure(s))
+        return self.committee.margin(values, LIKE) - 300.0 * bad
+
+
+def onto(s: Situations, level: int) -> Array:
+    """Return the height of what a level means, (n,)."""
+    if level == 0:
+        return s.support[:, 0].copy()
+    return highest(s, level) if level > 0 else floor_of(s, -level)
+
+
+def level_of(shown: Situations) -> int:
+    """Find what argument 0 stands on wherever it was shown."""
+    k = shown.arguments
+    hollow = (shown.inner[shown.shape, 3] > 0).all(axis=0)
+    levels = [0, *range(1, k), *(-j for j in range(1, k) if hollow[j])]
+
+    def missed(level: int) -> float:
+        moved = shown.rows(np.arange(len(shown)))
+        drop(moved, onto(moved, level))
+        return float(np.median(np.abs(moved.p[:, 0, 2] - shown.p[:, 0, 2])))
+
+    return min(levels, key=lambda level: missed(level) + 0.002 * levels.index(level))
+
+
+def learned(
+    committee: Committee, shown: Situations, rng: Random, steady: bool = True
+) -> Generator:
+    """Choose the charts in which carried demonstrations please the committee most."""
+    level = level_of(shown)
+    every = carried(shown, charts(shown.arguments))
+    rows = rng.integers(0, len(shown), TRIED)
+    target = chance(shown, rng, TRIED)
+    scores = [_liked(committee, every, chart, rows, target, level, rng) for chart in range(len(every.codes))]
+    best = np.argsort(-np.array(scores), kind="stable")[:KEPT]
+    return Generator(committee, every.chosen(best), level, steady)
+
+
+def _liked(
+    committee: Committee, every: Carried, chart: int, rows: Array, target: Situations, level: int,
+    rng: Random,
+) -> float:  # fmt: skip
+    s, n = target.rows(np.arange(len(target))), len(target)
+    codes = np.repeat(every.codes[chart][None], n, axis=0)
+    carry(
+        s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support, codes, every.place[chart, rows],
+        every.outside[chart, rows], every.yaw[chart, rows], every.R[rows],
+        rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)), onto(s, level),
+    )  # fmt: skip
+    free = 0.02 * (codes[0, 1] == FREE) + 0.02 * (codes[0, 3] == FREE)
+    return float(committee.predict(s).mean()) + free
+
+
+def _spread(R: Array, p: Array, score: Array, count: int) -> tuple[Array, Array]:
+    """Take the best that are apart from each other."""
+    taken: list[int] = []
+    for row in np.argsort(-score, kind="stable").tolist():
+        if len(taken) == count:
+            break
+        if taken:
+            near = np.abs(p[taken] - p[row]).max(axis=1) < APART[0]
+            same = np.einsum("nij,ij->n", R[taken], R[row]) > 1 + 2 * np.cos(APART[1])
+            if (near & same).any():
+                continue
+        taken.append(row)
+    return R[taken], p[taken]
