@@ -11,9 +11,15 @@ from numpy.typing import NDArray
 
 from grounding.relations.catalogue import catalogue, measure
 from grounding.relations.evidence import CLASSIFYING, Bounds, Evidence, Settings, centred
-from grounding.relations.search import conjunctions
+from grounding.relations.search import conjunctions, prices
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
+
+TYPICAL = 8
+"""Measures in which proposals are to be like the demonstrations, at most."""
+
+WORTH = 0.5
+"""Nats that one of them adds at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +88,8 @@ class Committee:
         x = values[:, self.used[conditions]]
         z = np.minimum(x - self.low[strong], self.high[strong] - x) / self.soft[strong]
         z = np.where(conditions >= 0, z, 2.0)
-        each = 2.0 * np.minimum(z, 0.0).sum(axis=2) + np.minimum(z, 2.0).min(axis=2)
+        deep = np.minimum(z, 2.0) + 1.0 * np.log(np.maximum(z, 2.0) / 2.0)
+        each = 2.0 * np.minimum(z, 0.0).sum(axis=2) + deep.min(axis=2)
 
         off = values[:, self.typical] - self.median
         off = np.where(self.above, off, np.abs(off)) / self.spread
@@ -106,9 +113,7 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
         low[index, : len(one)], high[index, : len(one)] = bounds.tightened(e, s, columns)
         soft[index, : len(one)] = bounds.soft[columns]
 
-    cost = np.array([one.cost for one in e.measures])
-    gain = -np.log(bounds.within(e.base).mean(axis=0) + 0.01) - cost
-    typical = np.array([c for c in np.argsort(-gain)[:8] if gain[c] > 1.0 and e.allowed[c]], dtype=np.int64)
+    typical = np.array(_typical(e, s, bounds), dtype=np.int64)
     median = np.median(e.good, axis=0)
     spread = bounds.scale + np.abs(e.good - median).mean(axis=0)
 
@@ -129,3 +134,21 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
     )
 
 
+
+
+def _typical(e: Evidence, s: Settings, bounds: Bounds) -> list[int]:
+    """Choose measures in which the demonstrations are alike and chance is not, each beside the
+    others.
+    """
+    inside = bounds.within(e.base)
+    prior = prices(e, s, bounds)
+    left, chosen = np.ones(len(inside), dtype=bool), list[int]()
+    while len(chosen) < TYPICAL and left.sum() > 20:
+        gain = -np.log(inside[left].mean(axis=0) + 0.02) - 0.5 * prior
+        gain[chosen] = -np.inf
+        best = int(np.argmax(gain))
+        if gain[best] < WORTH:
+            break
+        chosen.append(best)
+        left &= inside[:, best]
+    return chosen

@@ -21,7 +21,7 @@ KEPT = 5
 TRIED = 14
 """Demonstrations, each in a chance situation, by which a chart is judged."""
 
-LIKE = 0.1
+LIKE = 0.4
 """Weight of being like the demonstrations, against being within the bounds."""
 
 FIRST, BEST, EACH = 32, 8, 3

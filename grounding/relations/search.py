@@ -35,7 +35,7 @@ class _Partial:
 def conjunctions(e: Evidence, s: Settings, bounds: Bounds) -> Found:
     """Search for conjunctions; a condition pays by what chance and the negatives do not give."""
     in_base, in_bad = bounds.within(e.base), bounds.within(e.bad)
-    price = _prices(e, s, bounds, in_bad)
+    price = prices(e, s, bounds) + (s.small if len(e.bad) else s.small_alone)
     base_columns, bad_columns = in_base.astype(np.float32), in_bad.astype(np.float32)
     worth = min(len(e.good), s.cap) / (1 + len(e.bad) / s.fade)
 
@@ -70,11 +70,11 @@ def conjunctions(e: Evidence, s: Settings, bounds: Bounds) -> Found:
     return Found([tuple(sorted(key)) for key, _ in ranked], weights / weights.sum(), scores)
 
 
-def _prices(e: Evidence, s: Settings, bounds: Bounds, in_bad: NDArray[np.bool_]) -> Array:
-    """Return the nats that each condition costs, (f,)."""
+def prices(e: Evidence, s: Settings, bounds: Bounds) -> Array:
+    """Return the nats that each condition costs beside what all cost, (f,)."""
+    in_bad = bounds.within(e.bad)
     kinds = np.array([one.kind for one in e.measures])
     price = np.array([one.cost for one in e.measures]) + RIGHT * bounds.missed
-    price += s.small if len(e.bad) else s.small_alone
     if len(e.bad) > ENOUGH:
         price += s.idle * (in_bad.mean(axis=0) > 0.85)  # nobody varied it: no evidence
     price += s.idle * ((kinds == "turn") & (e.good.std(axis=0) < UNTOUCHED))
