@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from grounding.registry import RELATIONS
+from grounding.relations.options import New, check_name
 from tamp.errors import InputError
 from tamp.system.options import read_command
 
@@ -144,9 +145,10 @@ class Evaluate:
     """Of the scenes' order and of the draws."""
 
 
-Arguments = Generate | Explore | Collect | Encoder | Train | Evaluate
+Arguments = New | Generate | Explore | Collect | Encoder | Train | Evaluate
 
 COMMANDS = {
+    "new": New,
     "generate": Generate,
     "explore": Explore,
     "collect": Collect,
@@ -175,6 +177,8 @@ def parsed(arguments: list[str]) -> Arguments:
 
 
 def _check(chosen: Arguments) -> None:
+    if isinstance(chosen, New):
+        check_name(chosen.relation)
     if (
         isinstance(chosen, Generate | Explore | Encoder | Train)
         and chosen.relation not in RELATIONS

@@ -17,6 +17,7 @@ from grounding.arguments import (
     Evaluate,
     Explore,
     Generate,
+    New,
     Train,
     data_file,
     parsed,
@@ -68,7 +69,11 @@ def run(shown: Progress, arguments: list[str]) -> int:
     chosen = parsed(arguments)
     shown.quiet = False
     show = partial(_show, shown=shown)
-    if isinstance(chosen, Generate):
+    if isinstance(chosen, New):
+        from grounding.relations.cli_new import new
+
+        new(chosen)
+    elif isinstance(chosen, Generate):
         _generate(chosen, show)
     elif isinstance(chosen, Explore):
         _explore(chosen, show)

@@ -1,16 +1,20 @@
 """True geometry of boxes, cylinders and open boxes, which shares nothing with what is measured.
 
-A batch of scenes is a dict of arrays, first axis n: half sides h (n, k, 3), whether it is a cylinder (n, k), wall of open
-boxes (n, k), rotations R (n, k, 3, 3), positions p (n, k, 3) of the k arguments; of the table its top, yaw (its front looks
-along -y), centre and half sides. The first argument is the one that is placed. Metres, radians.
+A batch of scenes is a dict of arrays, first axis n: half sides h (n, k, 3), whether it is a cylinder (n, k), wall of
+open boxes (n, k), rotations R (n, k, 3, 3), positions p (n, k, 3) of the k arguments; of the table its top, yaw (its
+front looks along -y), centre and half sides. The first argument is the one that is placed. Metres, radians.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from grounding.relations.situation import Shape, Situations
-from tamp.geometric.scene.pose import Array
+
+Array = NDArray[Any]
 
 Batch = dict[str, Array]
 
@@ -31,7 +35,7 @@ def about(axis: Array, angle: Array) -> Array:
     return np.eye(3) + np.sin(angle)[:, None, None] * k + (1 - np.cos(angle))[:, None, None] * (k @ k)
 
 
-def pick(s: Batch, rows: object) -> Batch:
+def pick(s: Batch, rows: Any) -> Batch:
     return {key: value[rows].copy() for key, value in s.items()}
 
 

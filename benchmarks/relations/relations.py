@@ -13,6 +13,7 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from benchmarks.relations.geometry import (
+    Array,
     Batch,
     about,
     about_z,
@@ -33,7 +34,6 @@ from benchmarks.relations.geometry import (
     tilt,
     wrap,
 )
-from tamp.geometric.scene.pose import Array
 
 FACES = np.array(
     [

@@ -1,4 +1,4 @@
-"""Compiled carrying over: coordinates of demonstrations in charts, and poses of these coordinates."""
+"""Carrying over, compiled: coordinates of demonstrations in charts, and poses of these."""
 
 from __future__ import annotations
 

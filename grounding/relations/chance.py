@@ -27,8 +27,8 @@ FACES = np.array(
 """Rotations that set a body onto each of its six sides, (6, 3, 3)."""
 
 NEAR, FAR = 0.2, 0.4
-"""Shares of near misses (one thing of a right one is wrong) and of what lies anywhere; the rest lies
-close to another argument.
+"""Shares of near misses (one thing of a right one is wrong) and of what lies anywhere; the rest
+lies close to another argument.
 """
 
 

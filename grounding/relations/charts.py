@@ -16,10 +16,22 @@ from tamp.geometric.scene.pose import Array
 FREE = -1
 """In the place of a frame: any angle."""
 
-MODES = ("middle", "edge", "share", "room", "gap", "line", "anywhere", "left", "right", "front", "rear")
-"""How the position is carried over: the offset of the middles, of the edges, as a share of the other
-body's half width, of the room inside it, as the gap in a direction, along a line; and on furniture
-anywhere, or so far from one of its edges.
+MODES = (
+    "middle",
+    "edge",
+    "share",
+    "room",
+    "gap",
+    "line",
+    "anywhere",
+    "left",
+    "right",
+    "front",
+    "rear",
+)
+"""The ways in which a position is carried over: the offset of the middles, of the edges, as a
+share of the other body's half width, of the room inside it, as the gap in a direction, along a
+line; and on furniture anywhere, or so far from one of its edges.
 """
 
 FURNITURE_MODES = MODES[6:]

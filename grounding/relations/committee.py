@@ -134,8 +134,6 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
     )
 
 
-
-
 def _typical(e: Evidence, s: Settings, bounds: Bounds) -> list[int]:
     """Choose measures in which the demonstrations are alike and chance is not, each beside the
     others.

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator as Random
+from numpy.typing import NDArray
 
 from grounding.relations.carrying import carry, trouble
 from grounding.relations.catalogue import measure
@@ -26,6 +28,14 @@ LIKE = 0.4
 
 FIRST, BEST, EACH = 32, 8, 3
 """Candidates of a proposal; those that are refined; and how often each."""
+
+OTHERWISE = 0.3
+"""Share of candidates that stand on another stable face than it was shown, where several are
+wanted.
+"""
+
+GOOD = -1.0
+"""A score from which on a place is worth trying though others are better."""
 
 APART = (0.01, 0.15)
 """Proposals of one call differ by so much, metres or radians."""
@@ -57,7 +67,7 @@ class Generator:
         count: int,
         rng: Random,
         steady: Array = ANY_WAY,
-        blocked: Array | None = None,
+        blocked: Callable[[Array, Array], Array] | None = None,
     ) -> tuple[Array, Array]:
         """Propose at most `count` places of argument 0, the best first.
 
@@ -66,14 +76,14 @@ class Generator:
             count: How many.
             rng: The only source of randomness.
             steady: Down vectors of the ways in which it stands, in its own frame, (s, 3).
-            blocked: Not used by the relation: see `grounding.relations.grounding`.
+            blocked: By how many metres places (n, 3, 3) and (n, 3) are in something else, (n,).
 
         Returns:
             Rotations (n, 3, 3) and positions of the middle of its box (n, 3), T_world.
         """
         n = FIRST + 3 * (count - 1)
-        s = self._first(scene, n, rng)
-        score = self._score(s, steady)
+        s = self._first(scene, n, rng, steady if count > 1 else ANY_WAY)
+        score = self._score(s, steady, blocked)
 
         best = np.argsort(-score, kind="stable")[: max(BEST, count)]
         more = s.rows(np.repeat(best, EACH))
@@ -81,13 +91,22 @@ class Generator:
         more.R[:, 0] = about_z(rng.normal(0, 0.1, len(more))) @ more.R[:, 0]
         drop(more, self._onto(more))
 
-        score = np.concatenate([score[best], self._score(more, steady)])
+        score = np.concatenate([score[best], self._score(more, steady, blocked)])
         R = np.concatenate([s.R[best, 0], more.R[:, 0]])
         p = np.concatenate([s.p[best, 0], more.p[:, 0]])
-        return _spread(R, p, score, count)
+        if count == 1:
+            return _spread(R, p, np.argsort(-score, kind="stable"), 1)
+        return _spread(R, p, self._varied(score, rng), count)
 
-    def _first(self, scene: Situations, n: int, rng: Random) -> Situations:
-        """Carry demonstrations over, or what is between two of them."""
+    def _varied(self, score: Array, rng: Random) -> NDArray[np.intp]:
+        """Order places: the best, and in turns any one that is good, and the next best."""
+        ranked = np.argsort(-score, kind="stable")
+        fine = rng.permutation(np.flatnonzero(score > GOOD))
+        mixed = [row for pair in zip(ranked, fine, strict=False) for row in pair]
+        return np.array([*dict.fromkeys([*mixed, *ranked.tolist()])], dtype=np.intp)
+
+    def _first(self, scene: Situations, n: int, rng: Random, steady: Array) -> Situations:
+        """Carry demonstrations over, or what is between two of them, some on another face."""
         s = scene.rows(np.zeros(n, dtype=np.intp))
         chart = np.arange(n) % len(self.shown.codes)
         one, other = rng.integers(0, len(self.shown.R), (2, n))
@@ -97,10 +116,14 @@ class Generator:
         same = (outside == self.shown.outside[chart, other]).all(axis=1)[:, None]
         first, second = self.shown.place[chart, one], self.shown.place[chart, other]
         place = np.where(same, (1 - mix) * first + mix * second, first)
+        rotation = self.shown.R[one].copy()
+        if self.steady and len(steady):
+            turned = np.flatnonzero(rng.random(n) < OTHERWISE)
+            rotation[turned] = _standing(steady[rng.integers(0, len(steady), len(turned))], rng)
         carry(
             s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support,
             self.shown.codes[chart], place, outside, self.shown.yaw[chart, one],
-            self.shown.R[one], rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)),
+            rotation, rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)),
             self._onto(s),
         )  # fmt: skip
         return s
@@ -108,13 +131,17 @@ class Generator:
     def _onto(self, s: Situations) -> Array:
         return onto(s, self.level)
 
-    def _score(self, s: Situations, steady: Array) -> Array:
+    def _score(
+        self, s: Situations, steady: Array, blocked: Callable[[Array, Array], Array] | None
+    ) -> Array:
         """Return how good places are, (n,)."""
         bad = np.empty(len(s))
         down = steady if self.steady else ANY_WAY
         trouble(
             s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support, self._onto(s), down, bad
         )
+        if blocked is not None:
+            bad += blocked(s.R[:, 0], s.p[:, 0])
         values = self.committee.centred(measure(s))
         return self.committee.margin(values, LIKE) - 300.0 * bad
 
@@ -140,23 +167,29 @@ def level_of(shown: Situations) -> int:
     return min(levels, key=lambda level: missed(level) + 0.002 * levels.index(level))
 
 
-def learned(
-    committee: Committee, shown: Situations, rng: Random, steady: bool = True
-) -> Generator:
+def learned(committee: Committee, shown: Situations, rng: Random, steady: bool = True) -> Generator:
     """Choose the charts in which carried demonstrations please the committee most."""
     level = level_of(shown)
     every = carried(shown, charts(shown.arguments))
     rows = rng.integers(0, len(shown), TRIED)
     target = chance(shown, rng, TRIED)
-    scores = [_liked(committee, every, chart, rows, target, level, rng) for chart in range(len(every.codes))]
+    scores = [
+        _liked(committee, every, chart, rows, target, level, rng)
+        for chart in range(len(every.codes))
+    ]
     best = np.argsort(-np.array(scores), kind="stable")[:KEPT]
     return Generator(committee, every.chosen(best), level, steady)
 
 
 def _liked(
-    committee: Committee, every: Carried, chart: int, rows: Array, target: Situations, level: int,
+    committee: Committee,
+    every: Carried,
+    chart: int,
+    rows: NDArray[np.intp],
+    target: Situations,
+    level: int,
     rng: Random,
-) -> float:  # fmt: skip
+) -> float:
     s, n = target.rows(np.arange(len(target))), len(target)
     codes = np.repeat(every.codes[chart][None], n, axis=0)
     carry(
@@ -168,10 +201,19 @@ def _liked(
     return float(committee.predict(s).mean()) + free
 
 
-def _spread(R: Array, p: Array, score: Array, count: int) -> tuple[Array, Array]:
-    """Take the best that are apart from each other."""
+def _standing(down: Array, rng: Random) -> Array:
+    """Return rotations that turn vectors of a body's frame (n, 3) down, at any yaw, (n, 3, 3)."""
+    side = np.where(np.abs(down[:, :1]) < 0.9, np.eye(3)[0], np.eye(3)[1])
+    x = np.cross(down, side)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    R = np.stack([x, np.cross(x, down), -down], axis=1)
+    return np.asarray(about_z(rng.uniform(-np.pi, np.pi, len(down))) @ R, dtype=float)
+
+
+def _spread(R: Array, p: Array, order: NDArray[np.intp], count: int) -> tuple[Array, Array]:
+    """Take the first that are apart from each other."""
     taken: list[int] = []
-    for row in np.argsort(-score, kind="stable").tolist():
+    for row in order.tolist():
         if len(taken) == count:
             break
         if taken:
