@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from grounding.relations.carrying import coordinates_of
 from grounding.relations.catalogue import frame_names
+from grounding.relations.measure_kernels import heading
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
 
@@ -35,6 +36,21 @@ line; and on furniture anywhere, or so far from one of its edges.
 """
 
 FURNITURE_MODES = MODES[6:]
+
+PERIODS, DEARER = (2 * np.pi, np.pi, np.pi / 2), (0.0, 0.5, 1.0)
+"""Angles in which a yaw may be the same again, radians, and nats against them."""
+
+MOST_AGREED = 2.0
+"""Nats of agreement that count, at most, of each coordinate."""
+
+UNNATURAL = 1.0
+"""Nats against the world's axes."""
+
+RESOLUTION = 0.012
+"""What a hand cannot place better than, metres."""
+
+HAND = 0.14
+"""The same of a yaw, radians."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +110,35 @@ class Carried:
         return Carried(
             self.codes[rows], self.place[rows], self.outside[rows], self.yaw[rows], self.R
         )
+
+
+def agreement(shown: Carried, base: Carried) -> Array:
+    """Return by how many nats demonstrations agree more in each chart's coordinates, and in the yaw
+    that it keeps, than chance does, (c,).
+    """
+    yaw = np.stack([_concentration(_yaws(shown), period) for period in PERIODS])
+    yaw = np.clip(yaw - np.array(DEARER)[:, None], 0.0, MOST_AGREED).max(axis=0)
+    yaw = np.where(shown.codes[:, 3] == FREE, 0.0, yaw)
+    yaw -= UNNATURAL * (shown.codes[:, 3] == 0)
+
+    ratio = base.place.std(axis=1) / (shown.place.std(axis=1) + RESOLUTION)
+    place = np.clip(np.log(np.maximum(ratio, 1e-9)), 0.0, MOST_AGREED)
+    place[:, 1] = np.where(shown.codes[:, 1] == FREE, 0.0, place[:, 1])
+    place = place.sum(axis=1) - UNNATURAL * (shown.codes[:, 1] == 0)
+    return yaw + np.where(shown.codes[:, 0] == 0, 0.0, place)
+
+
+def _yaws(shown: Carried) -> Array:
+    """Return the yaw of argument 0 against what each chart keeps it from, (c, d)."""
+    own = np.array([heading(R) for R in shown.R])
+    return own - shown.yaw
+
+
+def _concentration(angles: Array, period: float) -> Array:
+    """Return how much less angles (c, d) spread than any angles of a period would, nats, (c,)."""
+    length = np.abs(np.exp(2j * np.pi * angles / period).mean(axis=1))
+    spread = np.sqrt(-2.0 * np.log(np.clip(length, 1e-9, 1.0))) * period / (2 * np.pi)
+    return np.log(period / np.sqrt(12.0) / np.maximum(spread, HAND))
 
 
 def carried(shown: Situations, listed: list[Chart]) -> Carried:

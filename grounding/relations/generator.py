@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from grounding.relations.carrying import carry, trouble
 from grounding.relations.catalogue import measure
 from grounding.relations.chance import about_z, chance, drop, floor_of, highest
-from grounding.relations.charts import FREE, Carried, carried, charts
+from grounding.relations.charts import Carried, agreement, carried, charts
 from grounding.relations.committee import Committee
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
@@ -22,6 +22,14 @@ KEPT = 5
 
 TRIED = 14
 """Demonstrations, each in a chance situation, by which a chart is judged."""
+
+AGREEING, AGREED = 200, 0.04
+"""Chance situations against which demonstrations agree in a chart, and what a nat of that is worth,
+as a probability.
+"""
+
+BLENDED, MIDDLE = 0.5, 0.2
+"""Shares of candidates between two demonstrations, and in the middle of all on one side."""
 
 LIKE = 0.4
 """Weight of being like the demonstrations, against being within the bounds."""
@@ -110,12 +118,14 @@ class Generator:
         s = scene.rows(np.zeros(n, dtype=np.intp))
         chart = np.arange(n) % len(self.shown.codes)
         one, other = rng.integers(0, len(self.shown.R), (2, n))
-        mix = np.where(rng.random(n) < 0.5, rng.uniform(0, 0.6, n), 0.0)[:, None]
-
         outside = self.shown.outside[chart, one]
-        same = (outside == self.shown.outside[chart, other]).all(axis=1)[:, None]
-        first, second = self.shown.place[chart, one], self.shown.place[chart, other]
-        place = np.where(same, (1 - mix) * first + mix * second, first)
+        same = (outside == self.shown.outside[chart, other]).all(axis=1)
+        mix = np.where(same & (rng.random(n) < BLENDED), rng.uniform(0, 0.6, n), 0.0)[:, None]
+        place = (1 - mix) * self.shown.place[chart, one] + mix * self.shown.place[chart, other]
+
+        alike = (self.shown.outside[chart] == outside[:, None]).all(axis=2)[..., None]
+        middle = (self.shown.place[chart] * alike).sum(axis=1) / alike.sum(axis=1)
+        place = np.where((rng.random(n) < MIDDLE)[:, None], middle, place)
         rotation = self.shown.R[one].copy()
         if self.steady and len(steady):
             turned = np.flatnonzero(rng.random(n) < OTHERWISE)
@@ -170,14 +180,16 @@ def level_of(shown: Situations) -> int:
 def learned(committee: Committee, shown: Situations, rng: Random, steady: bool = True) -> Generator:
     """Choose the charts in which carried demonstrations please the committee most."""
     level = level_of(shown)
-    every = carried(shown, charts(shown.arguments))
+    listed = charts(shown.arguments)
+    every = carried(shown, listed)
     rows = rng.integers(0, len(shown), TRIED)
     target = chance(shown, rng, TRIED)
     scores = [
         _liked(committee, every, chart, rows, target, level, rng)
         for chart in range(len(every.codes))
     ]
-    best = np.argsort(-np.array(scores), kind="stable")[:KEPT]
+    agreed = agreement(every, carried(chance(shown, rng, AGREEING), listed))
+    best = np.argsort(-(np.array(scores) + AGREED * agreed), kind="stable")[:KEPT]
     return Generator(committee, every.chosen(best), level, steady)
 
 
@@ -197,8 +209,7 @@ def _liked(
         every.outside[chart, rows], every.yaw[chart, rows], every.R[rows],
         rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)), onto(s, level),
     )  # fmt: skip
-    free = 0.02 * (codes[0, 1] == FREE) + 0.02 * (codes[0, 3] == FREE)
-    return float(committee.predict(s).mean()) + free
+    return float(committee.predict(s).mean())
 
 
 def _standing(down: Array, rng: Random) -> Array:
