@@ -18,6 +18,12 @@ from tamp.geometric.scene.pose import Array
 TYPICAL = 8
 """Measures in which proposals are to be like the demonstrations, at most."""
 
+OFFSETS = ("middle", "gap above", "gap below", "either side gap")
+"""Measures of which one along each axis is among them."""
+
+AGREED = 0.7
+"""Nats by which demonstrations have to agree more than chance there."""
+
 WORTH = 0.5
 """Nats that one of them adds at least."""
 
@@ -115,6 +121,8 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
 
     typical = np.array(_typical(e, s, bounds), dtype=np.int64)
     median = np.median(e.good, axis=0)
+    centre = np.array([one.key.startswith("middle: ") for one in e.measures])
+    centre &= np.abs(median) < bounds.scale  # nobody means a few millimetres
     spread = bounds.scale + np.abs(e.good - median).mean(axis=0)
 
     return Committee(
@@ -128,7 +136,7 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
         weights=found.weights,
         scores=found.scores,
         typical=typical,
-        median=median[typical],
+        median=np.where(centre, 0.0, median)[typical],
         spread=spread[typical],
         above=bounds.open_below[typical],
     )
@@ -149,4 +157,25 @@ def _typical(e: Evidence, s: Settings, bounds: Bounds) -> list[int]:
             break
         chosen.append(best)
         left &= inside[:, best]
-    return chosen
+    return [*dict.fromkeys([*chosen, *_framed(e)])]
+
+
+def _framed(e: Evidence) -> list[int]:
+    """Choose two offsets from another argument, along both axes of the frame in which the
+    demonstrations agree most.
+    """
+    spread = e.good.std(axis=0) + np.array([one.scale for one in e.measures])
+    agreed = np.log(np.maximum(e.base.std(axis=0), 1e-9) / spread)
+    agreed -= 0.5 * np.array([one.cost for one in e.measures])
+    best: dict[str, dict[str, int]] = {}
+    for column, one in enumerate(e.measures):
+        kind, _, at = one.key.partition(": ")
+        if kind in OFFSETS and " in " in at and e.allowed[column]:
+            axis, _, frame = at.partition(" of ")
+            axes = best.setdefault(frame, {})
+            if axis not in axes or agreed[column] > agreed[axes[axis]]:
+                axes[axis] = column
+    if not best:
+        return []
+    columns = max(best.values(), key=lambda axes: sum(agreed[column] for column in axes.values()))
+    return [column for column in columns.values() if agreed[column] > AGREED]
