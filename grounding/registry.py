@@ -164,6 +164,14 @@ def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer
     return grounding if why is None else Proposer(grounding, why)
 
 
+def is_few_shot(name: str) -> bool:
+    """Check whether a name is a file of weights that `tamp-learn new` has written."""
+    path = Path(name)
+    if path.suffix != ".safetensors" or not path.is_file():
+        return False
+    return read_weights(path).card.get("model") == FEW_SHOT
+
+
 def _learned_relation(weights: Weights, path: Path) -> LearnedRelation:
     from grounding.relations.grounding import LearnedRelation
 

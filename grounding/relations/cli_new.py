@@ -13,6 +13,7 @@ from grounding.relations.files import weights_of
 from grounding.relations.learner import Learned, learn
 from grounding.relations.options import New
 from grounding.relations.pddl_text import Words, added, diff
+from grounding.relations.scenes import examples_of
 from grounding.relations.situation import joined, situation_of
 from grounding.relations.variety import missing, unvaried
 from grounding.relations.words import explanations
@@ -60,7 +61,9 @@ def new(chosen: New) -> None:
     if chosen.dry_run:
         print("nothing written (--dry-run)")
         return
-    write_weights(out, weights_of(learned, {"seed": chosen.seed}))
+    examples = [one.plain() for one in examples_of(shown)]
+    card = {"seed": chosen.seed, "examples": examples}
+    write_weights(out, weights_of(learned, card))
     for path, (_, text) in texts.items():
         write_whole(path, text.encode())
     _tell(name, out, list(texts), chosen.add_to)

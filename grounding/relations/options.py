@@ -39,6 +39,29 @@ class New:
     """Of chance and of the parts for cross-validation."""
 
 
+@dataclass(frozen=True)
+class Ask:
+    """Be asked about scenes in which the explanations of a relation differ most, and keep the
+    answers as demonstrations.
+
+    What is missing is told first. Each scene is written with a picture beside it; the answer is
+    read from the standard input, a line each: yes, no, skip or quit.
+    """
+
+    relation: Annotated[str, tyro.conf.Positional]
+    """Its name."""
+    demos: Path = Path("demos")
+    """The folder of its demonstrations, which gets those that are answered."""
+    count: int = 5
+    """Questions."""
+    pool: int = 60
+    """Scenes of which they are chosen."""
+    pictures: bool = True
+    """Whether each has a picture beside it."""
+    seed: int = 0
+    """Of the scenes."""
+
+
 def check_name(name: str) -> None:
     """Check the name of a relation of one's own.
 
