@@ -1,6 +1,6 @@
 """Relations learned from a few demonstrations, by true geometry, on unseen bodies, heights, yaws and sizes.
 
-python -m benchmarks.relations table --seeds 5      classifier and proposals from 5, 20, 160 labels, held-out relations last
+python -m benchmarks.relations table --seeds 5      classifier and proposals from 5, 20, 160 labels
 python -m benchmarks.relations lazy --seeds 4       20 labels at one height, one yaw, one size
 python -m benchmarks.relations asking --seeds 4     accuracy by number of labels, with and without being asked
 python -m benchmarks.relations random --seeds 5     cross-validation of labels at random
@@ -98,7 +98,7 @@ def _random(args: Args) -> None:
             row[f"{words}, below .65"] = round(float((means < HOPELESS).mean()), 2)
         rows.append(row)
         if args.record:
-            record(FILE, config={"what": "random", "relation": name, "seeds": args.seeds}, **row)
+            record(FILE, config={"what": "random", "seeds": args.seeds, **row})
     rows.append({"relation": "mean", **_means(rows)})
     table(rows, "cross-validation of 20 labels, true ones and at random")
 
@@ -113,7 +113,7 @@ def _asking(args: Args) -> None:
     rows = curves(args.relations, args.seeds)
     for row in rows:
         if args.record:
-            record(FILE, config={"what": "asking", "seeds": args.seeds}, **row)
+            record(FILE, config={"what": "asking", "seeds": args.seeds, **row})
     table(rows, f"accuracy by labels, {args.seeds} seeds")
 
 
@@ -121,7 +121,7 @@ def _times(args: Args) -> None:
     rows = timed()
     for row in rows:
         if args.record:
-            record(FILE, config={"what": "times"}, **row)
+            record(FILE, config={"what": "times", **row})
     table(rows, "milliseconds of one thread, through a scene")
 
 

@@ -18,9 +18,9 @@ WAYS = ("demonstrator", "random", "asked")
 BEGINNINGS = {"varied": ((3, 2), "", (5, 10, 15, 20)), "one yaw": ((10, 10), "yaw", (20, 21, 24, 27))}
 
 
-def curves(relations: Sequence[str], seeds: int) -> list[dict[str, object]]:
+def curves(relations: Sequence[str], seeds: int) -> list[dict[str, str | float]]:
     """Begin with few labels, or with lazy ones, and go on in three ways."""
-    rows: list[dict[str, object]] = []
+    rows: list[dict[str, str | float]] = []
     for beginning, ((good, bad), lazy, at) in BEGINNINGS.items():
         for way in WAYS:
             found = [_curve(name, seed, way, good, bad, lazy, at) for name in relations for seed in range(seeds)]

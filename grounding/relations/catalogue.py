@@ -109,7 +109,7 @@ def _ups(k: int) -> Iterator[Measure]:
         yield _deg(f"tilt: {i}", 0.06, cost, "up", words, least=True)
         for what in ("longest", "shortest"):
             words = f"{{{i}}}'s {what} side from upright"
-            yield _deg(f"up: {what} of {i}", 0.12, cost + 0.5, "up", words, least=True)
+            yield _deg(f"up: {what} of {i}", 0.12, cost + 1.5, "up", words, least=True)
 
 
 def _turns(k: int) -> Iterator[Measure]:

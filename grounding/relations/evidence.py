@@ -20,6 +20,9 @@ RIGHT = 3.0
 UNTOUCHED = 0.03
 """A yaw that varies less was never touched by a hand, radians."""
 
+SAME_SIZE = 0.05
+"""Sizes that differ by a smaller share count as one."""
+
 ZERO = 0.006
 """A height that is so small needs no explanation, metres."""
 
@@ -80,6 +83,7 @@ class Evidence:
         period: Of the measures, (f,).
         zero: Middle of the demonstrations' angles, (f,).
         allowed: Whether a measure tells anything in these scenes, (f,).
+        one_size: Whether an argument had one size in all that holds.
     """
 
     measures: Sequence[Measure]
@@ -89,6 +93,7 @@ class Evidence:
     period: Array
     zero: Array
     allowed: NDArray[np.bool_]
+    one_size: bool
 
 
 def gather(
@@ -111,6 +116,7 @@ def gather(
             for one in measures
         ]
     )
+    sizes = positives.half[positives.shape]
     return Evidence(
         measures,
         centred(good, period, zero),
@@ -119,6 +125,7 @@ def gather(
         period,
         zero,
         allowed,
+        bool((np.ptp(sizes, axis=0) < SAME_SIZE * sizes.mean(axis=0)).all(axis=1).any()),
     )
 
 

@@ -82,9 +82,7 @@ def read_examples(plain: Any) -> list[Example]:
             Example(
                 tuple(map(str, one["arguments"])),
                 {
-                    str(name): BodyEntry(
-                        dict(shape), Pose(tuple(map(float, pose[:3])), tuple(map(float, pose[3:7])))
-                    )
+                    str(name): BodyEntry(dict(shape), _pose(pose))
                     for name, (shape, pose) in one["bodies"].items()
                 },
             )
@@ -92,6 +90,11 @@ def read_examples(plain: Any) -> list[Example]:
         ]
     except (AttributeError, KeyError, IndexError, TypeError, ValueError):
         raise InputError("the card's 'examples' are not those of a relation") from None
+
+
+def _pose(numbers: Sequence[Any]) -> Pose:
+    x, y, z, a, b, c, d = (float(one) for one in numbers)
+    return Pose((x, y, z), (a, b, c, d))
 
 
 def loaded(bodies: Mapping[str, BodyEntry], arguments: Sequence[str]) -> Scene:

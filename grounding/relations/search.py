@@ -79,5 +79,10 @@ def prices(e: Evidence, s: Settings, bounds: Bounds) -> Array:
         price += s.idle * (in_bad.mean(axis=0) > 0.85)  # nobody varied it: no evidence
     price += s.idle * ((kinds == "turn") & (e.good.std(axis=0) < UNTOUCHED))
     middle = np.sort(e.good, axis=0)[len(e.good) // 2]
-    price += s.contact * ((kinds == "height") & (np.abs(middle) > ZERO))
+    # With one size a height that is not zero is that size's, and so is a size against another.
+    twice = 2.0 if e.one_size else 1.0
+    price += twice * s.contact * ((kinds == "height") & (np.abs(middle) > ZERO))
+    price += s.idle * (e.one_size & (kinds == "size"))
+    into = np.array([one.key.startswith(("space gap", "level gap")) for one in e.measures])
+    price += s.contact * (into & (middle < -2 * ZERO))  # how deep, nobody means
     return np.where(e.allowed, price, np.inf)

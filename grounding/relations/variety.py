@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grounding.relations.catalogue import catalogue, measure
+from grounding.relations.evidence import SAME_SIZE
 from grounding.relations.measure_kernels import heading
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
@@ -17,9 +18,6 @@ SAME_HEIGHT = 0.03
 
 SAME_YAW = 0.25
 """Yaws whose spread is less count as one, radians: a hand keeps one to 8 degrees."""
-
-SAME_SIZE = 0.05
-"""Sizes that differ by a smaller share count as one."""
 
 FINE = 1e-4
 """Metres and radians in which two situations with both labels differ at most."""
