@@ -85,24 +85,27 @@ def stream_parts(words: Words) -> list[str]:
     The generator is told a place that no argument is: where the other bodies stand, or any. What
     it certifies of that place is left out where its own domain asks for it.
     """
-    name, rest = words.name, words.arguments[1:]
-    inputs, conditions = [words.arguments[0]], [f"(movable {words.arguments[0]})"]
-    place, known = None, False
-    for variable, kind in zip(rest, words.kinds[1:], strict=True):
+    name, first = words.name, words.arguments[0]
+    rest = list(zip(words.arguments[1:], words.kinds[1:], strict=True))
+    places = [(variable, kind) for variable, kind in rest if kind in ("surface", "container")]
+    place, kind_of_place = places[0] if places else ("?s", "surface")
+    fact = "supported" if kind_of_place == "surface" else "contained"
+
+    inputs, conditions = [first], [f"(movable {first})"]
+    for variable, kind in rest:
         inputs.append(variable)
         if kind == "movable":
             inputs.append(words.poses[variable])
-            conditions.append(f"(supported {variable} {words.poses[variable]} ?s)")
-            known = True
+            conditions.append(f"({fact} {variable} {words.poses[variable]} {place})")
         else:
             conditions.append(f"({kind} {variable})")
-            place = variable if kind in ("surface", "container") else place
-    extra = "supported" if place is None or place.startswith("?s") else "contained"
-    if place is None:
-        inputs.append("?s")
-        conditions += [] if known else ["(surface ?s)"]
-    fact = "" if known else f" ({extra} {words.arguments[0]} ?p {place or '?s'})"
-    head = words.poses[words.arguments[0]]
+    known = any(kind == "movable" for _, kind in rest)
+    if not places:
+        inputs.append(place)
+        conditions += [] if known else [f"(surface {place})"]
+    certified = "" if known else f" ({fact} {first} ?p {place})"
+
+    head = words.poses[first]
     tested = (
         f"(pose {words.posed})" if len(words.kinds) == 1 else f"(proposed-{name} {words.posed})"
     )
@@ -110,7 +113,7 @@ def stream_parts(words: Words) -> list[str]:
         f"(:stream sample-{name}",
         f"  :inputs ({' '.join(inputs)}) :domain {_all(conditions)}",
         "  :fluents (at-pose)",
-        f"  :outputs ({head}) :certified (and (pose {words.arguments[0]} {head}){fact} "
+        f"  :outputs ({head}) :certified (and (pose {first} {head}){certified} "
         f"(proposed-{name} {words.posed})))",
         f"(:stream test-{name}",
         f"  :inputs ({words.posed}) :domain {tested}",
