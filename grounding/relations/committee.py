@@ -46,7 +46,7 @@ class Committee:
         typical: Columns of the catalogue in which the demonstrations are alike, (t,).
         median: Of the demonstrations in these, (t,).
         spread: Their mean deviation and the resolution, (t,).
-        above: Whether less is never worse there, (t,).
+        side: 1 where less is never worse, -1 where more is not, 0 elsewhere, (t,).
     """
 
     arguments: int
@@ -61,7 +61,7 @@ class Committee:
     typical: NDArray[np.int64]
     median: Array
     spread: Array
-    above: NDArray[np.bool_]
+    side: NDArray[np.int64]
     _period: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -98,8 +98,8 @@ class Committee:
         each = 2.0 * np.minimum(z, 0.0).sum(axis=2) + deep.min(axis=2)
 
         off = values[:, self.typical] - self.median
-        off = np.where(self.above, off, np.abs(off)) / self.spread
-        return each @ self.weights[strong] - like * np.minimum(off, 4.0).sum(axis=1)
+        off = np.where(self.side == 0, np.abs(off), off * self.side) / self.spread
+        return each @ self.weights[strong] - like * np.clip(off, -1.0, 4.0).sum(axis=1)
 
 
 def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
@@ -138,7 +138,7 @@ def fit(evidence: Evidence, settings: Settings = CLASSIFYING) -> Committee:
         typical=typical,
         median=np.where(centre, 0.0, median)[typical],
         spread=spread[typical],
-        above=bounds.open_below[typical],
+        side=(bounds.open_below.astype(np.int64) - bounds.open_above)[typical],
     )
 
 

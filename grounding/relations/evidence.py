@@ -20,6 +20,9 @@ RIGHT = 3.0
 UNTOUCHED = 0.03
 """A yaw that varies less was never touched by a hand, radians."""
 
+ROOM = ("room within", "middle within")
+"""How keys of measures begin of which more is never worse."""
+
 SAME_SIZE = 0.05
 """Sizes that differ by a smaller share count as one."""
 
@@ -146,6 +149,7 @@ class Bounds:
     soft: Array
     scale: Array
     open_below: NDArray[np.bool_]
+    open_above: NDArray[np.bool_]
     missed: Array
 
     @classmethod
@@ -158,8 +162,11 @@ class Bounds:
         open_below = np.array([one.least for one in e.measures]) & (least < 2 * scale)
         second = np.stack([ordered[min(1, n - 1)], ordered[max(n - 2, 0)]])
         missed = (least < second[0] - margin).astype(float) + (most > second[1] + margin)
+        # Nobody means that there be no more room than there was: more of it is never worse.
+        open_above = np.array([one.key.startswith(ROOM) for one in e.measures])
         low = np.where(open_below, -np.inf, least - margin)
-        return cls(least, most, low, most + margin, 0.5 * margin, scale, open_below, missed)
+        high = np.where(open_above, np.inf, most + margin)
+        return cls(least, most, low, high, 0.5 * margin, scale, open_below, open_above, missed)
 
     def within(self, values: Array) -> NDArray[np.bool_]:
         """Check which measures are within their intervals, (n, f)."""

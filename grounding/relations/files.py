@@ -98,7 +98,7 @@ def _committee(weights: Weights, prefix: str, arguments: int) -> Committee:
         "weights": (members,),
         "scores": (members,),
         **{name: (members, depth) for name in ("low", "high", "soft")},
-        **{name: arrays["typical"].shape for name in ("median", "spread", "above")},
+        **{name: arrays["typical"].shape for name in ("median", "spread", "side")},
     }
     wrong = next((name for name, shape in shapes.items() if arrays[name].shape != shape), None)
     if wrong is not None:

@@ -10,6 +10,19 @@ from numpy.typing import NDArray
 from grounding.relations.evidence import RIGHT, UNTOUCHED, ZERO, Bounds, Evidence, Settings
 from tamp.geometric.scene.pose import Array
 
+OFFSETS = {
+    "middle": (1.5, False),
+    "either side middle": (1.5, False),
+    "gap above": (3.0, True),
+    "gap below": (3.0, True),
+    "either side gap": (3.0, True),
+    "flush above": (2.0, False),
+    "flush below": (2.0, False),
+    "sticks out": (2.0, False),
+    "middle sticks out": (2.0, False),
+}
+"""Nats against an offset that is not zero, or against a gap (signed) that is none."""
+
 ENOUGH = 4
 """Negatives from which on it counts what they vary."""
 
@@ -85,4 +98,20 @@ def prices(e: Evidence, s: Settings, bounds: Bounds) -> Array:
     price += s.idle * (e.one_size & (kinds == "size"))
     into = np.array([one.key.startswith(("space gap", "level gap")) for one in e.measures])
     price += s.contact * (into & (middle < -2 * ZERO))  # how deep, nobody means
+    price += _unnatural(e, middle)
     return np.where(e.allowed, price, np.inf)
+
+
+def _unnatural(e: Evidence, middle: Array) -> Array:
+    """Return the nats against offsets that have to be explained: zero needs no explanation, nor
+    has a gap.
+    """
+    price = np.zeros(len(e.measures))
+    for column, one in enumerate(e.measures):
+        kind = one.key.partition(": ")[0]
+        if kind not in OFFSETS:
+            continue
+        nats, signed = OFFSETS[kind]
+        off = -middle[column] if signed else abs(middle[column])
+        price[column] = nats * (off > 2 * one.scale)
+    return price
