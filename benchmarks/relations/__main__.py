@@ -4,6 +4,7 @@ python -m benchmarks.relations table --seeds 5      classifier and proposals fro
 python -m benchmarks.relations lazy --seeds 4       20 labels at one height, one yaw, one size
 python -m benchmarks.relations asking --seeds 4     accuracy by number of labels, with and without being asked
 python -m benchmarks.relations random --seeds 5     cross-validation of labels at random
+python -m benchmarks.relations physics --seeds 2    proposals dropped in physics, in generated scenes
 python -m benchmarks.relations times                one proposal and one classification through a scene
 """
 
@@ -17,6 +18,7 @@ import tyro
 from benchmarks.common import record, table
 from benchmarks.relations.asking import curves
 from benchmarks.relations.measure import Case, held_out, measured
+from benchmarks.relations.physics import dropped
 from benchmarks.relations.relations import HELD_OUT, RELATIONS
 from benchmarks.relations.times import timed
 from grounding.relations.learner import HOPELESS, KNOWS
@@ -31,7 +33,7 @@ class Args:
     """What is measured."""
 
     what: tyro.conf.Positional[str]
-    """table, lazy, asking, random or times."""
+    """table, lazy, asking, random, physics or times."""
     seeds: int = 5
     """Seeds 0, 1, ..."""
     relations: tuple[str, ...] = tuple(RELATIONS)
@@ -41,7 +43,9 @@ class Args:
 
 
 def main(args: Args) -> None:
-    {"table": _table, "lazy": _lazy, "asking": _asking, "random": _random, "times": _times}[args.what](args)
+    {"table": _table, "lazy": _lazy, "asking": _asking, "random": _random, "times": _times, "physics": _physics}[
+        args.what
+    ](args)
 
 
 def _table(args: Args) -> None:
@@ -115,6 +119,14 @@ def _asking(args: Args) -> None:
         if args.record:
             record(FILE, config={"what": "asking", "seeds": args.seeds, **row})
     table(rows, f"accuracy by labels, {args.seeds} seeds")
+
+
+def _physics(args: Args) -> None:
+    rows = [dropped(name, args.seeds) for name in args.relations]
+    for row in rows:
+        if args.record:
+            record(FILE, config={"what": "physics", "seeds": args.seeds, **row})
+    table(rows, f"proposals dropped in physics, {args.seeds} seeds")
 
 
 def _times(args: Args) -> None:
