@@ -62,9 +62,11 @@ def coordinates_of(corners, counts, inner, shapes, Rs, ps, supports, codes, plac
         for c in range(len(codes)):
             origin, frame, mode, turn = codes[c]
             yaw[c, d] = _angle(turn, frames, p, 0.0)
+
             if origin == 0:
                 _on_furniture(corners, counts, shape, R, p, support, mode, place[c, d])
                 continue
+
             angle = _angle(frame, frames, p, bearing(p, origin, 0))
             if mode == 4:
                 place[c, d, 0] = bearing(p, origin, 0) - angle
@@ -206,12 +208,14 @@ def trouble(corners, counts, inner, shape, Rs, ps, supports, onto, steady, out):
         for j in range(1, ps.shape[1]):
             if inner[shape[n, j], 3] == 0.0:
                 bad += max(0.0, -0.001 - _gap(corners, counts, shape[n], R, p, j, False))
+
         if abs(onto[n] - support[0]) < 0.005:
             for axis in range(2):
                 angle = support[1] + axis * 0.5 * math.pi
                 x, y = math.cos(angle), math.sin(angle)
                 away = abs(x * (p[0, 0] - support[2]) + y * (p[0, 1] - support[3]))
                 bad += max(0.0, away - support[4 + axis] + 0.01)
+
         best = -1.0
         for s in range(len(steady)):
             down = 0.0

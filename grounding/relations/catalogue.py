@@ -145,6 +145,7 @@ def _pair(k: int, j: int) -> Iterator[Measure]:
             yield _mm(f"room within {j}", 0.005, 0.0, "gap", f"room to the sides inside {{{j}}}")
             words = f"its middle from the edge of {{{j}}}, inward"
             yield _mm(f"middle within {j}", 0.008, 0.0, "gap", words)
+
     yield _mm(f"distance: {j}", 0.015, 0.0, "place", f"distance from {{{j}}}", least=True)
     yield _mm(f"level gap: {j}", 0.01, 0.0, "gap", f"gap beside {{{j}}}")
     yield _mm(f"space gap: {j}", 0.006, 0.0, "gap", f"gap to {{{j}}}")

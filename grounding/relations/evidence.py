@@ -32,7 +32,7 @@ ZERO = 0.006
 
 @dataclass(frozen=True)
 class Settings:
-    """What a committee takes for evidence.
+    """The settings of a committee: what counts as evidence.
 
     Attributes:
         small: Nats that a condition costs.

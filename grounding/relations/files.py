@@ -39,6 +39,7 @@ def weights_of(learned: Learned, card: Mapping[str, Any]) -> Weights:
     ):
         arrays |= {f"{prefix}_{name}": _finite(getattr(committee, name)) for name in _COMMITTEE}
     arrays |= {f"shown_{name}": getattr(learned.generator.shown, name) for name in _CARRIED}
+
     held_out = learned.held_out
     said = {
         "model": MODEL,
@@ -70,6 +71,7 @@ def read_learned(weights: Weights) -> tuple[tuple[str, ...], Committee, Generato
             f"these weights are of version {card.get('version')!r}, not {VERSION}",
             remedy="Learn it again: tamp-learn new --help",
         )
+
     kinds = card.get("kinds")
     if not isinstance(kinds, list) or not kinds or not all(one in KINDS for one in kinds):
         raise InputError("the card's 'kinds' are not those of a relation's arguments")
@@ -79,6 +81,7 @@ def read_learned(weights: Weights) -> tuple[tuple[str, ...], Committee, Generato
         shown = Carried(*(weights.arrays[f"shown_{name}"] for name in _CARRIED))
     except KeyError as error:
         raise InputError(f"array {error} is missing") from None
+
     level = card.get("level")
     if not isinstance(level, int) or abs(level) >= len(kinds) or isinstance(level, bool):
         raise InputError(f"the card's 'level' is {level!r}")
@@ -91,6 +94,7 @@ def _committee(weights: Weights, prefix: str, arguments: int) -> Committee:
     for name in ("low", "high"):
         big = np.abs(arrays[name]) >= BEYOND
         arrays[name] = np.where(big, np.sign(arrays[name]) * np.inf, arrays[name])
+
     columns = len(catalogue(arguments))
     members, depth = arrays["conditions"].shape
     shapes = {

@@ -39,7 +39,7 @@ STEADY = 0.966
 
 @dataclass(frozen=True)
 class HeldOut:
-    """What a classifier says of labels that it was not shown, scene by scene.
+    """The answers of a classifier about labels that it was not shown, scene by scene.
 
     Attributes:
         positive: Share of what holds of which it says so.

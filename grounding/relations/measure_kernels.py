@@ -150,6 +150,7 @@ def _gap(corners, counts, shape, R, p, j, level):
             x = R[0, 1, m] * R[j, 2, n] - R[0, 2, m] * R[j, 1, n]
             y = R[0, 2, m] * R[j, 0, n] - R[0, 0, m] * R[j, 2, n]
             z = R[0, 0, m] * R[j, 1, n] - R[0, 1, m] * R[j, 0, n]
+
         if level:
             z = 0.0
         length = math.sqrt(x * x + y * y + z * z)
@@ -178,6 +179,7 @@ def _pair(corners, counts, half, inner, shape, R, p, top, yaw, low, frames, j, o
             wide = inner[shape[j], axis] if inner[shape[j], 3] > 0.0 else 0.5 * (e - d)
             room = min(room, wide - 0.5 * (b - a) - middle)
             within = min(within, 0.5 * (e - d) - middle)
+
         if f == 1 + j:
             out[c], out[c + 1] = room, within
             c += 2

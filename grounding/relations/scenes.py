@@ -159,6 +159,7 @@ def _arranged(
     T = np.eye(4) if place is None else scene.world_pose(place).matrix
     half = np.array([0.8, 0.8] if place is None else place.size[:2]) / 2
     standing: list[Placed] = []
+
     for name in (*arguments[1:], arguments[0]):
         if name not in bodies or name == owner:
             continue

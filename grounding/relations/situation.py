@@ -87,6 +87,7 @@ def joined(parts: Sequence[Situations]) -> Situations:
         )
         for part in parts
     ]
+
     return Situations(
         corners=np.concatenate(padded),
         counts=np.concatenate([part.counts for part in parts]),
