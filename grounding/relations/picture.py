@@ -26,7 +26,7 @@ def write_picture(
     Raises:
         InputError: The file cannot be written.
     """
-    from tamp.view.open import open_film
+    from tamp.view.open import open_timeline
     from tamp.view.picture import write_png
 
     coloured = dict(bodies)
@@ -40,5 +40,5 @@ def write_picture(
         write_demonstration(
             file, DemonstrationFile(coloured, [Label(name, tuple(arguments), True)])
         )
-        film, _, _ = open_film(str(file))
-        write_png(film, path)
+        timeline, _, _ = open_timeline(str(file))
+        write_png(timeline, path)
