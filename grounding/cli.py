@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import NoReturn, Protocol
 
 from grounding.arguments import (
+    Ask,
     Collect,
     Encoder,
     Evaluate,
     Explore,
     Generate,
+    New,
     Train,
     data_file,
     parsed,
@@ -68,7 +70,15 @@ def run(shown: Progress, arguments: list[str]) -> int:
     chosen = parsed(arguments)
     shown.quiet = False
     show = partial(_show, shown=shown)
-    if isinstance(chosen, Generate):
+    if isinstance(chosen, New):
+        from grounding.relations.cli_new import new
+
+        new(chosen)
+    elif isinstance(chosen, Ask):
+        from grounding.relations.cli_ask import ask
+
+        ask(chosen)
+    elif isinstance(chosen, Generate):
         _generate(chosen, show)
     elif isinstance(chosen, Explore):
         _explore(chosen, show)
@@ -99,6 +109,11 @@ def _generate(chosen: Generate, show: Show) -> None:
 
 
 def _explore(chosen: Explore, show: Show) -> None:
+    if chosen.demos is not None:
+        from grounding.relations.cli_ask import explore_own
+
+        explore_own(chosen.relation, chosen.demos, chosen.out, chosen.count, chosen.seed)
+        return
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
@@ -204,9 +219,15 @@ def _train(chosen: Train, show: Show) -> None:
 
 def _evaluate(chosen: Evaluate, show: Show) -> None:
     from grounding.evaluate import evaluate, wilson
-    from grounding.registry import load_model, shipped_model
+    from grounding.registry import is_few_shot, load_model, shipped_model
     from grounding.weights import read_weights
 
+    if is_few_shot(chosen.weights):
+        from grounding.relations.cli_evaluate import evaluate_own
+
+        wanted = (chosen.scenes or 50, chosen.seed)
+        evaluate_own(Path(chosen.weights), chosen.demos, chosen.pictures, *wanted)
+        return
     relation, equals, name = chosen.weights.partition("=")
     if equals and not chosen.weights.endswith(".safetensors"):
         model = shipped_model(relation, chosen.model or name)

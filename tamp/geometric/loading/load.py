@@ -18,6 +18,9 @@ from tamp.system.files import find_problem
 
 _KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
 
+_ANYWHERE = Room((-FARTHEST, FARTHEST), (-FARTHEST, FARTHEST))
+_NO_MATTER_WHICH = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
+
 
 @dataclass(frozen=True)
 class LoadedProblem:
@@ -61,21 +64,23 @@ class LoadedProblem:
         return self.entry_lines.get(keys)
 
 
-def load_scene(problem: str | Path) -> LoadedProblem:
+def load_scene(problem: str | Path, *, demonstration: bool = False) -> LoadedProblem:
     """Load a problem file.
 
     Args:
         problem: A path, or the name of a shipped problem.
+        demonstration: Whether it may go without robot and room, since no plan is wanted.
 
     Raises:
         InputError: Anything wrong with the file, with its line.
     """
     path = find_problem(problem)
     root = read_yaml(path)
-    entries = root.mapping(_KEYS, required=("robot", "room", "bodies", "goal"))
+    needed = ("bodies", "goal") if demonstration else ("robot", "room", "bodies", "goal")
+    entries = root.mapping(_KEYS, required=needed)
     name = entries["name"].text() if "name" in entries else path.stem
-    room = _room(entries["room"])
-    robot = _robot(entries["robot"], room)
+    room = _room(entries["room"]) if "room" in entries else _ANYWHERE
+    robot = _robot(entries["robot"], room) if "robot" in entries else _NO_MATTER_WHICH
 
     drafts = {
         body: read_body(body, node, path.parent)
@@ -112,7 +117,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
             **{("samplers", relation): node.line for relation, node in samplers.items()},
         },
         lines={
-            "robot": entries["robot"].line,
+            "robot": entries["robot"].line if "robot" in entries else root.line,
             **{body: draft.node.line for body, draft in drafts.items()},
         },
     )
