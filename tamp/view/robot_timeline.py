@@ -17,8 +17,8 @@ SECONDS = 4.0
 
 
 def robot_timeline(robot: Robot, model: str) -> Timeline:
-    """Make the timeline: at home, each joint of the arm down to its lower limit, up to its upper one
-    and back; then the fingers close and open.
+    """Make the timeline: at home, each joint of the arm down to its lower limit, up to its upper
+    one and back; then the fingers close and open.
     """
     start = RobotStart(model, (0.0, 0.0, 0.0), None)
     scene = Scene(robot.name, {}, start, Room((-SIDE, SIDE), (-SIDE, SIDE)))

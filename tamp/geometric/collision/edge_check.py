@@ -144,7 +144,8 @@ def _halve(head, tail, first, last, intervals, lists):
 @njit(**INLINE)
 def _decide_pairs(
     head, first, last, count, half, padding, frames, change, joints, parts, part_poses, placed,
-    reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s, weights,
+    reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s,
+    weights,
 ):  # fmt: skip
     """Decide the pairs first..last-1 of interval `head` at its middle, where the frames are.
 
