@@ -25,7 +25,7 @@ STANDING = ("supported", "contained")
 
 PARTS = {
     "motion": ("plan-",),
-    "ik": ("inverse-kinematics",),
+    "ik": ("inverse-kinematics", "inverse-kinematics-here"),
     "grasps": ("sample-grasp",),
     "placements": ("sample-",),
     "tests": ("test-",),

@@ -20,13 +20,8 @@ from tamp.system.scratch import scratch_folder
 RATE = 240
 """Steps a second."""
 
-FORCE = 50.0
-"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N
-for a moment.
-"""
-
-TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
+BASE_FORCE = 2e4
+"""The most with which the base is driven, newtons and newton metres."""
 
 ROLLING = 0.001
 """Metres: rolling and spinning friction of bodies, without which a can that lies would never come
@@ -47,16 +42,18 @@ class Actuated(World):
     have mass and fall.
 
     Attributes:
-        conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
+        conf: What base and arm aim at, [x, y, yaw, q1..qn], shape (3 + n,), metres and radians.
         opening: What the fingers aim at, metres between them.
         squeezing: The fingers close instead, and press with their whole force on what they meet.
         bound: The body that a fixed constraint binds to the hand, or None.
         widest: The fingers' largest opening, metres.
     """
 
-    def __init__(self, scene: Scene, robot: Robot, force: float = FORCE) -> None:
+    def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
         super().__init__(scene, None, dynamic=True)
+        force = robot.force if force is None else force
         self._steps = 0
+        self._forces = [*(BASE_FORCE,) * 3, *robot.effort]
         self._T_hand_tool = robot.T_hand_tool.matrix
         bullet, client = self._bullet, self.client
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
@@ -85,10 +82,10 @@ class Actuated(World):
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
         self._finger_joints = [joint[finger.name] for finger in robot.fingers]
         self._fingers = Fingers(bullet, client, self._mover, self._finger_joints, force)
-        self._hand = link[robot.links[-3].name]
+        self._hand = link[robot.hand]
         self.robot_links = frozenset(link)
-        self.hand_link = robot.links[-3].name
-        self.finger_links = tuple(one.name for one in robot.links[-2:])
+        self.hand_link = robot.hand
+        self.finger_links = tuple(one.name for one in robot.finger_links)
 
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
         self.opening = self.widest = robot.opening
@@ -103,15 +100,16 @@ class Actuated(World):
 
     # Time
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+    def tick(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
         trajectory's speeds there.
         """
         bullet, client = self._bullet, self.client
+        count = len(self._driven)
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
-            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10,
-            velocityGains=[1.0] * 10, physicsClientId=client,
+            targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
+            positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
         self._fingers.drive(self.opening, self.squeezing, RATE)
         bullet.stepSimulation(physicsClientId=client)
@@ -130,7 +128,7 @@ class Actuated(World):
         return self._steps / RATE
 
     def actual(self) -> Array:
-        """Return the actual configuration (10,)."""
+        """Return the actual configuration (3 + n,)."""
         states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
         return np.array([state[0] for state in states])
 

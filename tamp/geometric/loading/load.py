@@ -10,6 +10,7 @@ from types import MappingProxyType
 from tamp.errors import InputError
 from tamp.geometric.loading.bodies import Draft, read_body
 from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
+from tamp.geometric.loading.robots import find_robot, load_robot
 from tamp.geometric.loading.steadying import steady
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node, Passage
@@ -64,11 +65,15 @@ class LoadedProblem:
         return self.entry_lines.get(keys)
 
 
-def load_scene(problem: str | Path, *, demonstration: bool = False) -> LoadedProblem:
+def load_scene(
+    problem: str | Path, robot: str | None = None, *, demonstration: bool = False
+) -> LoadedProblem:
     """Load a problem file.
 
     Args:
         problem: A path, or the name of a shipped problem.
+        robot: A shipped robot's name or a robot's folder, instead of the one that the file names;
+            its arm then starts at home.
         demonstration: Whether it may go without robot and room, since no plan is wanted.
 
     Raises:
@@ -80,7 +85,9 @@ def load_scene(problem: str | Path, *, demonstration: bool = False) -> LoadedPro
     entries = root.mapping(_KEYS, required=needed)
     name = entries["name"].text() if "name" in entries else path.stem
     room = _room(entries["room"]) if "room" in entries else _ANYWHERE
-    robot = _robot(entries["robot"], room) if "robot" in entries else _NO_MATTER_WHICH
+    start = _NO_MATTER_WHICH
+    if "robot" in entries:
+        start = _robot(entries["robot"], room, path, robot)
 
     drafts = {
         body: read_body(body, node, path.parent)
@@ -95,7 +102,7 @@ def load_scene(problem: str | Path, *, demonstration: bool = False) -> LoadedPro
 
     return LoadedProblem(
         path=path,
-        scene=Scene(name, MappingProxyType(bodies), robot, room),
+        scene=Scene(name, MappingProxyType(bodies), start, room),
         goal=entries["goal"].passage(),
         domain=entries["domain"].text() if "domain" in entries else None,
         init=tuple(fact.passage() for fact in entries["init"].items()) if "init" in entries else (),
@@ -138,11 +145,16 @@ def _room(node: Node) -> Room:
     return Room(*limits)
 
 
-def _robot(node: Node, room: Room) -> RobotStart:
-    from tamp.geometric.robot.robot import ROBOTS  # not needed to read the rest
-
+def _robot(node: Node, room: Room, file: Path, instead: str | None) -> RobotStart:
     entries = node.mapping(("model", "base", "arm"), required=("model", "base"))
-    model = entries["model"].text(tuple(ROBOTS), "robot")
+    named = entries["model"]
+    if instead is not None:
+        model = find_robot(instead)
+    else:
+        try:
+            model = find_robot(named.text(), file.parent)
+        except InputError as error:
+            raise error.at(file, named.line) from None
     base = entries["base"].items(3)
     x, y, yaw = base[0].number(), base[1].number(), base[2].angle()
     for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
@@ -151,13 +163,12 @@ def _robot(node: Node, room: Room) -> RobotStart:
                 f"the robot starts out of the room: {axis} = {value:g} is not within "
                 f"[{low:g}, {high:g}]"
             )
-    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
+    own = "arm" in entries and instead is None
+    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if own else None)
 
 
 def _arm(node: Node, model: str) -> tuple[float, ...]:
-    from tamp.geometric.robot.robot import ROBOTS
-
-    robot = ROBOTS[model]()
+    robot = load_robot(model)
     joints = node.items(len(robot.lower))
     angles = tuple(joint.angle() for joint in joints)
     for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):

@@ -168,7 +168,7 @@ class RobotStart:
     """The robot, and where it starts.
 
     Attributes:
-        model: A name in ROBOTS.
+        model: A shipped robot's name, or the full path of a robot's folder.
         base: x, y in metres and yaw in radians.
         arm: Joint angles in radians, or None for the model's home configuration.
     """
