@@ -15,7 +15,7 @@ import numpy as np
 from grounding.dataset import Dataset
 from grounding.model import Model
 from grounding.oracles import ItemOf, Verdict, paper_verdicts, settled
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 NOTHING = "nothing proposed"
 """What is counted where a model knows of no pose."""
@@ -71,7 +71,7 @@ def evaluate(
     feasible, times = 0, []
     items = ItemOf()
 
-    with Drops() as drops:
+    with open_drops() as drops:
         for done, index in enumerate(order):
             situation = data[int(index)].situation
             started = time.perf_counter()

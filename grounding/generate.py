@@ -19,7 +19,7 @@ from grounding.demonstrations import KINDS, POSITIVE, DemonstrationGenerator
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS
 from grounding.scenes import LabelledScene
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 
 @dataclass(frozen=True)
@@ -93,4 +93,4 @@ def kinds_of(relation: str, count: int) -> list[str]:
 
 @lru_cache(maxsize=2)
 def _maker(relation: str, split: str, folder: MeshFolder | None) -> DemonstrationGenerator:
-    return DemonstrationGenerator(relation, split, Drops(), folder)
+    return DemonstrationGenerator(relation, split, open_drops(), folder)

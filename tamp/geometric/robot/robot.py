@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -10,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint, read_joints
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part
@@ -86,8 +84,8 @@ FINGER_SPEED = 0.05
 
 
 def panda_mobile() -> Robot:
-    """Return our box-shaped base with pybullet_data's Franka Panda and its hand, mounted near the
-    base's front edge.
+    """Return our box-shaped base with Franka's Panda and its hand, mounted near the base's front
+    edge.
 
     There, rather than 5 cm further back, twice as many base poses reach the middle of a table from
     above. The collision hulls are precomputed by benchmarks/build_robot_hulls.py. Ranges and
@@ -95,9 +93,6 @@ def panda_mobile() -> Robot:
     Control Interface), not the URDF's, whose ranges are wider; accelerations are a third of the
     maker's, so that a held object is not shaken. The maker's limits of the jerk (3,750 to 10,000
     rad/s3) are not looked at: accelerations change in steps, which the arm's controller rounds off.
-
-    Raises:
-        InputError: pybullet_data is not installed.
     """
     urdf = panda_urdf()
     named = read_joints(urdf)
@@ -169,16 +164,10 @@ down or forward has q6 > 1.
 
 
 def panda_urdf() -> Path:
-    """Find pybullet_data's Panda. It is found without importing pybullet, which prints at
-    import.
+    """Return the Panda's description, which comes with its meshes and licence
+    (benchmarks/build_robot_meshes.py).
     """
-    spec = importlib.util.find_spec("pybullet_data")
-    if spec is None or spec.origin is None:
-        raise InputError(
-            "the robot 'panda_mobile' needs the package pybullet_data",
-            remedy="pip install pybullet",
-        )
-    return Path(spec.origin).parent / "franka_panda" / "panda.urdf"
+    return Path(__file__).parent / "assets" / "franka_panda" / "panda.urdf"
 
 
 ROBOTS: dict[str, Callable[[], Robot]] = {"panda_mobile": panda_mobile}
