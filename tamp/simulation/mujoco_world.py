@@ -213,12 +213,12 @@ class MujocoWorld(World):
             far = self._mujoco.mj_ray(
                 self._model, self._data, start, way, None, 1, -1, geom, normal
             )
-            if not 0.0 <= far <= 1.0:
-                hits.append((None, 1.0))
-            elif normal @ way > 0.0:  # it leaves what it began in
+            if far >= 0.0 and normal @ way > 0.0:  # it leaves what it began in, wherever it ends
                 hits.append((self._owner_of[geom[0]], 0.0))
-            else:
+            elif 0.0 <= far <= 1.0:
                 hits.append((self._owner_of[geom[0]], float(far)))
+            else:
+                hits.append((None, 1.0))
         return hits
 
     def step(self, seconds: float) -> None:
