@@ -4,8 +4,8 @@
 
 coal agrees with support functions in closed form to 1e-6 m. It has a flaw: a ball deep in a can may be measured
 towards the side where the end is nearer (one of these 10,000 pairs; the closed form is taken for balls here), and
-meshes are measured face by face: hulls are given to it as convex shapes. FCL is no reference: its signed distance is off
-by up to 29 mm, and can end the process. "Faces" are pairs where flat faces of both look at each other, told by the
+meshes are measured face by face: hulls are given to it as convex shapes. FCL is no reference: its signed distance is
+off by up to 29 mm, and can end the process. "Faces" are pairs where flat faces of both look at each other, told by the
 normal; a few of them overlap by less than a millimetre, where pybullet rounds as at edges: see the 99th percentile.
 """
 

@@ -17,6 +17,7 @@ from tamp.simulation.engines import open_world
 from tamp.simulation.physics import load_bullet
 from tamp.simulation.settle import settle
 from tamp.simulation.shapes import centre_of_mass
+from tests.needs import NEEDS_PYBULLET
 
 ROBOT = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 
@@ -128,6 +129,7 @@ def test_a_resting_body_stays_and_a_leaning_one_falls() -> None:
     assert settled["two"].moved < 0.003
 
 
+@NEEDS_PYBULLET
 def test_importing_pybullet_prints_nothing() -> None:
     code = "from tamp.simulation.physics import load_bullet; load_bullet(); print('only this')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
