@@ -68,7 +68,7 @@ class Pair:
 
 def near_pairs(count: int, seed: int) -> Iterator[Pair]:
     """Random pairs from REACH apart to REACH deep, half of them with axes along each other."""
-    import coal
+    import coal  # pyright: ignore[reportMissingImports]
 
     rng = np.random.default_rng(seed)
     shapes = [*_shapes(rng), *(part.shape for link in ROBOTS["panda_mobile"]().links for part in link.parts)]
@@ -92,7 +92,7 @@ def near_pairs(count: int, seed: int) -> Iterator[Pair]:
         if isinstance(first, Cylinder) and isinstance(second, Sphere):
             distance = ball_and_can(second, first, T[:3, 3])
         elif isinstance(first, Sphere) and isinstance(second, Cylinder):
-            distance = ball_and_can(first, second, np.linalg.inv(T)[:3, 3])
+            distance = ball_and_can(first, second, -T[:3, :3].T @ T[:3, 3])
         if abs(distance) < REACH:
             found += 1
             yield Pair(first, second, T, distance, _faces_meet(first, second, T, normal))
