@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Generator
+
+import pytest
 
 TRAINING = [
     "paper/test_baselines.py",
@@ -19,3 +22,22 @@ collect_ignore = [] if HAS_TORCH else TRAINING
 
 def pytest_report_header() -> str | None:
     return None if HAS_TORCH else f"torch is not installed: left out in tests/grounding: {', '.join(TRAINING)}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None]:
+    return (yield from _skipped_without_torch())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None]:
+    return (yield from _skipped_without_torch())
+
+
+def _skipped_without_torch() -> Generator[None]:
+    try:
+        return (yield)
+    except ModuleNotFoundError as error:
+        if HAS_TORCH or error.name != "torch":
+            raise
+        pytest.skip("it trains, and torch is not installed")
