@@ -123,6 +123,8 @@ class MujocoActuated(MujocoWorld, Actuated):
         control, steps = self._data.ctrl, round(1 / RATE / TIMESTEP)
         control[: self._motors] = self.conf + self._lead * rates
         wanted = DEEP if self.squeezing else self.opening / 2
+        if not self.squeezing:  # the force ends at once, not when the target has come back
+            self._aims = max(self._aims, min(self.width() / 2, wanted))
         for _ in range(steps):
             most = FINGER_SPEED * TIMESTEP
             self._aims += float(np.clip(wanted - self._aims, -most, most))

@@ -28,7 +28,7 @@ def compared(decides: Report, other: Report) -> Report:
         decides,
         notes=(*decides.notes, *notes),
         engine=f"{decides.engine}, {other.engine}",
-        seconds=decides.seconds + other.seconds,
+        seconds=max(decides.seconds, other.seconds),
     )
 
 

@@ -99,10 +99,10 @@ def turned(world: Actuated, angle: float, seconds: float) -> None:
         world.tick([0.0, 0.0, rate, *[0.0] * 7])
 
 
-@pytest.fixture
-def off_centre() -> Iterator[Actuated]:
+@pytest.fixture(params=[name for name in ENGINES if installed(name)])
+def off_centre(request: pytest.FixtureRequest) -> Iterator[Actuated]:
     bar = Body("bar", (Part(Box((0.2, 0.07, 0.04))),), Pose((0.0, 2.0, 0.5)), True, mass=0.3)
-    with Actuated(replace(SCENE, bodies={"bar": bar}), ROBOT) as made:
+    with open_actuated(replace(SCENE, bodies={"bar": bar}), ROBOT, name=request.param) as made:
         yield made
 
 
@@ -111,7 +111,8 @@ def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(off_cen
     for angle in (2.0, -2.0, 2.0):
         turned(off_centre, angle, 3.0)
         moved, angle = apart(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
-        assert moved < 0.002
+        # MuJoCo's friction knows speeds only: on a circle a body drifts outwards by w^2 r dt / 2 a second.
+        assert moved < (0.004 if type(off_centre).__name__ == "MujocoActuated" else 0.002)
         assert angle < np.radians(2)
 
 
