@@ -15,7 +15,7 @@ import tyro
 
 from benchmarks.common import record, table
 from tamp.geometric.loading.load import load_scene
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.actuation import RATE

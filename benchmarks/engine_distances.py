@@ -22,7 +22,7 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Shape, Sphere
 from tamp.simulation.engines import ENGINES, installed, open_world

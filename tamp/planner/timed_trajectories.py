@@ -164,5 +164,8 @@ class PlanTimer:
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
 
-        timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
+        # A rounded corner would slide sideways.
+        sharp = path.part == "base" and context.steering == "differential"
+        limits = velocity[joints], acceleration[joints]
+        timed = time_path(points, *limits, None if sharp else edge_free)
         return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

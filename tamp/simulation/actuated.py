@@ -10,7 +10,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import FORCE, NEAR, RATE, TORQUES, Actuated
+from tamp.simulation.actuation import BASE_FORCE, NEAR, RATE, Actuated
 from tamp.simulation.fingers import Fingers, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import BulletWorld
@@ -32,9 +32,11 @@ costs otherwise."""
 class BulletActuated(BulletWorld, Actuated):
     """A world with gravity and a robot on motors in pybullet."""
 
-    def __init__(self, scene: Scene, robot: Robot, force: float = FORCE) -> None:
+    def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
         super().__init__(scene, None, dynamic=True)
+        force = robot.force if force is None else force
         self._steps = 0
+        self._forces = [*(BASE_FORCE,) * 3, *robot.effort]
         self._T_hand_tool = robot.T_hand_tool.matrix
         bullet, client = self._bullet, self.client
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
@@ -63,10 +65,10 @@ class BulletActuated(BulletWorld, Actuated):
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
         self._finger_joints = [joint[finger.name] for finger in robot.fingers]
         self._fingers = Fingers(bullet, client, self._mover, self._finger_joints, force)
-        self._hand = link[robot.links[-3].name]
+        self._hand = link[robot.hand]
         self.robot_links = frozenset(link)
-        self.hand_link = robot.links[-3].name
-        self.finger_links = tuple(one.name for one in robot.links[-2:])
+        self.hand_link = robot.hand
+        self.finger_links = tuple(one.name for one in robot.finger_links)
 
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
         self.opening = self.widest = robot.opening
@@ -81,15 +83,16 @@ class BulletActuated(BulletWorld, Actuated):
 
     # Time
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+    def tick(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
         trajectory's speeds there.
         """
         bullet, client = self._bullet, self.client
+        count = len(self._driven)
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
-            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10,
-            velocityGains=[1.0] * 10, physicsClientId=client,
+            targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
+            positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
         self._fingers.drive(self.opening, self.squeezing, RATE)
         bullet.stepSimulation(physicsClientId=client)
@@ -103,7 +106,7 @@ class BulletActuated(BulletWorld, Actuated):
         return self._steps / RATE
 
     def actual(self) -> Array:
-        """Return the actual configuration (10,)."""
+        """Return the actual configuration (3 + n,)."""
         states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
         return np.array([state[0] for state in states])
 

@@ -12,13 +12,8 @@ from tamp.simulation.world import World
 RATE = 240
 """Commands to the motors a second."""
 
-FORCE = 50.0
-"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N
-for a moment.
-"""
-
-TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
+BASE_FORCE = 2e4
+"""The most with which the base is driven, newtons and newton metres."""
 
 NEAR = 0.004
 """Metres from both fingers within which a body counts as between them."""
@@ -34,9 +29,9 @@ class Actuated(World):
     `tamp.simulation.engines.open_actuated` makes one.
 
     Attributes:
-        conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
+        conf: What base and arm aim at, [x, y, yaw, q1..qn], shape (3 + n,), metres and radians.
         opening: What the fingers aim at, metres between them.
-        squeezing: The fingers close with their whole force instead.
+        squeezing: The fingers close instead, and press with their whole force on what they meet.
         bound: The body that a fixed constraint binds to the hand, or None.
         widest: The fingers' largest opening, metres.
         robot_links: Names of the robot's links, of which `hand_link` and `finger_links` are some.
@@ -54,8 +49,8 @@ class Actuated(World):
     # Time
 
     @abstractmethod
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+    def tick(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
         trajectory's speeds there.
         """
 
@@ -73,7 +68,7 @@ class Actuated(World):
 
     @abstractmethod
     def actual(self) -> Array:
-        """Return the actual configuration (10,)."""
+        """Return the actual configuration (3 + n,)."""
 
     @abstractmethod
     def width(self) -> float:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import FORCE, Actuated
+from tamp.simulation.actuation import Actuated
 from tamp.simulation.drops import Drops
 from tamp.simulation.world import World
 
 MakesWorld = Callable[[Scene, Robot | None, bool], World]
-MakesActuated = Callable[[Scene, Robot, float], Actuated]
+MakesActuated = Callable[[Scene, Robot, float | None], Actuated]
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def _bullet_world(scene: Scene, robot: Robot | None, dynamic: bool) -> World:
     return BulletWorld(scene, robot, dynamic=dynamic)
 
 
-def _bullet_actuated(scene: Scene, robot: Robot, force: float) -> Actuated:
+def _bullet_actuated(scene: Scene, robot: Robot, force: float | None) -> Actuated:
     from tamp.simulation.actuated import BulletActuated
 
     return BulletActuated(scene, robot, force)
@@ -52,7 +52,7 @@ def _mujoco_world(scene: Scene, robot: Robot | None, dynamic: bool) -> World:
     return MujocoWorld(scene, robot, dynamic=dynamic)
 
 
-def _mujoco_actuated(scene: Scene, robot: Robot, force: float) -> Actuated:
+def _mujoco_actuated(scene: Scene, robot: Robot, force: float | None) -> Actuated:
     from tamp.simulation.mujoco_actuated import MujocoActuated
 
     return MujocoActuated(scene, robot, force)
@@ -140,7 +140,7 @@ def open_world(
 
 
 def open_actuated(
-    scene: Scene, robot: Robot, force: float = FORCE, *, name: str | None = None
+    scene: Scene, robot: Robot, force: float | None = None, *, name: str | None = None
 ) -> Actuated:
     """Open a world with gravity and motors in the engine of a name: see `Actuated`."""
     return engine(name).actuated(scene, robot, force)

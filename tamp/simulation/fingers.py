@@ -57,7 +57,7 @@ def with_pads(urdf: str, robot: Robot) -> str:
     root = ElementTree.fromstring(urdf)
     links = {str(link.get("name")): link for link in root.iter("link")}
 
-    for finger, link in zip(robot.fingers, robot.links[-2:], strict=True):
+    for finger, link in zip(robot.fingers, robot.finger_links, strict=True):
         element, opens = links[link.name], np.array(finger.axis)
         for collision in element.findall("collision"):
             origin = collision.find("origin")

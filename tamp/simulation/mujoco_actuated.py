@@ -13,7 +13,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import FINGER_SPEED, FORCE, NEAR, RATE, TORQUES, Actuated
+from tamp.simulation.actuation import BASE_FORCE, FINGER_SPEED, NEAR, RATE, Actuated
 from tamp.simulation.mobile_urdf import BASE_JOINTS
 from tamp.simulation.mujoco_model import (
     FELT,
@@ -49,16 +49,17 @@ DEEP = -0.01
 class MujocoActuated(MujocoWorld, Actuated):
     """A world with gravity and a robot on motors in MuJoCo."""
 
-    def __init__(self, scene: Scene, robot: Robot, force: float = FORCE) -> None:
-        self._force, self._robot, self._ticks = force, robot, 0
+    def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
+        self._force = robot.force if force is None else force
+        self._robot, self._ticks = robot, 0
         self._T_hand_tool = robot.T_hand_tool.matrix
         self.opening = self.widest = robot.opening
         self._aims = robot.opening / 2
         self.squeezing = False
         self.bound: str | None = None
         self._passed: set[str] = set()
-        self.hand_link = robot.links[-3].name
-        self.finger_links = tuple(one.name for one in robot.links[-2:])
+        self.hand_link = robot.hand
+        self.finger_links = tuple(one.name for one in robot.finger_links)
         super().__init__(scene, robot, dynamic=True)
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
 
@@ -73,8 +74,9 @@ class MujocoActuated(MujocoWorld, Actuated):
             spec.joint(joint.name).armature = ARMATURE
         driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
         gains = [BASE_GAINS] * len(BASE_JOINTS)
-        gains += [ARM_GAINS[torque >= STRONG] for torque in TORQUES[len(BASE_JOINTS) :]]
-        for name, (kp, kv), most in zip(driven, gains, TORQUES, strict=True):
+        gains += [ARM_GAINS[effort >= STRONG] for effort in robot.effort]
+        forces = (*(BASE_FORCE,) * len(BASE_JOINTS), *robot.effort)
+        for name, (kp, kv), most in zip(driven, gains, forces, strict=True):
             self._add_motor(model, name, kp, kv, most)
         for finger in robot.fingers:
             self._add_motor(model, finger.name, *FINGER_GAINS, self._force)
@@ -116,12 +118,14 @@ class MujocoActuated(MujocoWorld, Actuated):
 
     # Time
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+    def tick(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
         trajectory's speeds there.
         """
         control, steps = self._data.ctrl, round(1 / RATE / TIMESTEP)
-        control[: self._motors] = self.conf + self._lead * rates
+        control[: self._motors] = self.conf
+        if rates is not None:
+            control[: self._motors] += self._lead * rates
         wanted = DEEP if self.squeezing else self.opening / 2
         if not self.squeezing:  # the force ends at once, not when the target has come back
             self._aims = max(self._aims, min(self.width() / 2, wanted))
@@ -141,7 +145,7 @@ class MujocoActuated(MujocoWorld, Actuated):
     # What is
 
     def actual(self) -> Array:
-        """Return the actual configuration (10,)."""
+        """Return the actual configuration (3 + n,)."""
         return self._data.qpos[self._driven].copy()
 
     def width(self) -> float:

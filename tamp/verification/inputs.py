@@ -96,7 +96,7 @@ def read_inputs(files: InputFiles, classifiers: Mapping[str, Classifier]) -> Inp
         domain=None if files.given["domain"] is None else files.domain,
     )
     with unquoted(plan.file, named):
-        loaded = load_scene(files.problem)
+        loaded = load_scene(files.problem, plan.robot if plan.robot_given else None)
         domain = parse_domain(read_pddl(files.domain), files.domain)
 
     objects = _objects(plan, domain)

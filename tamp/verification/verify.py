@@ -12,10 +12,11 @@ from types import MappingProxyType
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import load_robot
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile, read_plan
+from tamp.plan.robot_check import check_robot
 from tamp.plan.sources import check_files
 from tamp.plan.symbolic import is_symbolic
 from tamp.plan.violation import Violation
@@ -91,7 +92,8 @@ def verify(
 def _judge(inputs: Inputs, engine: str, began: float) -> Report:
     """Replay the plan; the time of the report counts from `began`, monotonic seconds."""
     plan, loaded, domain = inputs.files.plan, inputs.loaded, inputs.domain
-    robot = ROBOTS[loaded.scene.robot.model]()
+    robot = load_robot(loaded.scene.robot.model)
+    check_robot(plan, robot)
     semantics = Semantics(domain, inputs.objects)
     sources = {"problem": inputs.files.problem, "domain": inputs.files.domain}
     violations = [
@@ -150,12 +152,22 @@ def _report(
         trusted={
             name: count for name, count in sorted(trusted.items()) if name not in inputs.decided
         },
-        notes=(*replay.notes, *unsaid, *domain_note(inputs.loaded, files.domain, names_domain)),
+        notes=(
+            *replay.notes,
+            *_robot_note(plan),
+            *unsaid,
+            *domain_note(inputs.loaded, files.domain, names_domain),
+        ),
         on_trust=tuple(sorted(on_trust)),
         other_files=other_files(plan, inputs.loaded, files.domain, inputs.streams_file, others),
         asked=dict(sorted(relations.answers.items())),
         seconds=time.monotonic() - began,
     )
+
+
+def _robot_note(plan: PlanFile) -> tuple[str, ...]:
+    """Say that the robot is not the problem's, where it was given beside the problem."""
+    return (f"with the robot {plan.robot}, given beside the problem",) if plan.robot_given else ()
 
 
 def _check_header(

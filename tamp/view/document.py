@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.view.appearance import body_meshes, robot_meshes
@@ -47,9 +48,12 @@ def _robot(timeline: Timeline) -> dict[str, Any]:
     looks = robot_meshes(robot)
 
     return {
-        "links": [{"name": link.name, "meshes": _meshes(looks[link.name])} for link in robot.links],
+        "links": [
+            {"name": link.name, "meshes": _meshes(looks[link.name])} for link in _ordered(robot)
+        ],
         "T_base_arm": _matrix(robot.T_base_arm.matrix),
         "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
+        "slides": list(robot.prismatic),
         "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
         "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
         "fingers": [
@@ -61,6 +65,12 @@ def _robot(timeline: Timeline) -> dict[str, Any]:
             for finger in robot.fingers
         ],
     }
+
+
+def _ordered(robot: Robot) -> tuple[Link, ...]:
+    """Return the links in the page's order: base, foot, the arm's, hand, fingers."""
+    names = (robot.base, robot.foot, *(joint.child for joint in robot.joints), robot.hand)
+    return (*map(robot.link, names), *robot.finger_links)
 
 
 def _bodies(timeline: Timeline) -> list[dict[str, Any]]:

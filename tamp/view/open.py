@@ -8,11 +8,13 @@ from typing import Any
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robot_folder import ROBOT_FILE
+from tamp.geometric.loading.robots import ROBOTS, find_robot, load_robot
 from tamp.plan.open import open_plan
 from tamp.plan.read import read_plan
 from tamp.plan.write import plan_document, record_document, summary_document
 from tamp.planner.solution import Solution
+from tamp.view.robot_timeline import described, robot_timeline
 from tamp.view.story import PlanningSummary, planning_summary
 from tamp.view.timeline import Timeline, timeline_of
 
@@ -29,7 +31,7 @@ def open_timeline(
     problem: str | None = None,
     read: Callable[[Sequence[Path], Sequence[Path]], None] = _read,
 ) -> Opened:
-    """Open a plan file (.json), or a problem by file or name.
+    """Open a plan file (.json), a robot by its folder or name, or a problem by file or name.
 
     Args:
         what: The file or the name.
@@ -46,6 +48,13 @@ def open_timeline(
         read((stored.loaded.path, Path(what), *sources, *beside), _shown(stored.loaded))
         timeline = timeline_of(stored.loaded.scene, stored.robot, stored.plan)
         return timeline, planning_summary(stored.document, Path(what)), stored.document
+
+    if what in ROBOTS or (Path(what) / ROBOT_FILE).is_file():
+        model = find_robot(what)
+        robot = load_robot(model)
+        read(robot.files, ())
+        return robot_timeline(robot, model), PlanningSummary(described(robot)), {}
+
     if problem is not None:
         raise InputError("--problem goes with a plan", remedy="Name a plan file before it")
     loaded = load_scene(what)
@@ -53,7 +62,7 @@ def open_timeline(
     scene = loaded.scene
     goal = " ".join(loaded.goal.text.split())
     head = f"{len(scene.bodies)} bodies, {len(scene.movable)} movable · goal {goal}"
-    return timeline_of(scene, ROBOTS[scene.robot.model]()), PlanningSummary(head), {}
+    return timeline_of(scene, load_robot(scene.robot.model)), PlanningSummary(head), {}
 
 
 def _shown(loaded: LoadedProblem) -> tuple[Path, ...]:

@@ -86,7 +86,7 @@ class Renderer:
     def frame(self, time: float) -> NDArray[np.uint8]:
         """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
         row = self.timeline.row(time)
-        links = self._kinematics.link_poses(row[:10], float(row[10]))
+        links = self._kinematics.link_poses(row[:-1], float(row[-1]))
         parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
         parts += [part.moved(links[name]) for name, some in self._robot.items() for part in some]
         for name, pose in self.timeline.poses(time, self._kinematics).items():

@@ -56,8 +56,8 @@ class Timeline:
         robot: Of the scene.
         actions: In order; none without a plan.
         times: Seconds, shape (n,), not decreasing.
-        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in
-            between.
+        rows: The robot [x, y, yaw, q1..qn, opening] at these times, shape (n, 4 + joints), linear
+            in between.
         stays: Where each movable body is, one after the other.
     """
 
@@ -74,8 +74,8 @@ class Timeline:
         return float(self.times[-1])
 
     def row(self, time: float) -> Array:
-        """Interpolate the robot at a time, shape (11,); before the start and after the end it
-        stands.
+        """Interpolate the robot at a time, shape (4 + joints,); before the start and after the end
+        it stands.
         """
         return np.array([np.interp(time, self.times, column) for column in self.rows.T])
 
@@ -84,7 +84,7 @@ class Timeline:
         poses = {name: np.array(body.pose.matrix) for name, body in self.scene.bodies.items()}
         for name, stays in self.stays.items():
             stay = [stay for stay in stays if stay.since <= time or stay is stays[0]][-1]
-            poses[name] = kinematics.tool(self.row(time)[:10]) @ stay.T if stay.held else stay.T
+            poses[name] = kinematics.tool(self.row(time)[:-1]) @ stay.T if stay.held else stay.T
         return poses
 
 
@@ -134,6 +134,10 @@ def _where(
     return f"in {place}" if place in scene.cavities else f"on {place}"
 
 
+PARTS = {"base": slice(0, 3), "arm": slice(3, -1), "gripper": slice(-1, None)}
+"""Columns of a row that each part of the robot has."""
+
+
 class _Maker:
     def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
         self.times: list[float] = [0.0]
@@ -149,14 +153,14 @@ class _Maker:
         """Move one part along a segment."""
         if segment.detach in self._names:
             body = self._names[segment.detach]
-            tool = self._kinematics.tool(self.rows[-1][:10])
+            tool = self._kinematics.tool(self.rows[-1][:-1])
             self.stays[body].append(PoseInterval(clock, False, tool @ self.stays[body][-1].T))
-        columns = {"base": slice(0, 3), "arm": slice(3, 10), "gripper": slice(10, 11)}[segment.part]
+        columns = PARTS[segment.part]
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
             row = self.rows[-1].copy()
             row[columns] = values
-            row[10] = opening
+            row[-1] = opening
             self.times.append(clock + float(time))
             self.rows.append(row)
         if segment.attach is not None and segment.attach.body in self._names:
@@ -166,7 +170,7 @@ class _Maker:
 
 def tool_path(timeline: Timeline, kinematics: Kinematics) -> Array:
     """Return the tool's positions at the timeline's times, shape (n, 3), metres in the world."""
-    return np.array([kinematics.tool(row[:10])[:3, 3] for row in timeline.rows])
+    return np.array([kinematics.tool(row[:-1])[:3, 3] for row in timeline.rows])
 
 
 def holding(timeline: Timeline) -> list[bool]:

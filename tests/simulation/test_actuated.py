@@ -9,8 +9,8 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.actuation import RATE, Actuated

@@ -11,7 +11,7 @@ import pytest
 
 from benchmarks.engine_distances import asked, near_pairs
 from tamp.errors import InputError
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene
 from tamp.simulation import engines

@@ -22,10 +22,9 @@ from tamp.geometric.collision.kernels import (
     UNDECIDED,
     check,
     demand,
-    place_frames,
-    place_part,
     spheres_apart,
 )
+from tamp.geometric.collision.placing import place_frames, place_part
 from tamp.geometric.collision.tables import HIGH, LOW, ON_FLOOR, SIZE
 from tamp.geometric.scene.pose import Array
 from tamp.system.compilation import njit
@@ -125,7 +124,7 @@ def _leaves_the_room(start, end, room):
 def _changes(start, end, change):
     """Compute how far each joint goes along the edge, the base as a whole; say if any moves."""
     moves = False
-    for k in range(10):
+    for k in range(len(start)):
         change[k] = abs(end[k] - start[k])
         moves = moves or change[k] > 0.0
     change[0] = math.hypot(change[0], change[1])
@@ -144,8 +143,9 @@ def _halve(head, tail, first, last, intervals, lists):
 
 @njit(**INLINE)
 def _decide_pairs(
-    head, first, last, count, half, padding, frames, change, parts, part_poses, placed, reach,
-    ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s, weights,
+    head, first, last, count, half, padding, frames, change, joints, parts, part_poses, placed,
+    reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s,
+    weights,
 ):  # fmt: skip
     """Decide the pairs first..last-1 of interval `head` at its middle, where the frames are.
 
@@ -162,7 +162,7 @@ def _decide_pairs(
             guess[0], guess[1], guess[2] = guesses[t, 0], guesses[t, 1], guesses[t, 2]
             for p in (i, SELF - other):
                 if p >= 0 and ready[p] != head:
-                    place_part(p, frames, change, parts, part_poses, placed, reach)
+                    place_part(p, frames, change, joints, parts, part_poses, placed, reach)
                     ready[p] = head
 
         far = demand(i, other, half, padding, parts, reach)
@@ -195,10 +195,13 @@ def _decided(start, end, padding, tables):
     n = parts.shape[0]
 
     # A few allocations, cut into pieces: each costs as much as a pair.
-    numbers, rows = np.empty(27), np.empty((13 + 3 * n, 12))
-    conf, change, guess, weights = numbers[:10], numbers[10:20], numbers[20:23], numbers[23:]
-    frames, s, placed = rows[:8], rows[8:12], rows[12 : 12 + n]
-    reach, box = rows[12 + n : 12 + 2 * n], rows[12 + 2 * n :]
+    size, moved = len(start), joints.shape[0] + 1
+    numbers, rows = np.empty(2 * size + 7), np.empty((moved + 5 + 2 * n, 12))
+    conf, change = numbers[:size], numbers[size : 2 * size]
+    guess, weights = numbers[2 * size : 2 * size + 3], numbers[2 * size + 3 :]
+    frames, s = rows[:moved], rows[moved : moved + 4]
+    placed, box = rows[moved + 4 : moved + 4 + n], rows[moved + 4 + n :]
+    reach = np.empty((n, moved + 4))
     ready = np.zeros(n, dtype=np.int64)
     found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
 
@@ -217,12 +220,12 @@ def _decided(start, end, padding, tables):
     count, head, tail = 0, 0, 3 if moves else 1
     while head < tail:
         middle, half = intervals[head, 0], intervals[head, 1]
-        for k in range(10):
+        for k in range(size):
             conf[k] = start[k] + middle * (end[k] - start[k])
         place_frames(conf, joints, frames)
         if head < 3:
             for k in range(n):
-                place_part(k, frames, change, parts, part_poses, placed, reach)
+                place_part(k, frames, change, joints, parts, part_poses, placed, reach)
             first = 0
             last = _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
         else:
@@ -230,9 +233,9 @@ def _decided(start, end, padding, tables):
 
         before = count
         answer, count = _decide_pairs(
-            head, first, last, count, half, padding, frames, change, parts, part_poses, placed,
-            reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess,
-            s, weights,
+            head, first, last, count, half, padding, frames, change, joints, parts, part_poses,
+            placed, reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks,
+            guesses, guess, s, weights,
         )  # fmt: skip
         if answer != FREE:
             return answer
@@ -269,14 +272,15 @@ def sources_digest() -> int:
     looks at one file only.
     """
     files = (
-        Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check")
+        Path(__file__).parent / f"{name}.py"
+        for name in ("tables", "gjk", "placing", "kernels", "edge_check")
     )
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 
 sweep = _compiled(sources_digest())
 """sweep(start, end, padding, tables) -> verdict: whether the straight line between two
-configurations (10,) is free.
+configurations (3 + n,) is free.
 
 Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked
 middle are at least this far from everything, all states between at least half of it. `tables`:

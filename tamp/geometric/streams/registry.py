@@ -7,7 +7,7 @@ from typing import Any
 
 from tamp.geometric.streams.approach import test_approach, test_approach_clear
 from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
-from tamp.geometric.streams.inverse_kinematics import inverse_kinematics
+from tamp.geometric.streams.inverse_kinematics import inverse_kinematics, inverse_kinematics_here
 from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
 from tamp.geometric.streams.reach import test_reachable
 from tamp.geometric.streams.sampling import sample_grasp, sample_inside, sample_on
@@ -17,6 +17,7 @@ STREAMS: Mapping[str, Callable[..., Any]] = {
     "sample-on": sample_on,
     "sample-inside": sample_inside,
     "inverse-kinematics": inverse_kinematics,
+    "inverse-kinematics-here": inverse_kinematics_here,
     "test-reachable": test_reachable,
     "test-pose-clear": test_pose_clear,
     "test-approach": test_approach,

@@ -76,12 +76,18 @@ def priced_search(
     if unit > 1.0:
         prices = {fact: unit * price for fact, price in prices.items()}
 
-    found = search(
-        task, price=prices, limit=SEARCH_LIMIT, deadline=deadline, weight=weight, below=below,
-        audit=audit,
-    )  # fmt: skip
-    effort.expanded += found.expanded
-    if found.reason is Reason.LIMIT and below == math.inf and not brief:
+    patience = experience.patience
+    any_will_do = below == math.inf and not brief
+    found = None
+    if not (any_will_do and patience.skips()):
+        found = search(
+            task, price=prices, limit=SEARCH_LIMIT, deadline=deadline, weight=weight, below=below,
+            audit=audit,
+        )  # fmt: skip
+        effort.expanded += found.expanded
+        if any_will_do:
+            patience.note(in_vain=found.reason is Reason.LIMIT)
+    if found is None or (found.reason is Reason.LIMIT and any_will_do):
         # with many prices many plans look alike: then any plan will do
         found = search(task, search="greedy", price=prices, deadline=deadline)
         effort.expanded += found.expanded

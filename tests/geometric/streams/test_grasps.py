@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.loading.robots import ROBOTS
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 from tamp.geometric.stability.ray_crossings import Solid
@@ -54,7 +55,7 @@ BODIES = {
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 def first(robot: Robot, thing: Body, count: int, seed: int = 0) -> list[Grasp]:

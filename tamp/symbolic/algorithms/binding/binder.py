@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
 
+from tamp.symbolic.algorithms.binding.levels import Level, Levels
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
@@ -17,15 +17,6 @@ REFUSALS = 20
 
 RECENT = 3
 """How many of an instance's latest results are tried again before drawing new ones."""
-
-
-@dataclass
-class _Level:
-    """One node on the way down: its candidates, and the levels that its failure depends on."""
-
-    candidates: Iterator[tuple[str, ...]]
-    conflict: set[int]
-    culprits: set[int] = field(default_factory=set[int])
 
 
 class Binder:
@@ -62,36 +53,41 @@ class Binder:
             holds: Has the last word on values for all variables; what it refuses is not returned.
         """
         nodes = skeleton.nodes
-        makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
+        makers = skeleton.makers
         values: dict[int, str] = {}
-        levels: list[_Level] = []
+        levels = Levels(skeleton.users, fresh)
 
         spent_before = self.draws
         self._met.clear()
         refusals = 0
 
+        def enter(index: int) -> Level:
+            level = self._enter(skeleton, index, makers, values, tries, index in fresh)
+            levels.enter(index, level)
+            return level
+
+        def standing(index: int) -> Level:
+            level = levels.standing(index)
+            if level is None:
+                level = enter(index)
+                next(level.candidates)  # the value that it has
+            return level
+
         while True:
-            index = len(levels)
-            if index < len(nodes):
-                levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
+            index = levels.next()
+            if index is not None:
+                level = enter(index)
             elif holds is None or holds(values):
                 return values
             else:
                 refusals += 1
-                if refusals > REFUSALS or not levels:
+                if refusals > REFUSALS or not nodes:
                     return None
-                levels[-1].conflict.update(range(index - 1))  # any of them may be to blame
-            while True:
-                level = levels[-1]
-                index = len(levels) - 1
-                outputs = next(level.candidates, None)
-                if outputs is not None:
-                    values.update(zip(nodes[index].outputs, outputs, strict=True))
-                    break
+                index = len(nodes) - 1
+                level = standing(index)
+                level.conflict.update(range(index))  # any of them may be to blame
 
-                levels.pop()
-                for variable in nodes[index].outputs:
-                    values.pop(variable, None)
+            while (outputs := next(level.candidates, None)) is None:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
                 if not conflict or self.draws - spent_before > budget:
@@ -104,13 +100,14 @@ class Binder:
                     return None
 
                 target = max(conflict)
-                for dropped in range(target + 1, len(levels)):
-                    for variable in nodes[dropped].outputs:
-                        values.pop(variable, None)
-                del levels[target + 1 :]
-                levels[target].culprits |= conflict
+                levels.jump(index, target)
+                index, level = target, standing(target)
+                level.culprits |= conflict
                 if self._deadline.passed:
                     raise OutOfTime
+
+            levels.take(index, outputs)
+            values.update(zip(nodes[index].outputs, outputs, strict=True))
 
     def _settle(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
@@ -142,7 +139,7 @@ class Binder:
         values: dict[int, str],
         tries: int,
         fresh: bool,
-    ) -> _Level:
+    ) -> Level:
         node = skeleton.nodes[index]
         inputs = tuple(value_of(term, values) for term in node.inputs)
         fluents = node.given.union(
@@ -152,7 +149,7 @@ class Binder:
         )
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
-        return _Level(
+        return Level(
             self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict
         )
 

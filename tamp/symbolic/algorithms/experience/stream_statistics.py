@@ -60,6 +60,30 @@ SCALE = 0.4
 body away."""
 
 
+MOST_SKIPPED = 15
+"""Searches that do without a cheap plan, at most, before one is looked for again."""
+
+
+@dataclass
+class Patience:
+    """Patience with a search that ends in vain: one is skipped after the first, then 3, 7, 15."""
+
+    most: int = 0
+    skipped: int = 0
+
+    def skips(self) -> bool:
+        """Check whether the next search is skipped, and count it."""
+        if self.skipped >= self.most:
+            return False
+        self.skipped += 1
+        return True
+
+    def note(self, in_vain: bool) -> None:
+        """Note how a search ended."""
+        self.most = min(2 * self.most + 1, MOST_SKIPPED) if in_vain else 0
+        self.skipped = 0
+
+
 class Experience:
     """Lessons of binding about the optimistic task's symbolic facts, priced for the next search.
 
@@ -75,6 +99,7 @@ class Experience:
             CallKey, tuple[tuple[str, ...], dict[frozenset[tuple[str, ...]], None]]
         ] = {}
         self.nogoods: dict[tuple[tuple[str, ...], frozenset[tuple[str, ...]]], FailureRecord] = {}
+        self.patience = Patience()
 
     def record(self, fact: tuple[str, ...], rejection: Rejection | None) -> None:
         """Count a try of whatever certifies `fact`: a success, or a failure and its cause."""
