@@ -22,6 +22,7 @@ from tamp.simulation.mujoco_model import (
     TIMESTEP,
     Model,
     body_name,
+    link_body,
     pose_of,
     wxyz,
 )
@@ -84,7 +85,8 @@ class MujocoActuated(MujocoWorld, Actuated):
         for name in self.scene.movable:
             weld = spec.add_equality(
                 name=body_name(name), type=mujoco.mjtEq.mjEQ_WELD,
-                objtype=mujoco.mjtObj.mjOBJ_BODY, name1=self.hand_link, name2=body_name(name),
+                objtype=mujoco.mjtObj.mjOBJ_BODY, name1=link_body(self.hand_link),
+                name2=body_name(name),
             )  # fmt: skip
             weld.active, (weld.solref, weld.solimp) = False, SOFTNESS
         return model
@@ -105,13 +107,15 @@ class MujocoActuated(MujocoWorld, Actuated):
         model, robot = self._model, self._robot
         links = [model.body(number).name for number in range(1, model.nbody)]
         self.robot_links = frozenset(
-            name for name in links if not name.startswith("body:") and name != "floor"
+            name.removeprefix("link:")
+            for name in links
+            if not name.startswith("body:") and name != "floor"
         )
         count = len(BASE_JOINTS) + len(robot.joints)
         gains = model.actuator_gainprm[:count, 0]
         self._lead = -model.actuator_biasprm[:count, 2] / gains  # speed's share of the target, s
         self._motors = count
-        self._hand = model.body(self.hand_link).id
+        self._hand = model.body(link_body(self.hand_link)).id
         self._welds = {name: model.equality(body_name(name)).id for name in self.scene.movable}
         for name in self._passed & self.scene.bodies.keys():
             self.pass_through(name, True)

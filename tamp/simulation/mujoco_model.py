@@ -11,6 +11,7 @@ Conventions, each measured (docs/engines.md):
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from types import ModuleType
@@ -97,9 +98,10 @@ def new_model(robot: Robot | None) -> Model:
     if robot is None:
         spec = mujoco.MjSpec()
     else:
-        text = mobile_urdf(robot).replace(
-            '<link name="ground"/>', f'{_HEADER}<link name="ground"/>'
-        )
+        text = mobile_urdf(robot)
+        # A link of this name would be MuJoCo's own world.
+        text = re.sub(r'((?:link name|link)=)"world"', rf'\1"{link_body("world")}"', text)
+        text = text.replace('<link name="ground"/>', f'{_HEADER}<link name="ground"/>')
         try:
             spec = mujoco.MjSpec.from_string(text)
         except (ValueError, mujoco.FatalError) as error:
@@ -125,7 +127,9 @@ def _name_robot(model: Model, robot: Robot) -> None:
         body.gravcomp = 1.0
         for number, geom in enumerate(body.geoms):
             geom.name = f"{body.name}/{number}"
-            _describe(model, geom, frictions.get(body.name, FRICTION), moves=True)
+            _describe(
+                model, geom, frictions.get(body.name.removeprefix("link:"), FRICTION), moves=True
+            )
             geom.contype, geom.conaffinity = ROBOT
 
 
@@ -232,6 +236,16 @@ def _add_pair(model: Model, first: str, second: str, friction: float) -> None:
 def body_name(body: str) -> str:
     """Return the name of a scene's body in the model, where the robot's links have names, too."""
     return f"body:{body}"
+
+
+def link_body(link: str) -> str:
+    """Return the name of a robot's link in the model, where one name is taken."""
+    return "link:world" if link == "world" else link
+
+
+def owner_of(geom: str) -> str:
+    """Return the scene's name of a body, or the link's, to which a shape belongs."""
+    return geom.rpartition("/")[0].removeprefix("body:").removeprefix("link:")
 
 
 def is_link(geom: str) -> bool:

@@ -22,8 +22,10 @@ from tamp.simulation.mujoco_model import (
     add_pairs,
     body_name,
     is_link,
+    link_body,
     load_mujoco,
     new_model,
+    owner_of,
     pose_of,
     wxyz,
 )
@@ -78,7 +80,7 @@ class MujocoWorld(World):
         }
 
         names = [model.geom(number).name for number in range(model.ngeom)]
-        self._owner_of = [_owner(name) for name in names]
+        self._owner_of = [owner_of(name) for name in names]
         self._is_link = np.array([is_link(name) for name in names], dtype=bool)
         self._geoms = {
             number: range(first, first + count)
@@ -107,7 +109,7 @@ class MujocoWorld(World):
     def _index_robot(self, robot: Robot) -> None:
         model = self._model
         for link in robot.links:
-            self.links[link.name] = self._solid(link.name, model.body(link.name).id, -1)
+            self.links[link.name] = self._solid(link.name, model.body(link_body(link.name)).id, -1)
         self._frames = np.array([solid.handle for solid in self.links.values()])
         driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
         self._driven = np.array([model.joint(name).qposadr[0] for name in driven])
@@ -226,8 +228,3 @@ class MujocoWorld(World):
         for _ in range(math.ceil(seconds / self._model.opt.timestep - 1e-9)):
             self._mujoco.mj_step(self._model, self._data)
         self._fresh = False
-
-
-def _owner(geom: str) -> str:
-    """Return the scene's name of a body, or the link's, to which a shape belongs."""
-    return geom.rpartition("/")[0].removeprefix("body:")

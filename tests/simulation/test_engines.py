@@ -73,11 +73,13 @@ def test_distances_of_near_pairs_against_coal(name: str) -> None:
 
 
 @pytest.mark.skipif(len(INSTALLED) < 2, reason="compares two engines")
-def test_both_engines_have_links_and_tool_in_the_same_places(rng: np.random.Generator) -> None:
-    robot = ROBOTS["panda_mobile"]()
-    with open_world(scene_of(), robot, name="pybullet") as one, open_world(scene_of(), robot, name="mujoco") as two:
+@pytest.mark.parametrize("model", ROBOTS)
+def test_both_engines_have_links_in_the_same_places(model: str, rng: np.random.Generator) -> None:
+    robot = ROBOTS[model]()
+    scene = Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM)
+    with open_world(scene, robot, name="pybullet") as one, open_world(scene, robot, name="mujoco") as two:
         for _ in range(20):
-            state = rng.uniform(-2, 2, 3), rng.uniform(robot.lower, robot.upper), float(rng.uniform(0, 0.08))
+            state = rng.uniform(-2, 2, 3), rng.uniform(robot.lower, robot.upper), float(rng.uniform(0, robot.opening))
             one.set_robot(*state)
             two.set_robot(*state)
             first, second = one.link_poses(), two.link_poses()
@@ -155,3 +157,16 @@ def test_rays_that_begin_inside_a_body_meet_it_at_once(name: str, depth: float) 
     assert (outside, missed) == ("block", None) and far == pytest.approx(0.15 / 0.4, abs=1e-3)
     if name == "mujoco" or depth < 5e-4:  # pybullet does not see a surface from deep inside
         assert (short, long) == ("block", "block") and (at, there) == pytest.approx((0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize("name", INSTALLED)
+@pytest.mark.parametrize("model", ROBOTS)
+def test_every_shipped_robot_follows_its_motors(model: str, name: str) -> None:
+    robot = ROBOTS[model]()
+    with open_actuated(Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM), robot, name=name) as world:
+        for _ in range(60):
+            world.conf[3:] += 0.2 / 60
+            world.tick()
+        world.wait(0.5)
+        assert np.abs(world.actual() - world.conf).max() < 5e-3
+        assert world.width() == pytest.approx(robot.opening, abs=1e-3)
