@@ -35,8 +35,8 @@ EXTRAS = {"matplotlib": {"tamp/benchmark/picture.py"}, "ray": {"tamp/benchmark/r
 DISTRIBUTIONS = {
     "PIL": "pillow",
     "fcl": "python-fcl",
+    "mujoco": "mujoco-core",
     "pinocchio": "pin",
-    "pybullet_data": "pybullet",
     "sklearn": "scikit-learn",
     "yaml": "pyyaml",
 }

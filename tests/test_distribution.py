@@ -116,7 +116,7 @@ def test_the_projects_own_requirements_name_ours() -> None:
 
     assert project["name"] == DISTRIBUTION == "tamp-planner"
     assert "tamp" not in {requirement.name for requirement in required}
-    assert {"bench", "learn", "ray"} == {
+    assert {"bench", "ray"} == {
         extra for requirement in required if requirement.name == DISTRIBUTION for extra in requirement.extras
     }
 
