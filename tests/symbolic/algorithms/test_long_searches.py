@@ -17,12 +17,12 @@ def test_a_short_search_has_its_plan_bound_once() -> None:
 
 
 def test_a_long_search_has_it_bound_until_nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two tries of the four poses in the first round; the one that is clear comes in the third."""
+    """Two tries of the four poses in the first round; the one that is clear comes in the next."""
     monkeypatch.setattr(adaptive, "FIRST_TRIES", 2)
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == 4)
     values = bind_for_its_worth(run, skeleton, 1000)
-    assert values is not None and [run.objects.values[name] for name in values.values()] == [4]
-    assert skeleton.rounds == 2
+    assert values is not None and [run.streams.objects.values[name] for name in values.values()] == [4]
+    assert skeleton.rounds == 1
 
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
     assert bind_for_its_worth(run, skeleton, 1000) is None, "no round is without end where nothing is drawn"
