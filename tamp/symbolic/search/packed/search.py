@@ -221,5 +221,5 @@ class PackedSearch:
             ints, self._reals, t, x, x.rooms, plan, kept, len(numbers)
         )
         operators = self._search.successors.operators
-        steps = ints[kept : kept + count].tolist()
+        steps: list[int] = ints[kept : kept + count].tolist()
         return Plan(tuple(operators[i] for i in steps), float(cost))
