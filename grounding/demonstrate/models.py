@@ -15,6 +15,11 @@ def _round(value: float) -> float:
     return round(float(value), 3)
 
 
+def _scale(rng: Random, low: float, high: float) -> float:
+    """Sample a factor in steps of 0.05: a mesh of a new size takes half a second to be read."""
+    return round(0.05 * round(float(rng.uniform(low, high)) / 0.05), 2)
+
+
 def _box(rng: Random) -> Entry:
     return {"box": [_round(edge) for edge in rng.uniform(0.03, [0.1, 0.13, 0.18])]}
 
@@ -25,15 +30,15 @@ def _can(rng: Random) -> Entry:
 
 
 def _cup(rng: Random) -> Entry:
-    return {"mesh": "pybullet_data/objects/mug.urdf", "scale": _round(rng.uniform(0.7, 1.1))}
+    return {"mesh": "pybullet_data/objects/mug.urdf", "scale": _scale(rng, 0.7, 1.1)}
 
 
 def _bowl(rng: Random) -> Entry:
-    return {"mesh": "objects/bowl.obj", "scale": _round(rng.uniform(0.75, 1.25))}
+    return {"mesh": "objects/bowl.obj", "scale": _scale(rng, 0.75, 1.25)}
 
 
 def _bottle(rng: Random) -> Entry:
-    return {"mesh": "objects/mustard_bottle.obj", "scale": _round(rng.uniform(0.7, 1.15))}
+    return {"mesh": "objects/mustard_bottle.obj", "scale": _scale(rng, 0.7, 1.15)}
 
 
 def _plate(rng: Random) -> Entry:
@@ -77,18 +82,16 @@ def sample_body(kind: str, rng: Random) -> tuple[str, Entry]:
     return chosen, MODELS[chosen](rng)
 
 
-def sample_furniture(rng: Random) -> tuple[str, Entry, str, float]:
-    """Sample what things stand on: its name, its entry, the name of its surface and that surface's
-    height, metres.
-    """
+def sample_furniture(rng: Random) -> tuple[str, Entry, str]:
+    """Sample what things stand on: its name, its entry, and the name of its surface."""
     which = int(rng.integers(4))
     if which == 0:
         width, depth, height = (_round(v) for v in rng.uniform([0.8, 0.4, 0.5], [1.1, 0.5, 1.1]))
         entry = {"furniture": "cupboard", "size": [width, depth, height], "compartments": 2}
-        return "cupboard", entry, "cupboard_top", height
+        return "cupboard", entry, "cupboard_top"
     if which == 1:
         width, depth, height = (_round(v) for v in rng.uniform([0.7, 0.5, 0.15], [1.1, 0.7, 0.45]))
         entry = {"furniture": "table", "size": [width, depth, height], "legs": False}
-        return "bench", entry, "bench", height
+        return "bench", entry, "bench"
     width, depth, height = (_round(v) for v in rng.uniform([0.9, 0.55, 0.5], [1.3, 0.8, 1.05]))
-    return "table", {"furniture": "table", "size": [width, depth, height]}, "table", height
+    return "table", {"furniture": "table", "size": [width, depth, height]}, "table"

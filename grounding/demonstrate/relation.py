@@ -14,11 +14,8 @@ MOST_ARGUMENTS = 4
 LONGEST = 40
 """Characters of a name."""
 
-PLACES = ("surface", "container")
-"""Kinds of arguments that are places; all others are bodies that can be moved."""
-
 KINDS = (
-    "object", "box", "can", "cup", "bowl", "bottle", "plate", "stick", *PLACES,
+    "object", "box", "can", "cup", "bowl", "bottle", "plate", "stick", "container", "surface",
 )  # fmt: skip
 """What an argument may be: `object` is any body that a hand can move."""
 
@@ -50,7 +47,7 @@ GUESSED: Mapping[str, str] = {
     **dict.fromkeys(("saucer", "tray"), "plate"),
     **dict.fromkeys(("tin",), "can"),
 }
-"""The kind of an argument by its name, where none is said: `lying(o, shelf)`, `right_of(fork, b)`."""
+"""The kind of an argument by its name, where none is said: `lying(o, shelf)`."""
 
 
 @dataclass(frozen=True)
@@ -59,11 +56,6 @@ class Argument:
 
     name: str
     kind: str = "object"
-
-    @property
-    def is_place(self) -> bool:
-        """Check whether it is a place, not a body."""
-        return self.kind in PLACES
 
 
 @dataclass(frozen=True)
@@ -141,9 +133,9 @@ def _check_arguments(name: str, arguments: tuple[Argument, ...]) -> None:
     for one in names:
         if names.count(one) > 1:
             raise InputError(f"'{one}' is an argument of '{name}' twice")
-    if arguments[0].is_place:
+    if arguments[0].kind == "surface":
         raise InputError(
-            f"the first argument of '{name}' is a {arguments[0].kind}",
+            f"the first argument of '{name}' is a surface",
             remedy="Name first the body that a plan would place",
         )
     if sum(one.kind == "surface" for one in arguments) > 1:

@@ -137,6 +137,7 @@ class _Handler(BaseHTTPRequestHandler):
         if not self.server.most:
             self.send_error(501, "nothing is taken here")
             return
+
         origin = self.headers.get("Origin", "").lower()
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         if origin not in ("", *(f"http://{name}" for name in self.server.names)):
@@ -145,6 +146,7 @@ class _Handler(BaseHTTPRequestHandler):
         if kind != "application/json":  # no page from elsewhere may send this unasked
             self.send_error(415, "only application/json is taken")
             return
+
         length = self.headers.get("Content-Length", "")
         if not length.isdecimal() or len(length) > 12:
             self.send_error(411, "how much is sent must be said")
@@ -177,8 +179,14 @@ class _Handler(BaseHTTPRequestHandler):
                 self.wfile.write(reply.content)
 
 
-def check_browser() -> None:
+def check_browser(
+    remedy: str = "Write a page with --html FILE or a picture with --png FILE, "
+    "or serve with tamp-view --no-browser",
+) -> None:
     """Refuse early when no browser can be opened.
+
+    Args:
+        remedy: What to do then.
 
     Raises:
         InputError: There is none.
@@ -186,11 +194,7 @@ def check_browser() -> None:
     try:
         webbrowser.get()
     except webbrowser.Error:
-        raise InputError(
-            "no browser was found to open",
-            remedy="Write a page with --html FILE or a picture with --png FILE, "
-            "or serve with tamp-view --no-browser",
-        ) from None
+        raise InputError("no browser was found to open", remedy=remedy) from None
 
 
 def serve(

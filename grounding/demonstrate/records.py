@@ -1,0 +1,48 @@
+"""The records of a session, as the page shows them: counts, cards, hints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from grounding.demonstrate.folder import Card, DemonstrationFolder
+from grounding.demonstrate.hints import hints, next_step
+from grounding.demonstrate.learning import learning_command
+from grounding.demonstrate.relation import KINDS, PRESETS, Relation
+
+
+def records(relation: Relation, folder: DemonstrationFolder) -> dict[str, Any]:
+    """Describe a relation and its demonstrations for the page."""
+    cards = folder.cards()
+    shown = [one for card in cards for one in card.demonstrations]
+    holding = sum(one.holds for one in shown)
+
+    return {
+        "relation": {
+            "text": str(relation),
+            "name": relation.name,
+            "meaning": relation.meaning,
+            "arguments": [{"name": one.name, "kind": one.kind} for one in relation.arguments],
+        },
+        "presets": [{"text": text, "meaning": said} for text, said in PRESETS.items()],
+        "kinds": list(KINDS),
+        "folder": str(folder.path),
+        "cards": [_card(card) for card in cards],
+        "holding": holding,
+        "other": len(shown) - holding,
+        "hints": [
+            {"kind": one.kind, "text": one.text, "files": list(one.files)}
+            for one in hints(relation, shown)
+        ],
+        "todo": next_step(relation, shown),
+        "restorable": folder.restorable,
+        "command": learning_command(relation.name, folder.path),
+    }
+
+
+def _card(card: Card) -> dict[str, Any]:
+    return {
+        "name": card.name,
+        "labels": [label.holds for label in card.labels],
+        "error": card.error,
+        "stamp": f"{card.stamp[0]}-{card.stamp[1]}",
+    }
