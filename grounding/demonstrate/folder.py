@@ -62,17 +62,24 @@ class DemonstrationFolder:
 
     Args:
         path: The folder; it is made with the first demonstration.
-        relation: The relation's name.
+        relation: The relation that they are about.
 
     Raises:
-        InputError: The path is no folder, or holds more files than anybody demonstrates.
+        InputError: The path is no folder, holds more files than anybody demonstrates, or has
+            demonstrations of a relation of that name with another number of arguments.
     """
 
-    def __init__(self, path: Path, relation: str) -> None:
-        self.path, self.relation = path, relation
+    def __init__(self, path: Path, relation: Relation) -> None:
+        self.path, self.relation = path, relation.name
         self._cards: dict[str, Card] = {}
         self._removed: list[tuple[str, bytes]] = []
-        self.cards()
+        wanted = len(relation.arguments)
+        for card in self.cards():
+            for label in card.labels:
+                if len(label.arguments) != wanted:
+                    what = f"{relation.name} has {len(label.arguments)} arguments here"
+                    remedy = f"{relation} has {wanted}: choose another name, or another --out"
+                    raise InputError(what, file=path / card.name, line=label.line, remedy=remedy)
 
     def cards(self) -> list[Card]:
         """Return what is in the folder now, by name; files are read again when they have changed.

@@ -7,7 +7,7 @@ from typing import Any
 from grounding.demonstrate.folder import Card, DemonstrationFolder
 from grounding.demonstrate.hints import hints, next_step
 from grounding.demonstrate.learning import learning_command
-from grounding.demonstrate.relation import KINDS, PRESETS, Relation
+from grounding.demonstrate.relation import KINDS, PRESETS, Relation, parse_relation
 
 
 def records(relation: Relation, folder: DemonstrationFolder) -> dict[str, Any]:
@@ -23,7 +23,9 @@ def records(relation: Relation, folder: DemonstrationFolder) -> dict[str, Any]:
             "meaning": relation.meaning,
             "arguments": [{"name": one.name, "kind": one.kind} for one in relation.arguments],
         },
-        "presets": [{"text": text, "meaning": said} for text, said in PRESETS.items()],
+        "presets": [
+            {"text": str(parse_relation(text)), "meaning": said} for text, said in PRESETS.items()
+        ],
         "kinds": list(KINDS),
         "folder": str(folder.path),
         "cards": [_card(card) for card in cards],

@@ -75,7 +75,7 @@ class Relation:
     @property
     def meaning(self) -> str:
         """Return what it means, where it is one of PRESETS."""
-        return PRESETS.get(str(self), "")
+        return next((said for text, said in PRESETS.items() if parse_relation(text) == self), "")
 
 
 def parse_relation(text: str) -> Relation:

@@ -19,7 +19,7 @@ from grounding.demonstrate.relation import Relation, parse_relation
 from grounding.demonstrate.scene import Stage, choices_of, open_stage, sample_stage, shuffled
 from grounding.demonstrate.stage_document import flat, stage_document
 from grounding.demonstrate.thumbnail import thumbnail
-from grounding.demonstrate.workbench import Workbench
+from grounding.demonstrate.workbench import Trouble, Workbench
 from grounding.relations.demonstration_file import Demonstration, Label
 from tamp.errors import InputError, printable
 from tamp.geometric.scene.pose import Pose
@@ -70,7 +70,7 @@ class Studio:
         self._chosen: dict[str, str] = {}
         self._lock = threading.RLock()
         self.relation = relation
-        self.folder = DemonstrationFolder(source.folder(relation), relation.name)
+        self.folder = DemonstrationFolder(source.folder(relation), relation)
         # Who goes on where he was gets other scenes than those he has labelled already.
         self._rng = np.random.default_rng([seed, len(self.folder.cards())])
         self._number = 0
@@ -145,7 +145,7 @@ class Studio:
     def _change_relation(self, message: Message) -> Message:
         relation = parse_relation(read_word(message, "text"))
         path = self._source.folder(relation)
-        folder = DemonstrationFolder(path, relation.name)
+        folder = DemonstrationFolder(path, relation)
         ours = self._source.out is not None and relation.name != self.relation.name
         if ours and self.folder.cards():
             raise InputError(
@@ -242,12 +242,8 @@ class Studio:
 
     # ---- what is checked
 
-    def _troubles(self, poses: Mapping[str, Pose]):
-        names = tuple(name for name in self.stage.arguments if name in self.stage.scene.movable)
-        moved = tuple(name for name in poses if name in self.stage.scene.movable)
-        return list(
-            self._bench.troubles(self.stage.posed(poses), tuple(dict.fromkeys(names + moved)))
-        )
+    def _troubles(self, poses: Mapping[str, Pose]) -> list[Trouble]:
+        return list(self._bench.troubles(self.stage.posed(poses), self.stage.movable))
 
     def _contradicted(self, scene: Scene, holds: bool) -> list[str]:
         shown = Demonstration(scene, self.stage.arguments, holds, "this one:0")

@@ -23,6 +23,9 @@ FINEST = 0.0005
 HIGHEST = 3.0
 """Metres that a body is raised at most to come out of others."""
 
+FREE = 0.0002
+"""Metres from other bodies at which a body counts as out of them."""
+
 HANGS = 0.006
 """Metres of air under a body from which it counts as hanging; contacts of the judge's are nearer
 than 10 mm, and a hand's demonstrations are to be better.
@@ -116,6 +119,7 @@ class Workbench:
         below = matrix[2, 3] - self._descended(matrix)[2, 3]
         touching = any(one.distance < HANGS for one in contacts)
         if below > HANGS and not touching:
+            below += CONTACT_GAP
             height = f"{below * 1e3:.0f} mm" if below < 0.1 else f"{below * 1e2:.0f} cm"
             return Trouble("hangs", name, f"{name} hangs {height} above what is below it")
 
@@ -150,9 +154,9 @@ class Workbench:
         return min((one.distance for one in self._drops.contacts(matrix, reach)), default=reach)
 
     def _raised(self, matrix: Array) -> Array:
-        """Move straight up until no other body is nearer than half of CONTACT_GAP."""
+        """Move straight up until no other body is nearer than FREE."""
         start = _moved(matrix, 0.0)
-        if self._clearance(start, CONTACT_GAP) >= 0.5 * CONTACT_GAP:
+        if self._clearance(start, CONTACT_GAP) >= FREE:
             return start
         step, low = 0.004, 0.0
         while low < HIGHEST and self._clearance(_moved(matrix, low + step), 0.002) < CONTACT_GAP:
@@ -160,31 +164,35 @@ class Workbench:
         high = low + step
         for _ in range(6):
             middle = (low + high) / 2
-            if self._clearance(_moved(matrix, middle), 0.002) < 0.5 * CONTACT_GAP:
+            if self._clearance(_moved(matrix, middle), 0.002) < FREE:
                 low = middle
             else:
                 high = middle
-        return _moved(matrix, high)
+        return _moved(matrix, high + CONTACT_GAP - FREE)
 
     def _descended(self, matrix: Array) -> Array:
         """Move straight down until something is CONTACT_GAP below, at the latest the floor.
 
-        A step is as long as the distance to the nearest body: nothing is passed through.
+        A step is as long as the distance to the nearest body, and beside a wall FINEST: nothing is
+        passed through, and no wall stops it.
         """
         down = 0.0
         while down < FARTHEST:
             distance = self._clearance(_moved(matrix, -down), 0.1)
-            if distance <= CONTACT_GAP + 1e-5 and self._is_below(matrix, down):
+            step = max(distance - FREE, FINEST)
+            if step == FINEST and self._clearance(_moved(matrix, -down - step), 0.002) < FREE:
                 break
-            down += max(distance - CONTACT_GAP, FINEST)
-        return _moved(matrix, -down)
+            down += step
 
-    def _is_below(self, matrix: Array, down: float) -> bool:
-        """Check whether what is near comes nearer when the body is lowered: not a wall beside
-        it.
-        """
-        here = self._clearance(_moved(matrix, -down), 0.01)
-        return self._clearance(_moved(matrix, -down - FINEST), 0.01) < here - FINEST / 4
+        free, blocked = down, down + FINEST
+        for _ in range(5):
+            middle = (free + blocked) / 2
+            if self._clearance(_moved(matrix, -middle), 0.002) < FREE:
+                blocked = middle
+            else:
+                free = middle
+
+        return _moved(matrix, CONTACT_GAP - FREE - free)
 
 
 def _moved(matrix: Array, up: float) -> Array:

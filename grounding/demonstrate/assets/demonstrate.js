@@ -170,9 +170,13 @@ function back(from, to) {
   changed();
 }
 
-async function settle(body, action) {
-  const stage = state.stage.number, said = await ask(action, about({ body: body.name }));
-  if (said && state.stage.number === stage) { body.T = said.T; changed(); }
+// The server puts a body down or drops it; what a hand does to it meanwhile counts more.
+function settle(body, action) {
+  const stage = state.stage.number, sent = body.T;
+  state.settling = ask(action, about({ body: body.name })).then((said) => {
+    if (said && state.stage.number === stage && body.T === sent) { body.T = said.T; changed(); }
+  });
+  return state.settling;
 }
 
 function move(body, T) { remember(); body.T = T; changed(); }
@@ -312,6 +316,7 @@ async function label(holds) {
   if (state.labelling) return;
   state.labelling = true;
   try {
+    await state.settling;
     const anyway = state.odd === holds, said = await ask("label", about({ holds, anyway, next: byId("after").checked }));
     if (!said) return;
     if (said.odd) {
