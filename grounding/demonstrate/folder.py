@@ -20,7 +20,7 @@ from grounding.relations.demonstration_text import DemonstrationFile, write_demo
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.scene.scene import Scene
-from tamp.system.outputs import check_writable, write_whole
+from tamp.system.outputs import check_writable, locked_folder, write_whole
 from tamp.system.reading import is_file
 
 FIRST_FACT = re.compile(r"[\s(]*(?:(?:and|not)[\s(]+)*([a-z][\w-]*)", re.IGNORECASE)
@@ -108,8 +108,12 @@ class DemonstrationFolder:
         Raises:
             InputError: It cannot be written.
         """
-        name = self._next()
-        self._write(name, shown)
+        try:
+            with locked_folder(self.path):  # another page may write there, too
+                name = self._next()
+                write_demonstration(self.path / name, shown)
+        except OSError as error:
+            raise InputError(f"cannot be written: {error.strerror}", file=self.path) from None
         return name
 
     def flip(self, name: str) -> None:
@@ -162,7 +166,8 @@ class DemonstrationFolder:
     def _next(self) -> str:
         """Return the next free name: a number is never given twice, so that order is history."""
         pattern = re.compile(rf"{re.escape(self.relation)}_(\d{{1,9}})\.yaml")
-        names = [*self._cards, *(name for name, _ in self._removed)]
+        there = [file.name for file in self.path.glob("*.yaml")]
+        names = [*there, *(name for name, _ in self._removed)]
         taken = [int(found[1]) for name in names if (found := pattern.fullmatch(name))]
         return f"{self.relation}_{max(taken, default=0) + 1:03d}.yaml"
 
@@ -174,14 +179,6 @@ class DemonstrationFolder:
             return (self.path / name).read_bytes()
         except OSError as error:
             raise InputError(f"cannot be read: {error.strerror}", file=self.path / name) from None
-
-    def _write(self, name: str, shown: DemonstrationFile) -> None:
-        try:
-            write_demonstration(self.path / name, shown)
-        except OSError as error:
-            raise InputError(
-                f"cannot be written: {error.strerror}", file=self.path / name
-            ) from None
 
     def _save(self, name: str, content: bytes) -> None:
         try:
