@@ -35,7 +35,7 @@ class Demo:
     """The relation and its arguments, such as "stack(a, b)", "upright(o)" or "inside(a, b:
     container)"; it can be changed on the page. By default that of the folder, or stack(a, b)."""
     scene: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """A problem file to demonstrate in; by default scenes are generated."""
+    """A problem file, or a shipped problem, to demonstrate in; by default scenes are generated."""
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR", help_behavior_hint="")] = None
     """The folder of the demonstrations; by default demos/RELATION."""
     seed: int = 0
@@ -71,7 +71,7 @@ def _demonstrate(options: Demo) -> None:
     source = Source(options.scene, options.out)
     check_folder(source.folder(relation))
     if not options.no_open:
-        check_browser("serve with tamp-demo --no-open, and open the address that it says")
+        check_browser("Serve with tamp-demo --no-open, and open the address that it says")
 
     with Workbench() as workbench, Learning() as learning:
         studio = Studio(relation, source, workbench, learning, options.seed)

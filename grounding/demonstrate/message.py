@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +12,9 @@ from tamp.geometric.scene.pose import Pose
 
 FARTHEST = 20.0
 """Metres from the world's origin at which a body may be shown."""
+
+HUGE = 1e6
+"""No number of a pose is larger; `nan` is not smaller either."""
 
 LONGEST = 1000
 """Characters of a word."""
@@ -54,7 +56,7 @@ def _pose(name: str, numbers: object) -> Pose:
     """Check that 16 numbers are a rigid transform, and make it exactly one."""
     if not isinstance(numbers, list) or len(numbers) != 16:
         raise InputError(f"the pose of {name} has not 16 numbers")
-    if not all(isinstance(one, int | float) and math.isfinite(one) for one in numbers):
+    if not all(isinstance(one, int | float) and abs(one) < HUGE for one in numbers):
         raise InputError(f"the pose of {name} holds what is no finite number")
     matrix = np.array(numbers, dtype=float).reshape(4, 4)
     turn = matrix[:3, :3]

@@ -27,6 +27,7 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Scene
 from tamp.geometric.stability.stable_poses import resting_of
+from tamp.system.files import find_problem
 from tamp.system.scratch import scratch_folder
 
 COLOURS = ("red", "blue", "green", "orange")
@@ -129,11 +130,11 @@ def sample_stage(relation: Relation, rng: Random) -> Stage:
             return Stage(placed, _read(placed), tuple(arguments))
 
 
-def open_stage(file: Path, relation: Relation, chosen: Mapping[str, str]) -> Stage:
+def open_stage(file: str | Path, relation: Relation, chosen: Mapping[str, str]) -> Stage:
     """Open a problem file as a scene to demonstrate in.
 
     Args:
-        file: The problem.
+        file: The problem's file, or the name of a shipped one.
         relation: What is demonstrated.
         chosen: Argument to body or place, as far as it has been said; the rest is taken in the
             file's order.
@@ -141,6 +142,7 @@ def open_stage(file: Path, relation: Relation, chosen: Mapping[str, str]) -> Sta
     Raises:
         InputError: It is none, has too few bodies for the arguments, or not what was chosen.
     """
+    file = find_problem(file)
     entries = read_entries(file)
     scene = load_scene(file, demonstration=True).scene
     free = [name for name in scene.movable if name not in chosen.values()]
