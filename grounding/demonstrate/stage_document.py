@@ -82,11 +82,14 @@ def _faces(body: Body) -> list[list[float]]:
 
 
 def _framed(stage: Stage) -> tuple[Array, float]:
-    """Return the middle and the radius, metres, of what is to be seen at first: the bodies that can
-    be moved.
+    """Return the middle and the radius, metres, of what is to be seen at first: the arguments, and
+    the bodies that stand where they do.
     """
     scene = stage.scene
-    names = stage.movable or tuple(scene.bodies)
+    shown = [name for name in stage.arguments if name in stage.movable]
+    supports = {scene.bodies[name].support for name in shown} - {None}
+    shown += [name for name in stage.movable if scene.bodies[name].support in supports]
+    names = shown or list(scene.bodies)
     boxes = [bounds(scene.bodies[name].parts, scene.bodies[name].pose) for name in names]
     low = np.min([box[0] for box in boxes], axis=0)
     high = np.max([box[1] for box in boxes], axis=0)
