@@ -61,7 +61,7 @@ def _demonstrate(options: Demo) -> None:
     named = None if options.relation is None else parse_relation(options.relation)
 
     from grounding.demonstrate.folder import check_folder
-    from grounding.demonstrate.learning import Learning
+    from grounding.demonstrate.runner import Runner
     from grounding.demonstrate.server import DemonstrationServer
     from grounding.demonstrate.studio import Source, Studio
     from grounding.demonstrate.workbench import Workbench
@@ -73,8 +73,8 @@ def _demonstrate(options: Demo) -> None:
     if not options.no_open:
         check_browser("Serve with tamp-demo --no-open, and open the address that it says")
 
-    with Workbench() as workbench, Learning() as learning:
-        studio = Studio(relation, source, workbench, learning, options.seed)
+    with Workbench() as workbench, Runner() as runner:
+        studio = Studio(relation, source, workbench, runner, options.seed)
         with DemonstrationServer(studio, options.port) as server:
             say(f"{server.address} shows {relation} until Ctrl-C.")
             say(f"Demonstrations go to {studio.folder.path}.")

@@ -14,6 +14,8 @@ import numpy as np
 from grounding.demonstrate.relation import Relation
 from grounding.demonstrate.scene import viewer_yaw
 from grounding.relations.demonstration_file import Demonstration
+from grounding.relations.situation import joined, situation_of
+from grounding.relations.variety import unvaried
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cylinder, Sphere
@@ -26,15 +28,6 @@ SIMPLE = 5
 
 FROM = 3
 """Demonstrations in which it holds from which on something counts as never varied."""
-
-SAME_HEIGHT = 0.02
-"""Metres by which heights may differ and still be one."""
-
-SAME_SIZE = 0.004
-"""Metres, of the edges of the box around a body."""
-
-SAME_YAW = math.radians(8.0)
-"""A hand that turns nothing keeps a yaw to this, radians."""
 
 SAME_PLACE = 0.004
 """Metres by which a body may be moved and still be in the same situation."""
@@ -114,46 +107,15 @@ def _labels(relation: Relation, demonstrations: Sequence[Demonstration]) -> Iter
 
 def _variety(relation: Relation, holding: Sequence[Demonstration]) -> Iterator[Hint]:
     """Find what is the same in all demonstrations in which the relation holds."""
-    count = len(holding)
-    if all(len(one.arguments) == len(relation.arguments) for one in holding):
-        heights = [_height(one) for one in holding]
-        if np.ptp(heights) < SAME_HEIGHT:
-            yield Hint(
-                "variety",
-                f"All {count} are at one height ({heights[0]:.2f} m): show it at another one",
-            )
-        if _one_angle([viewer_yaw(one.scene, one.arguments) for one in holding]):
-            yield Hint(
-                "variety", f"In all {count} the furniture is turned alike: show it turned elsewhere"
-            )
-        for number, argument in enumerate(relation.arguments):
-            bodies = [one.scene.bodies.get(one.arguments[number]) for one in holding]
-            if all(body is not None for body in bodies):
-                shown = [body for body in bodies if body is not None]
-                yield from _of_argument(argument.name, shown, holding)
-
-
-def _of_argument(
-    name: str, bodies: Sequence[Body], holding: Sequence[Demonstration]
-) -> Iterator[Hint]:
-    count = len(bodies)
-    sizes = np.array([_size(body) for body in bodies])
-    if np.ptp(sizes, axis=0).max() < SAME_SIZE:
-        edges = " x ".join(f"{edge * 100:.0f}" for edge in sizes[0])
-        yield Hint(
-            "variety", f"In all {count} {name} has one size ({edges} cm): show it with another body"
-        )
-    if any(_is_round(body) for body in bodies):
+    names = [one.name for one in relation.arguments]
+    if any(len(one.arguments) != len(names) for one in holding):
         return
-    yaws = [_yaw(body.pose) for body in bodies]
-    seen = [
-        yaw - viewer_yaw(one.scene, one.arguments) for yaw, one in zip(yaws, holding, strict=True)
-    ]
-    for angles, frame in ((yaws, "the world"), (seen, "the furniture")):
-        if _one_angle(angles):
-            text = f"In all {count} {name} is turned alike to {frame}: turn it (Q, E)"
-            yield Hint("variety", f"{text}, unless you mean that")
-            return
+    situations = joined([situation_of(one.scene, one.arguments) for one in holding])
+    for key, text in unvaried(situations, np.ones(len(holding), dtype=bool), names):
+        turned = key.removeprefix("yaw of ")
+        if turned.isdecimal() and any(_is_round(one, int(turned)) for one in holding):
+            continue
+        yield Hint("variety", text)
 
 
 def _situation(one: Demonstration) -> tuple[tuple[str, ...], Array, Array]:
@@ -179,41 +141,21 @@ def _alike(
     )
 
 
-def _height(one: Demonstration) -> float:
-    """Return how high the lowest argument stands, metres."""
-    lows: list[float] = []
-    for name in one.arguments:
-        body = one.scene.bodies.get(name)
-        if body is not None and (body.movable or body.cavities):
-            lows.append(float(bounds(body.parts, body.pose)[0][2]))
-    return min(lows, default=0.0)
-
-
 def _size(body: Body) -> list[float]:
     low, high = bounds(body.parts, Pose())
     return sorted((high - low).tolist())
 
 
-def _is_round(body: Body) -> bool:
-    """Check whether turning the body shows nothing: a cylinder that stands, a ball."""
+def _is_round(one: Demonstration, number: int) -> bool:
+    """Check whether turning an argument shows nothing: a cylinder that stands, a ball."""
+    body = one.scene.bodies.get(one.arguments[number])
+    if body is None:
+        return True
     upright = abs(float(body.pose.rotation[2, 2])) > 0.99
     shapes = [part.shape for part in body.parts]
     return all(
         isinstance(shape, Sphere) or (isinstance(shape, Cylinder) and upright) for shape in shapes
     )
-
-
-def _yaw(pose: Pose) -> float:
-    """Return the yaw of the body's first axis that lies more than it stands, radians."""
-    rotation = pose.rotation
-    axis = int(np.argmax(np.abs(rotation[:2]).max(axis=0) > 0.7))
-    return math.atan2(rotation[1, axis], rotation[0, axis])
-
-
-def _one_angle(angles: Sequence[float]) -> bool:
-    """Check whether all angles are within SAME_YAW of the first."""
-    turns = np.array(angles) - angles[0]
-    return bool(np.abs(np.angle(np.exp(1j * turns))).max() < SAME_YAW)
 
 
 def _file(one: Demonstration) -> str:

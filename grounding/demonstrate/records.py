@@ -6,11 +6,11 @@ from typing import Any
 
 from grounding.demonstrate.folder import Card, DemonstrationFolder
 from grounding.demonstrate.hints import hints, next_step
-from grounding.demonstrate.learning import learning_command
 from grounding.demonstrate.relation import KINDS, PRESETS, Relation, parse_relation
+from grounding.demonstrate.use import Uses
 
 
-def records(relation: Relation, folder: DemonstrationFolder) -> dict[str, Any]:
+def records(relation: Relation, folder: DemonstrationFolder, uses: Uses) -> dict[str, Any]:
     """Describe a relation and its demonstrations for the page."""
     cards = folder.cards()
     shown = [one for card in cards for one in card.demonstrations]
@@ -37,7 +37,8 @@ def records(relation: Relation, folder: DemonstrationFolder) -> dict[str, Any]:
         ],
         "todo": next_step(relation, shown),
         "restorable": folder.restorable,
-        "command": learning_command(relation.name, folder.path),
+        "commands": uses.commands,
+        "learned": uses.weights.is_file(),
     }
 
 

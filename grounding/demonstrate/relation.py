@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from grounding.relations.options import check_name
 from tamp.errors import InputError
 
 MOST_ARGUMENTS = 4
@@ -26,7 +27,7 @@ PRESETS: Mapping[str, str] = {
     "left_of(a, b)": "a stands to the left of b",
     "next_to(a, b)": "a stands beside b",
     "facing(a, b)": "a is turned towards b",
-    "inside(a, b: container)": "a is in the container b",
+    "within(a, b: container)": "a is in the container b",
     "set_cup(a: cup, b: plate)": "the cup a stands where it belongs beside the plate b",
     "between(a, b, c)": "a stands between b and c",
 }
@@ -35,8 +36,6 @@ PRESETS: Mapping[str, str] = {
 _NAME = re.compile(r"[a-z][a-z0-9_-]*", re.IGNORECASE)
 _CALL = re.compile(r"\s*([^\s():,]+)\s*\(\s*(.*?)\s*\)\s*", re.DOTALL)
 _FACT = re.compile(r"\s*\(\s*([^()]*?)\s*\)\s*", re.DOTALL)
-_TAKEN = ("and", "or", "not", "exists", "forall", "when", "imply", "either", "object", "robot",
-          "floor")  # fmt: skip
 
 GUESSED: Mapping[str, str] = {
     **{kind: kind for kind in KINDS},
@@ -119,8 +118,8 @@ def _check_name(name: str, what: str) -> None:
             else f"'{name}' cannot be the name of an {what}",
             remedy=f"A letter, then letters, digits, _ or -; at most {LONGEST} characters",
         )
-    if what == "relation" and name.lower() in _TAKEN:
-        raise InputError(f"'{name}' is a word of PDDL's or of a scene's", remedy="Choose another")
+    if what == "relation":
+        check_name(name)
 
 
 def _check_arguments(name: str, arguments: tuple[Argument, ...]) -> None:

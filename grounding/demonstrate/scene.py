@@ -184,14 +184,22 @@ def viewer_yaw(scene: Scene, arguments: tuple[str, ...]) -> float:
     """Return the yaw, radians, of the direction in which a viewer looks from the front of what the
     arguments stand on.
     """
+    stand = stand_of(scene, arguments)
+    return math.pi / 2 if stand is None else stand.pose.yaw + stand.front + math.pi / 2
+
+
+def stand_of(scene: Scene, arguments: tuple[str, ...]) -> Body | None:
+    """Return the furniture that the arguments stand on, or are places of; None for none."""
+    found: Body | None = None
     for name in arguments:
         body = scene.bodies.get(name)
         support = name if body is None or body.support is None else body.support
         place = scene.surfaces.get(support) or scene.cavities.get(support)
-        if place is not None:
-            owner = scene.bodies[place.body]
-            return owner.pose.yaw + owner.front + math.pi / 2
-    return math.pi / 2
+        owner = None if place is None else scene.bodies[place.body]
+        if owner is not None and owner.surfaces:
+            return owner
+        found = found or owner  # a container, unless there is a table
+    return found
 
 
 def shuffled(stage: Stage, rng: Random) -> Stage:

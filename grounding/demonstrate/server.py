@@ -34,17 +34,26 @@ class DemonstrationServer(LocalServer):
         super().__init__(port, most=MOST)
 
     def get(self, path: str) -> Reply:
-        """Return the page, the state that it shows, how far the learning is, or a thumbnail."""
+        """Return the page, what it shows, how far a command is, the last plan, or a thumbnail."""
         if path in ("/", "/index.html"):
             return Reply(self._page)
         if path == "/state":
             return _json(self._studio.state())
-        if path == "/learned":
-            return _json(self._studio.learned())
+        if path == "/run":
+            return _json(self._studio.run_state())
+        if path == "/plan.html":
+            return self._watched()
         if path.startswith("/thumbnails/"):
             content = self._studio.picture(path.removeprefix("/thumbnails/"))
             return NOT_FOUND if content is None else Reply(content, "image/png")
         return NOT_FOUND
+
+    def _watched(self) -> Reply:
+        """Return the page on which the last plan is watched."""
+        try:
+            return Reply(self._studio.uses.page.read_bytes())
+        except OSError:
+            return NOT_FOUND
 
     def post(self, path: str, content: bytes) -> Reply:
         """Do what the page asks for; what cannot be done is said in words, with status 400."""

@@ -12,13 +12,15 @@ import numpy as np
 
 from grounding.demonstrate.folder import DemonstrationFolder
 from grounding.demonstrate.hints import contradictions
-from grounding.demonstrate.learning import Learning, learning_words
 from grounding.demonstrate.message import Message, read_poses, read_word
+from grounding.demonstrate.opinion import Opinion
 from grounding.demonstrate.records import records
 from grounding.demonstrate.relation import Relation, parse_relation
+from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.scene import Stage, choices_of, open_stage, sample_stage, shuffled
 from grounding.demonstrate.stage_document import flat, stage_document
 from grounding.demonstrate.thumbnail import thumbnail
+from grounding.demonstrate.use import Uses, write_problem
 from grounding.demonstrate.workbench import Trouble, Workbench
 from grounding.relations.demonstration_file import Demonstration, Label
 from tamp.errors import InputError, printable
@@ -51,7 +53,7 @@ class Studio:
         relation: What is demonstrated first.
         source: Where scenes and demonstrations come from.
         workbench: The physics.
-        learning: Runs the learning.
+        runner: Runs the commands that learn and plan.
         seed: Of the generated scenes.
 
     Raises:
@@ -63,10 +65,11 @@ class Studio:
         relation: Relation,
         source: Source,
         workbench: Workbench,
-        learning: Learning,
+        runner: Runner,
         seed: int = 0,
     ) -> None:
-        self._source, self._bench, self._learning = source, workbench, learning
+        self._source, self._bench, self._runner = source, workbench, runner
+        self._opinion = Opinion()
         self._chosen: dict[str, str] = {}
         self._lock = threading.RLock()
         self.relation = relation
@@ -86,8 +89,10 @@ class Studio:
             "label": self._label,
             "delete": self._delete,
             "restore": self._restore,
+            "records": lambda message: self._records(),
             "flip": self._flip,
             "learn": self._learn,
+            "plan": self._plan,
         }
 
     def act(self, action: str, message: Message) -> Message:
@@ -106,10 +111,16 @@ class Studio:
         with self._lock:
             return harmless({**self._records(), **self._staged()})
 
-    def learned(self) -> Message:
-        """Return how far the learning is."""
-        state = self._learning.state()
-        return {"running": state.running, "code": state.code, "text": printable(state.text, "\n\t")}
+    def run_state(self) -> Message:
+        """Return how far the command is that learns or plans."""
+        run = self._runner.state()
+        text = printable(run.text, "\n\t")
+        return {"command": run.command, "running": run.running, "code": run.code, "text": text}
+
+    @property
+    def uses(self) -> Uses:
+        """Return the files of the relation that is demonstrated."""
+        return Uses(self.relation.name, self.folder.path)
 
     def picture(self, name: str) -> bytes | None:
         """Render the thumbnail of a demonstration by its file's name; None where there is none."""
@@ -122,7 +133,7 @@ class Studio:
     # ---- what is shown
 
     def _records(self) -> Message:
-        return records(self.relation, self.folder)
+        return records(self.relation, self.folder, self.uses)
 
     def _staged(self) -> dict[str, Any]:
         document = stage_document(self.stage, self._number)
@@ -205,7 +216,8 @@ class Studio:
 
     def _check(self, message: Message) -> Message:
         poses = self._poses(message)
-        return {"troubles": [one.text for one in self._troubles(poses)]}
+        troubles = [one.text for one in self._troubles(poses)]
+        return {"troubles": troubles, "opinion": self._opinion.of(self.uses, self.stage, poses)}
 
     def _label(self, message: Message) -> Message:
         """Write a demonstration, unless something is odd about it and nobody has said `anyway`."""
@@ -237,8 +249,17 @@ class Studio:
     def _learn(self, message: Message) -> Message:
         if not self.folder.demonstrations():
             raise InputError("nothing has been demonstrated yet", remedy="Label a scene: H or N")
-        self._learning.start(learning_words(self.relation.name, self.folder.path))
-        return self.learned()
+        self._runner.start("tamp-learn", self.uses.learning)
+        return self.run_state()
+
+    def _plan(self, message: Message) -> Message:
+        """Plan how the robot makes the relation true, from where the bodies are on the page."""
+        stage, uses = self.stage.moved(self._poses(message)), self.uses
+        if not uses.weights.is_file():
+            raise InputError(f"{self.relation.name} has not been learned yet", remedy="Learn it")
+        write_problem(uses, self.relation, stage, self._source.scene)
+        self._runner.start("tamp-solve", uses.planning)
+        return self.run_state()
 
     # ---- what is checked
 

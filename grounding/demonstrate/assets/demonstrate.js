@@ -302,7 +302,7 @@ function checkSoon() { clearTimeout(checking); checking = setTimeout(check, 250)
 async function check() {
   if (state.hold || state.busy) { checkSoon(); return; }
   const stage = state.stage.number, kept = JSON.stringify(poses()), said = await ask("check", about({}));
-  if (said && state.stage.number === stage && kept === JSON.stringify(poses()) && !state.odd) trouble(said.troubles);
+  if (said && state.stage.number === stage && kept === JSON.stringify(poses()) && !state.odd) { trouble(said.troubles); opinion(said.opinion); }
 }
 
 function trouble(lines, asked) {
@@ -369,8 +369,9 @@ function panel() {
   byId("cards").replaceChildren(...cards.map((one) => card(one, contradicted)).reverse());
   byId("saved").textContent = cards.length ? "All are saved in " + state.records.folder + ". Click one to show a variant of it." : "Each label is saved at once in " + state.records.folder + ".";
   byId("restore").hidden = !state.records.restorable;
-  byId("command").textContent = state.records.command;
-  byId("learn").disabled = !(holding + other);
+  byId("learn-command").textContent = state.records.commands.learn;
+  byId("plan-command").textContent = state.records.commands.plan;
+  enable();
   byId("meaning").textContent = relation.meaning ? relation.text + ": " + relation.meaning : "";
   if (!byId("relation").classList.contains("changed")) form(relation);
 }
@@ -434,32 +435,70 @@ async function useRelation(text) {
   const said = await ask("relation", { text });
   if (!said) return;
   byId("relation").classList.remove("changed");
-  byId("learned").hidden = true;
+  for (const id of ["learned", "planned", "watch", "opinion"]) byId(id).hidden = true;
   take(said);
 }
 
-// ---- learning
+// ---- learning and planning
 
-async function learn() {
-  const said = await ask("learn", {});
-  if (said) { showLearned(said); follow(); }
+async function run(action, message) {
+  const said = await ask(action, message);
+  if (said) { showRun(said); follow(); }
 }
 
 async function follow() {
   await new Promise((done) => setTimeout(done, 300));
-  const said = await ask("learned");
+  const said = await ask("run");
   if (!said) return;
-  showLearned(said);
-  if (said.running) follow();
+  showRun(said);
+  if (said.running) { follow(); return; }
+  take(await ask("records", {}));
+  checkSoon();
 }
 
-function showLearned(said) {
-  const into = byId("learned"), button = byId("learn");
-  into.hidden = !said.running && said.code === null;
-  into.textContent = said.text || (said.running ? "learning \u2026" : "");
-  button.disabled = said.running;
-  button.textContent = said.running ? "learning \u2026" : "Learn";
-  into.dataset.code = said.running ? "" : String(said.code);
+// What a command says, in paragraphs; the change of a domain's file is folded away.
+function showRun({ command, running, code, text }) {
+  for (const id of ["learn", "plan"]) byId(id).dataset.running = running && command.endsWith(id === "learn" ? "learn" : "solve") ? "yes" : "";
+  if (command) {
+    const learning = command === "tamp-learn", into = byId(learning ? "learned" : "planned");
+    into.hidden = false;
+    into.className = "said" + (running || code === 0 ? "" : " failed");
+    into.dataset.code = running ? "" : String(code);
+    into.replaceChildren(...paragraphs(text, running ? (learning ? "learning \u2026" : "planning \u2026") : ""));
+    if (!learning) byId("watch").hidden = running || code !== 0;
+  }
+  enable();
+}
+
+function paragraphs(text, more) {
+  const lines = text.split("\n"), first = lines.findIndex((line) => line.startsWith("--- ")), elements = [];
+  const last = first < 0 ? -1 : lines.findIndex((line, i) => i > first && !/^[-+@ ]/.test(line));
+  lines.forEach((line, i) => {
+    if (first >= 0 && i >= first && (last < 0 || i < last)) {
+      if (i > first) return;
+      const details = make("details");
+      details.append(make("summary", "what was added to the domain"), make("pre", lines.slice(first, last < 0 ? lines.length : last).join("\n")));
+      elements.push(details);
+    } else if (line.trim()) elements.push(make("p", line.trim(), line.startsWith("missing:") ? "missing" : line.startsWith("  ") ? "inner" : ""));
+  });
+  if (more) elements.push(make("p", more, "hint"));
+  return elements;
+}
+
+function enable() {
+  const running = byId("learn").dataset.running || byId("plan").dataset.running, { records } = state;
+  byId("learn").disabled = Boolean(running) || !(records.holding + records.other);
+  byId("plan").disabled = Boolean(running) || !records.learned;
+  byId("learn").textContent = byId("learn").dataset.running ? "learning \u2026" : "Learn";
+  byId("plan").textContent = byId("plan").dataset.running ? "planning \u2026" : "Plan in this scene";
+}
+
+function opinion(chance) {
+  const element = byId("opinion"), yes = chance >= 0.5;
+  element.hidden = chance === null || chance === undefined;
+  if (element.hidden) return;
+  element.textContent = "learned so far: " + (yes ? "holds" : "does not hold") + ", " + Math.round(100 * (yes ? chance : 1 - chance)) + " % sure";
+  element.className = yes ? "yes" : "no";
 }
 
 // ---- mouse and keys
@@ -569,8 +608,11 @@ function buttons() {
   byId("holds").addEventListener("click", () => label(true));
   byId("fails").addEventListener("click", () => label(false));
   byId("next").addEventListener("click", nextScene);
-  byId("learn").addEventListener("click", learn);
-  byId("copy").addEventListener("click", () => navigator.clipboard.writeText(state.records.command).then(() => toast("copied"), () => toast("select it and copy it", "error")));
+  byId("learn").addEventListener("click", () => run("learn", {}));
+  byId("plan").addEventListener("click", () => run("plan", about({})));
+  for (const button of document.querySelectorAll("[data-copy]")) button.addEventListener("click", () => {
+    navigator.clipboard.writeText(byId(button.dataset.copy).textContent).then(() => toast("copied"), () => toast("select it and copy it", "error"));
+  });
   byId("restore").addEventListener("click", async (event) => { event.preventDefault(); take(await ask("restore", {})); });
   byId("more").addEventListener("click", () => {
     const taken = [...document.querySelectorAll("#arguments input")].map((input) => input.value), name = [..."abcdefgh"].find((one) => !taken.includes(one));
@@ -596,7 +638,9 @@ async function begin() {
   hands();
   buttons();
   if (!take(await ask("state"))) return;
-  showLearned(await ask("learned"));
+  const running = await ask("run");
+  showRun(running);
+  if (running.running) follow();
   canvas.focus();
   requestAnimationFrame(tick);
   state.ready = true;

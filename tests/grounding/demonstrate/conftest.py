@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from grounding.demonstrate.learning import Learning
 from grounding.demonstrate.relation import parse_relation
+from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.studio import Source, Studio
 from grounding.demonstrate.workbench import Workbench
 from tests.view.browser import program
@@ -22,16 +22,16 @@ def workbench() -> Iterator[Workbench]:
 
 
 @pytest.fixture
-def learning() -> Iterator[Learning]:
-    with Learning() as opened:
+def runner() -> Iterator[Runner]:
+    with Runner() as opened:
         yield opened
 
 
 @pytest.fixture
-def studio_of(tmp_path: Path, workbench: Workbench, learning: Learning) -> Callable[..., Studio]:
+def studio_of(tmp_path: Path, workbench: Workbench, runner: Runner) -> Callable[..., Studio]:
     """Makes a studio of a relation, its demonstrations in tmp_path / "shown"."""
 
     def made(text: str, scene: Path | None = None, seed: int = 0, out: str = "shown") -> Studio:
-        return Studio(parse_relation(text), Source(scene, tmp_path / out), workbench, learning, seed)
+        return Studio(parse_relation(text), Source(scene, tmp_path / out), workbench, runner, seed)
 
     return made

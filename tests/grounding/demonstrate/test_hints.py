@@ -57,10 +57,10 @@ def test_what_is_varied_is_not_complained_of() -> None:
 @pytest.mark.parametrize(
     ("lazy", "says"),
     [
-        ({"height": 0.72}, "at one height (0.72 m)"),
-        ({"table_yaw": 0.3}, "the furniture is turned alike"),
-        ({"yaw": 0.5}, "a is turned alike to the world"),
-        ({"size": 0.06}, "a has one size (6 x 6 x 6 cm)"),
+        ({"height": 0.72}, "all surfaces were 0.72 m high"),
+        ({"table_yaw": 0.3}, "all furniture was turned the same way"),
+        ({"yaw": 0.5}, "a was always turned the same way"),
+        ({"size": 0.06}, "a was always 6 x 6 x 6 cm large"),
     ],
 )
 def test_what_is_the_same_is_named(lazy: dict[str, float], says: str) -> None:
@@ -69,13 +69,8 @@ def test_what_is_the_same_is_named(lazy: dict[str, float], says: str) -> None:
     assert len(found) <= 2  # a and b have one yaw, one size
 
 
-def test_turned_alike_to_the_furniture() -> None:
-    demonstrations = [shown(n, table_yaw=0.7 * n, yaw=0.7 * n + 0.1) for n in range(4)]
-    assert any("a is turned alike to the furniture" in text for text in texts(demonstrations))
-
-
 def test_what_is_round_need_not_be_turned() -> None:
-    assert not any("turn it" in text for text in texts([shown(n, yaw=0.2, round_=True) for n in range(4)]))
+    assert not any(": turn it" in text for text in texts([shown(n, yaw=0.2, round_=True) for n in range(4)]))
 
 
 def test_a_label_that_is_missing() -> None:

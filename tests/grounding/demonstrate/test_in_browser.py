@@ -255,8 +255,8 @@ def test_labels_cards_and_what_is_asked_first(person_at: Callable[..., Any], tmp
 
 def test_another_relation_by_the_form(person_at: Callable[..., Any]) -> None:
     person, studio = person_at("stack(a, b)")
-    person.choose("#presets", "inside(a, b: container)")
-    assert person.text("#fact").startswith("inside (") and str(studio.relation) == "inside(a, b: container)"
+    person.choose("#presets", "within(a, b: container)")
+    assert person.text("#fact").startswith("within (") and str(studio.relation) == "within(a, b: container)"
     a, b = person.argument(0), person.argument(1)
     cavity = studio.stage.scene.world_pose(studio.stage.scene.cavities[b]).position
     person.drag_body(a, list(cavity))

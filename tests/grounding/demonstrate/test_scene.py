@@ -52,11 +52,11 @@ def test_the_same_seed_gives_the_same_scenes() -> None:
 
 
 def test_what_is_saved_is_what_was_shown(tmp_path: Path) -> None:
-    stage = sample_stage(parse_relation("inside(a, b: container)"), np.random.default_rng(1))
+    stage = sample_stage(parse_relation("within(a, b: container)"), np.random.default_rng(1))
     first = stage.arguments[0]
     moved = stage.moved({first: Pose((0.3, -0.2, 1.7), (0.5, 0.5, 0.5, 0.5))})
-    write_demonstration(tmp_path / "one.yaml", moved.file(Label("inside", stage.arguments, False)))
-    (found,) = demonstrations_of("inside", [tmp_path])
+    write_demonstration(tmp_path / "one.yaml", moved.file(Label("within", stage.arguments, False)))
+    (found,) = demonstrations_of("within", [tmp_path])
     assert found.arguments == stage.arguments and not found.holds
     assert found.scene.bodies[first].pose.matrix == pytest.approx(moved.scene.bodies[first].pose.matrix, abs=1e-6)
     for name, body in stage.scene.bodies.items():

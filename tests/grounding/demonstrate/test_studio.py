@@ -66,21 +66,21 @@ def test_what_is_odd_is_asked_about_first(studio_of: Maker) -> None:
 
 
 def test_the_state_is_json_and_whole(studio_of: Maker) -> None:
-    studio = studio_of("inside(a, b: container)")
+    studio = studio_of("within(a, b: container)")
     state = json.loads(json.dumps(studio.state(), allow_nan=False))
-    assert state["command"].startswith("tamp-learn new inside --demos ")
+    assert state["commands"]["learn"].startswith("tamp-learn new within --demos ")
     assert state["stage"]["arguments"] == list(studio.stage.arguments)
     bodies = {body["name"]: body for body in state["stage"]["bodies"]}
     assert bodies[studio.stage.arguments[1]]["movable"] and bodies[studio.stage.arguments[0]]["faces"]
     assert all(mesh["faces"] for body in bodies.values() for mesh in body["meshes"])
 
 
-def test_another_relation_has_a_folder_of_its_own(tmp_path: Path, workbench, learning, monkeypatch) -> None:
+def test_another_relation_has_a_folder_of_its_own(tmp_path: Path, workbench, runner, monkeypatch) -> None:
     from grounding.demonstrate.relation import parse_relation
     from grounding.demonstrate.studio import Source
 
     monkeypatch.chdir(tmp_path)
-    studio = Studio(parse_relation("stack(a, b)"), Source(), workbench, learning)
+    studio = Studio(parse_relation("stack(a, b)"), Source(), workbench, runner)
     studio.act("label", about(studio, holds=False, anyway=True))
     said = studio.act("relation", {"text": "between(a, b, c)"})
     assert said["folder"] == "demos/between" and len(said["stage"]["arguments"]) == 3 and said["cards"] == []
@@ -148,7 +148,7 @@ def test_pictures(studio_of: Maker) -> None:
         ("delete", {}, "'name' is missing"),
         ("delete", {"name": "../x.yaml"}, "there is no demonstration"),
         ("open", {"name": "x.yaml"}, "there is no demonstration"),
-        ("relation", {"text": "and(a)"}, "a word of PDDL's"),
+        ("relation", {"text": "and(a)"}, "is taken"),
         ("relation", {"text": 7}, "'text' is missing"),
     ],
 )

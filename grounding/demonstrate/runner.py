@@ -1,53 +1,51 @@
-"""Learning what was demonstrated, by the command that the page names, in a process of its own."""
+"""The commands that the page names, run in processes of their own while the page goes on."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import shlex
 import subprocess
 import sys
 import threading
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
 MOST = 60_000
-"""Characters of what the command says that are kept."""
+"""Characters of what a command says that are kept."""
 
 PATIENCE = 3.0
 """Seconds that it may take to end when it is asked to."""
 
-
-def learning_words(relation: str, folder: Path) -> list[str]:
-    """Return the arguments of tamp-learn that learn a relation from a folder."""
-    return ["new", relation, "--demos", str(folder)]
-
-
-def learning_command(relation: str, folder: Path) -> str:
-    """Return the command that learns a relation from a folder, as a user types it."""
-    return shlex.join(["tamp-learn", *learning_words(relation, folder)])
+PROGRAMS: Mapping[str, str] = {
+    "tamp-learn": "from tamp.commands.entry_points import learn; learn()",
+    "tamp-solve": "from tamp.commands.entry_points import solve; solve()",
+}
+"""The commands, as this interpreter runs them."""
 
 
 @dataclass(frozen=True)
-class Learned:
-    """The state of the learning.
+class Run:
+    """The state of a command.
 
     Attributes:
-        running: Whether the command runs.
-        code: Its exit status; None while it runs, or when none was started.
+        command: Which one of PROGRAMS; empty when none was started.
+        running: Whether it runs.
+        code: Its exit status; None while it runs.
         text: What it has said so far.
     """
 
-    running: bool
-    code: int | None
-    text: str
+    command: str = ""
+    running: bool = False
+    code: int | None = None
+    text: str = ""
 
 
-class Learning:
-    """Runs one learning command at a time. Use it as a context manager: leaving ends it."""
+class Runner:
+    """Runs one command at a time. Use it as a context manager: leaving ends the command."""
 
     def __init__(self) -> None:
+        self._command = ""
         self._process: subprocess.Popen[bytes] | None = None
         self._text = bytearray()
         self._reader: threading.Thread | None = None
@@ -58,14 +56,13 @@ class Learning:
     def __exit__(self, *error: object) -> None:
         self.stop()
 
-    def start(self, words: list[str]) -> bool:
-        """Start tamp-learn with these arguments; False where one runs already."""
-        if self._process is not None and self._process.poll() is None:
+    def start(self, command: str, words: Sequence[str]) -> bool:
+        """Start one of PROGRAMS with these arguments; False where one runs already."""
+        if self.state().running:
             return False
-        self._text = bytearray()
-        program = "from grounding.cli import main; main()"
+        self._command, self._text = command, bytearray()
         self._process = subprocess.Popen(
-            [sys.executable, "-c", program, *words],
+            [sys.executable, "-c", PROGRAMS[command], *words],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -76,13 +73,13 @@ class Learning:
         self._reader.start()
         return True
 
-    def state(self) -> Learned:
-        """Return how far it is."""
-        text = self._text.decode("utf-8", "replace").replace("\r", "\n")
-        if self._process is None:
-            return Learned(False, None, "")
-        running = self._reader is not None and self._reader.is_alive()
-        return Learned(running, None if running else self._process.wait(), text)
+    def state(self) -> Run:
+        """Return how far the command is."""
+        if self._process is None or self._reader is None:
+            return Run()
+        running = self._reader.is_alive()
+        text = bytes(self._text).decode("utf-8", "replace").replace("\r", "\n")
+        return Run(self._command, running, None if running else self._process.wait(), text)
 
     def stop(self) -> None:
         """End the command, if it runs."""
