@@ -98,6 +98,7 @@ class Runner:
         """Keep what a process says, its last part when that is much."""
         if process.stdout is None:
             return
-        while some := os.read(process.stdout.fileno(), 4096):
-            into += some
-            del into[: max(0, len(into) - MOST)]
+        with process.stdout as stream:
+            while some := os.read(stream.fileno(), 4096):
+                into += some
+                del into[: max(0, len(into) - MOST)]

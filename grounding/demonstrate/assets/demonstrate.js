@@ -464,13 +464,17 @@ function showRun({ command, running, code, text }) {
     into.hidden = false;
     into.className = "said" + (running || code === 0 ? "" : " failed");
     into.dataset.code = running ? "" : String(code);
-    into.replaceChildren(...paragraphs(text, running ? (learning ? "learning \u2026" : "planning \u2026") : ""));
+    const news = text.split("\n").filter((line) => PROGRESS.test(line)).pop(), kept = text.split("\n").filter((line) => !PROGRESS.test(line)).join("\n").trim();
+    into.replaceChildren(...(learning ? paragraphs(kept) : kept ? [make("pre", kept)] : []));
+    if (running) into.append(make("p", news ? news.trim() : learning ? "learning \u2026" : "planning \u2026", "hint"));
     if (!learning) byId("watch").hidden = running || code !== 0;
   }
   enable();
 }
 
-function paragraphs(text, more) {
+const PROGRESS = /^ +\S.* \d+\.\d s$/;  // a line that says how long it has been searching
+
+function paragraphs(text) {
   const lines = text.split("\n"), first = lines.findIndex((line) => line.startsWith("--- ")), elements = [];
   const last = first < 0 ? -1 : lines.findIndex((line, i) => i > first && !/^[-+@ ]/.test(line));
   lines.forEach((line, i) => {
@@ -481,7 +485,6 @@ function paragraphs(text, more) {
       elements.push(details);
     } else if (line.trim()) elements.push(make("p", line.trim(), line.startsWith("missing:") ? "missing" : line.startsWith("  ") ? "inner" : ""));
   });
-  if (more) elements.push(make("p", more, "hint"));
   return elements;
 }
 
