@@ -70,6 +70,16 @@ def contradictions(demonstrations: Sequence[Demonstration]) -> Iterator[Hint]:
             yield Hint("contradiction", text, files)
 
 
+def contradicted(shown: Demonstration, others: Sequence[Demonstration]) -> list[str]:
+    """Say which demonstrations show the same as one that is not kept yet, and say the opposite."""
+    situation = _situation(shown)
+    return [
+        f"{_file(other)} shows the same and says the opposite"
+        for other in others
+        if other.holds != shown.holds and _alike(situation, _situation(other))
+    ]
+
+
 def next_step(relation: Relation, demonstrations: Sequence[Demonstration]) -> str:
     """Say what to do next, in a sentence or two, to somebody who has never seen the page."""
     holding = sum(one.holds for one in demonstrations)
@@ -136,6 +146,7 @@ def _alike(
 ) -> bool:
     return (
         one[0] == other[0]
+        and one[1].shape == other[1].shape
         and bool(np.abs(one[1] - other[1]).max(initial=0.0) < SAME_PLACE)
         and bool(np.abs(one[2] - other[2]).max(initial=0.0) < math.sin(SAME_TURN))
     )

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from grounding.demonstrate.folder import DemonstrationFolder
-from grounding.demonstrate.hints import contradictions
+from grounding.demonstrate.hints import contradicted
 from grounding.demonstrate.message import Message, read_poses, read_word
 from grounding.demonstrate.opinion import Opinion
+from grounding.demonstrate.questions import telling_stages
 from grounding.demonstrate.records import records
 from grounding.demonstrate.relation import Relation, parse_relation
 from grounding.demonstrate.runner import Runner
@@ -25,7 +26,6 @@ from grounding.demonstrate.workbench import Trouble, Workbench
 from grounding.relations.demonstration_file import Demonstration, Label
 from tamp.errors import InputError, printable
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Scene
 from tamp.view.page import harmless
 
 
@@ -70,6 +70,7 @@ class Studio:
     ) -> None:
         self._source, self._bench, self._runner = source, workbench, runner
         self._opinion = Opinion()
+        self._asked: list[Stage] | None = None
         self._chosen: dict[str, str] = {}
         self._lock = threading.RLock()
         self.relation = relation
@@ -81,7 +82,8 @@ class Studio:
         self._actions: Mapping[str, Callable[[Message], Message]] = {
             "relation": self._change_relation,
             "assign": self._assign,
-            "next": lambda message: self._turn_to(self._next()),
+            "next": self._turn,
+            "ask": self._ask,
             "open": self._open,
             "put_down": self._put_down,
             "drop": self._drop,
@@ -154,6 +156,7 @@ class Studio:
     # ---- what can be done
 
     def _change_relation(self, message: Message) -> Message:
+        self._asked = None
         relation = parse_relation(read_word(message, "text"))
         path = self._source.folder(relation)
         folder = DemonstrationFolder(path, relation)
@@ -190,6 +193,17 @@ class Studio:
             self._chosen = dict(zip(names, arguments, strict=True))
         stage = self.stage.moved(self._poses(message))
         return self._turn_to(replace(stage, arguments=tuple(arguments)))
+
+    def _turn(self, message: Message) -> Message:
+        """Turn to another scene."""
+        self._asked = None
+        return self._turn_to(self._next())
+
+    def _ask(self, message: Message) -> Message:
+        """Turn to a scene whose label would tell most, by what was learned last."""
+        if not self._asked:
+            self._asked = telling_stages(self.uses, self._rng)
+        return {**self._turn_to(self._asked.pop(0)), "asked": True}
 
     def _open(self, message: Message) -> Message:
         """Take up the scene of a demonstration again, to show a variant of it."""
@@ -228,11 +242,14 @@ class Studio:
         label = Label(self.relation.name, stage.arguments, holds)
         if message.get("anyway") is not True:
             odd = [one.text for one in self._troubles(poses) if holds or one.kind != "hangs"]
-            odd += self._contradicted(stage.scene, holds)
+            one = Demonstration(stage.scene, stage.arguments, holds)
+            odd += contradicted(one, self.folder.demonstrations())
             if odd:
                 return {"odd": odd}
         name = self.folder.add(stage.file(label))
-        after = self._turn_to(self._next()) if message.get("next") is True else {}
+        after = {}
+        if message.get("next") is True:
+            after = self._ask(message) if self._asked else self._turn(message)
         return {"saved": name, **self._records(), **after}
 
     def _delete(self, message: Message) -> Message:
@@ -265,20 +282,6 @@ class Studio:
 
     def _troubles(self, poses: Mapping[str, Pose]) -> list[Trouble]:
         return list(self._bench.troubles(self.stage.posed(poses), self.stage.movable))
-
-    def _contradicted(self, scene: Scene, holds: bool) -> list[str]:
-        shown = Demonstration(scene, self.stage.arguments, holds, "this one:0")
-        others = [one for one in self.folder.demonstrations() if one.holds != holds]
-        found = (
-            next(contradictions([other, shown]), None)
-            for other in others
-            if len(other.arguments) == len(shown.arguments)
-        )
-        return [
-            f"{one.files[0]} shows the same and says the opposite"
-            for one in found
-            if one is not None
-        ]
 
     def _movable(self, message: Message) -> str:
         name = read_word(message, "body")

@@ -35,7 +35,7 @@ const about = (more) => ({ stage: state.stage.number, poses: poses(), ...more })
 function take(said) {
   if (!said) return false;
   if (said.relation) { state.records = said; panel(); }
-  if (said.stage) setStage(said.stage);
+  if (said.stage) { state.asked = Boolean(said.asked); setStage(said.stage); todo(); }
   return true;
 }
 
@@ -43,7 +43,7 @@ function toast(text, kind) {
   const element = byId("toast");
   element.textContent = text; element.className = kind || ""; element.hidden = false;
   clearTimeout(toasting);
-  toasting = setTimeout(() => { element.hidden = true; }, kind === "error" ? 7000 : 2200);
+  toasting = setTimeout(() => { element.hidden = true; }, kind === "error" ? 7000 : kind === "long" ? 60000 : 2200);
 }
 
 // ---- the scene
@@ -333,6 +333,12 @@ async function label(holds) {
 
 async function nextScene() { take(await ask("next", {})); }
 
+async function askMe() {
+  if (!state.records.learned) return;
+  toast("looking for a telling scene, some seconds \u2026", "long");
+  if (take(await ask("ask", {}))) byId("toast").hidden = true;
+}
+
 // ---- the panel
 
 function fact() {
@@ -355,10 +361,14 @@ function fact() {
   into.append(make("span", " )"));
 }
 
+function todo() {
+  byId("todo").textContent = state.asked ? "Does " + state.records.relation.name + " hold here? Press H or N: what was learned is least sure of this one." : state.records.todo;
+}
+
 function panel() {
   const { relation, holding, other, cards } = state.records;
   byId("holds-text").textContent = relation.name + " holds";
-  byId("todo").textContent = state.records.todo;
+  todo();
   document.title = relation.text + " \u00b7 tamp-demo";
   for (const [name, count] of [["holds", holding], ["fails", other]]) {
     byId("bar-" + name).style.width = Math.min(100, 10 * count) + "%";
@@ -492,6 +502,7 @@ function enable() {
   const running = byId("learn").dataset.running || byId("plan").dataset.running, { records } = state;
   byId("learn").disabled = Boolean(running) || !(records.holding + records.other);
   byId("plan").disabled = Boolean(running) || !records.learned;
+  byId("ask").hidden = !records.learned;
   byId("learn").textContent = byId("learn").dataset.running ? "learning \u2026" : "Learn";
   byId("plan").textContent = byId("plan").dataset.running ? "planning \u2026" : "Plan in this scene";
 }
@@ -540,6 +551,7 @@ function pressed(event) {
   else if (key === "h") { if (!event.repeat) label(true); }
   else if (key === "n") { if (!event.repeat) label(false); }
   else if (key === " ") { if (!event.repeat) nextScene(); }
+  else if (key === "a") { if (!event.repeat) askMe(); }
   else if (key === "Tab" && document.activeElement === canvas) nextBody(event.shiftKey ? -1 : 1);
   else if (key === "Escape") { select(null); trouble([]); state.odd = null; }
   else return;
@@ -611,6 +623,7 @@ function buttons() {
   byId("holds").addEventListener("click", () => label(true));
   byId("fails").addEventListener("click", () => label(false));
   byId("next").addEventListener("click", nextScene);
+  byId("ask").addEventListener("click", askMe);
   byId("learn").addEventListener("click", () => run("learn", {}));
   byId("plan").addEventListener("click", () => run("plan", about({})));
   for (const button of document.querySelectorAll("[data-copy]")) button.addEventListener("click", () => {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.studio import Studio
 from grounding.relations.demonstration_file import demonstrations_of
 from tamp.errors import InputError
@@ -196,3 +198,44 @@ def test_anything_else_is_an_error_in_words(action: str, message: dict[str, Any]
 
 
 _kept: dict[str, Studio] = {}
+
+
+def test_learned_asked_and_planned(studio_of: Maker, runner: Runner) -> None:
+    """Only what the page sends: upright(o) of bodies whose model is upright, learned, asked about, planned."""
+    studio = studio_of("upright(o: box)", seed=1)
+    for action in ("ask", "plan"):
+        with pytest.raises(InputError, match="has not been learned yet"):
+            studio.act(action, about(studio))
+    for number in range(16):
+        name, holds = studio.stage.arguments[0], number % 2 == 0
+        tilt = (0.0, 0.0, 0.0) if holds else (np.pi / 2 * (-1) ** (number // 2), 0.0, 0.0)
+        x, y, z = studio.stage.scene.bodies[name].pose.position
+        pose = {name: Pose.from_xyz_rpy((x, y, z + 0.2), (*tilt[:2], float(number)))}
+        said = studio.act("put_down", about(studio, pose, body=name))
+        pose = {name: Pose.from_matrix(np.array(said["T"]).reshape(4, 4))}
+        studio.act("label", about(studio, pose, holds=holds, anyway=True, next=True))
+
+    said = finished(studio, studio.act("learn", {}))
+    assert said["code"] == 0 and "what it is:" in said["text"]
+    assert studio.state()["learned"]
+    number = studio.state()["stage"]["number"]
+    asked = studio.act("ask", {})
+    assert asked["asked"] and asked["stage"]["number"] == number + 1
+    opinion = studio.act("check", about(studio))["opinion"]
+    assert 0.0 <= opinion <= 1.0
+    said = studio.act("label", about(studio, holds=opinion >= 0.5, anyway=True, next=True))
+    assert said["asked"] and said["saved"] == "upright_017.yaml"  # the next question
+
+    studio.act("next", {})
+    said = finished(studio, studio.act("plan", about(studio)))
+    assert said["command"] == "tamp-solve" and said["code"] in (0, 1), said["text"]
+    assert ("plan.json written" in said["text"]) == (said["code"] == 0)
+    assert "domain: ../upright.pddl" in studio.uses.problem.read_text(encoding="utf-8")
+    assert len(studio.folder.cards()) == 17  # the problem is none of them
+
+
+def finished(studio: Studio, said: Any) -> Any:
+    while said["running"]:
+        time.sleep(0.2)
+        said = studio.run_state()
+    return said
