@@ -7,6 +7,9 @@ from typing import Any
 
 from numpy.random import Generator as Random
 
+HAND = 0.072
+"""Metres across what the robot's hand can take, with room to spare: what is shown can be planned."""
+
 Entry = dict[str, Any]
 """A body as a problem file has it: its shape and what goes with it, without its place."""
 
@@ -21,16 +24,18 @@ def _scale(rng: Random, low: float, high: float) -> float:
 
 
 def _box(rng: Random) -> Entry:
-    return {"box": [_round(edge) for edge in rng.uniform(0.03, [0.1, 0.13, 0.18])]}
+    edges = rng.uniform(0.03, [0.1, 0.13, 0.18])
+    edges[edges.argmin()] = min(edges.min(), HAND)
+    return {"box": [_round(edge) for edge in edges]}
 
 
 def _can(rng: Random) -> Entry:
-    radius, height = rng.uniform([0.022, 0.05], [0.048, 0.17])
+    radius, height = rng.uniform([0.02, 0.05], [HAND / 2, 0.17])
     return {"cylinder": {"radius": _round(radius), "height": _round(height)}}
 
 
 def _cup(rng: Random) -> Entry:
-    return {"mesh": "pybullet_data/objects/mug.urdf", "scale": _scale(rng, 0.7, 1.1)}
+    return {"mesh": "pybullet_data/objects/mug.urdf", "scale": _scale(rng, 0.65, 0.9)}
 
 
 def _bowl(rng: Random) -> Entry:

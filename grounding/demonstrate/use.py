@@ -68,7 +68,8 @@ class Uses:
     def planning(self) -> list[str]:
         """Return the arguments of tamp-solve."""
         plan = self.folder / "plan" / "plan.json"
-        return [str(self.problem), "--out", str(plan), "--html", str(self.page), "--verify"]
+        pages = ["--html", str(self.page), "--allow-outside"]  # shipped meshes; it stays here
+        return [str(self.problem), "--out", str(plan), *pages, "--verify"]
 
     @property
     def commands(self) -> dict[str, str]:
