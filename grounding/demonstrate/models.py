@@ -8,7 +8,7 @@ from typing import Any
 from numpy.random import Generator as Random
 
 HAND = 0.072
-"""Metres across what the robot's hand can take, with room to spare: what is shown can be planned."""
+"""Metres that the hand can take, with room to spare: what is shown can be planned."""
 
 Entry = dict[str, Any]
 """A body as a problem file has it: its shape and what goes with it, without its place."""

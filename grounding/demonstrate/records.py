@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from grounding.demonstrate.folder import Card, DemonstrationFolder
@@ -40,6 +41,25 @@ def records(relation: Relation, folder: DemonstrationFolder, uses: Uses) -> dict
         "commands": uses.commands,
         "learned": uses.weights.is_file(),
     }
+
+
+def in_arguments(text: str, relation: Relation, folder: DemonstrationFolder) -> str:
+    """Return what tamp-learn said with the relation's arguments in the place of the bodies of the
+    first demonstration, which it says them of: "gap to b" for "gap to blue_can".
+    """
+    shown = folder.demonstrations()
+    if not shown or len(shown[0].arguments) != len(relation.arguments):
+        return text
+    names = {
+        name: one.name for name, one in zip(shown[0].arguments, relation.arguments, strict=True)
+    }
+    words = re.compile(rf"\b({'|'.join(map(re.escape, names))})\b")
+    return "\n".join(
+        words.sub(lambda word: names[word[1]], line)
+        if line.startswith(("  ", "missing:"))
+        else line
+        for line in text.split("\n")
+    )
 
 
 def _card(card: Card) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typing import Self
 MOST = 60_000
 """Characters of what a command says that are kept."""
 
-PATIENCE = 3.0
+PATIENCE = 0.5
 """Seconds that it may take to end when it is asked to."""
 
 PROGRAMS: Mapping[str, str] = {

@@ -15,7 +15,7 @@ from grounding.demonstrate.hints import contradicted
 from grounding.demonstrate.message import Message, read_poses, read_word
 from grounding.demonstrate.opinion import Opinion
 from grounding.demonstrate.questions import telling_stages
-from grounding.demonstrate.records import records
+from grounding.demonstrate.records import in_arguments, records
 from grounding.demonstrate.relation import Relation, parse_relation
 from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.scene import Stage, choices_of, open_stage, sample_stage, shuffled
@@ -117,6 +117,9 @@ class Studio:
         """Return how far the command is that learns or plans."""
         run = self._runner.state()
         text = printable(run.text, "\n\t")
+        if run.command == "tamp-learn":
+            with self._lock:
+                text = in_arguments(text, self.relation, self.folder)
         return {"command": run.command, "running": run.running, "code": run.code, "text": text}
 
     @property
