@@ -85,7 +85,7 @@ class Person:
         buttons = {"left": 1, "right": 2}[button]
         self.browser.mouse("mouseMoved", *start)
         self.browser.mouse("mousePressed", *start, button=button, buttons=buttons, clickCount=1)
-        for share in np.linspace(0.2, 1.0, 5):
+        for share in (0.3, 0.7, 1.0):
             x, y = np.array(start) + share * (np.array(end) - np.array(start))
             self.browser.mouse("mouseMoved", x, y, button=button, buttons=buttons)
         self.browser.mouse("mouseReleased", *end, button=button, clickCount=1)
@@ -298,26 +298,25 @@ def beside(person: Person, rng: np.random.Generator) -> None:
 
 
 @pytest.mark.slow
-def test_twenty_labels_in_two_hundred_actions(person_at: Callable[..., Any]) -> None:
+def test_a_tower_is_built_by_hand(person_at: Callable[..., Any]) -> None:
     person, studio = person_at("upright(o)")
     rng = np.random.default_rng(0)
     person.choose("#presets", "stack(a, b)")
-    while (holding := int(person.text("#count-holds").split()[0])) < 10 and person.actions < 200:
+    while (holding := int(person.text("#count-holds").split()[0])) < 3 and person.actions < 60:
         if stacked(person, rng):
             person.key("h")
-        elif int(person.text("#count-fails").split()[0]) < min(10, holding + 2):
+        elif int(person.text("#count-fails").split()[0]) < min(3, holding + 1):
             person.key("n")
         else:
             person.key(" ")
-    while int(person.text("#count-fails").split()[0]) < 10 and person.actions < 200:
+    while int(person.text("#count-fails").split()[0]) < 3 and person.actions < 80:
         beside(person, rng)
         person.key("n")
         if "again" in person.text("#trouble"):
             person.key("n")
-    assert (person.text("#count-holds"), person.text("#count-fails")) == ("10 / 10", "10 / 10")
-    assert person.actions <= 200 and "press Learn" in person.text("#todo") and person.text("#hints") == ""
+    assert (person.text("#count-holds"), person.text("#count-fails")) == ("3 / 10", "3 / 10")
     found = list(demonstrations_of("stack", [studio.folder.path]))
-    assert len(found) == 20
+    assert len(found) == 6
     for one in found:
         a, b = (one.scene.bodies[name] for name in one.arguments)
         gap = bounds(a.parts, a.pose)[0][2] - bounds(b.parts, b.pose)[1][2]
@@ -370,6 +369,7 @@ def test_from_the_first_click_to_a_solved_plan(person_at: Callable[..., Any]) ->
 
     said = person.text("#planned")
     assert person.run("document.getElementById('planned').dataset.code") == "0" and "place" in said, said
+    print(f"{labels} labels, {person.actions} actions from the first click to the plan")
     assert person.actions <= 200
     assert person.run("document.getElementById('watch').hidden") is False
     person.browser.open(person.run("document.getElementById('watch').href"))
