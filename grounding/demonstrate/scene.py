@@ -26,7 +26,7 @@ from tamp.geometric.loading.load import load_scene
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Scene
-from tamp.geometric.stability.stable_poses import resting_of
+from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.system.files import find_problem
 from tamp.system.scratch import scratch_folder
 
@@ -273,7 +273,7 @@ def _free_pose(
     """Sample T_world_body at rest on a place, its box apart from others; None where none is
     found.
     """
-    faces = resting_of(replace(body, pose=Pose(), support=None)).faces if body.movable else ()
+    faces = stable_faces_of(replace(body, pose=Pose(), support=None)).faces if body.movable else ()
     for _ in range(TRIES):
         rotation = np.eye(3)
         if faces and rng.random() > STANDING:

@@ -13,7 +13,7 @@ from grounding.demonstrate.scene import Stage, viewer_yaw
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.stable_poses import resting_of
+from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.view.appearance import body_meshes
 from tamp.view.document import packed_meshes
 
@@ -73,7 +73,7 @@ def _faces(body: Body) -> list[list[float]]:
     """List the rotations (3, 3) that put a stable face down, as modelled first, 9 numbers each."""
     upright = np.eye(3)
     found = [upright]
-    for face in resting_of(replace(body, pose=Pose(), support=None)).faces:
+    for face in stable_faces_of(replace(body, pose=Pose(), support=None)).faces:
         if all(np.abs(face.rotation[2] - other[2]).max() > 0.05 for other in found):
             found.append(face.rotation)
     return [

@@ -49,7 +49,8 @@ def _robot(timeline: Timeline) -> dict[str, Any]:
 
     return {
         "links": [
-            {"name": link.name, "meshes": packed_meshes(looks[link.name])} for link in _ordered(robot)
+            {"name": link.name, "meshes": packed_meshes(looks[link.name])}
+            for link in _ordered(robot)
         ],
         "T_base_arm": _matrix(robot.T_base_arm.matrix),
         "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
