@@ -50,7 +50,7 @@ def cover(hull: Hull, most: int = LEAVES) -> tuple[Array, float] | None:
         return None
 
     samples = _surface(vertices, SAMPLES)
-    distances = cdist(samples, inside)
+    distances = np.asarray(cdist(samples, inside), dtype=np.float64)
     low, high, best = 0.001, max(0.05, float(np.ptp(vertices, axis=0).max()) / 4), None
     for _ in range(HALVINGS):
         slack = (low + high) / 2
