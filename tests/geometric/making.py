@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tamp.geometric.loading.bodies import Draft, read_body
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.convex import hull_of
@@ -64,3 +65,8 @@ def yaml(folder: Path, text: str) -> Node:
     file = folder / "given.yaml"
     file.write_text(text, encoding="utf-8")
     return read_yaml(file)
+
+
+def drafts(folder: Path, text: str) -> dict[str, Draft]:
+    """The bodies of a YAML text, one a line as in `bodies:`, read but not placed."""
+    return {name: read_body(name, node, folder) for name, node in yaml(folder, text).mapping().items()}
