@@ -14,7 +14,9 @@ from tests.geometric.making import yaml
 
 
 def test_surfaces_have_a_frame_a_size_and_a_clearance(tmp_path: Path) -> None:
-    text = "top: {at: [0, 0, 0.4], size: [0.6, 0.3]}\nlow: {at: [0.1, 0, 0.1], yaw: 90 deg, size: [1, 2], clearance: 0.25}"
+    text = (
+        "top: {at: [0, 0, 0.4], size: [0.6, 0.3]}\nlow: {at: [0.1, 0, 0.1], yaw: 90 deg, size: [1, 2], clearance: 0.25}"
+    )
     top, low = read_surfaces("shelf", yaml(tmp_path, text))
     assert (top.name, top.body, top.pose, top.size) == ("top", "shelf", Pose((0.0, 0.0, 0.4)), (0.6, 0.3))
     assert top.clearance == math.inf

@@ -1,0 +1,55 @@
+"""Plans made by hand from segments, without a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.plan.read import Hold, PlanFile, Segment, TimedAction, Value
+from tamp.symbolic.pddl.structs import Fact
+
+OPEN = 0.08
+"""Metres between the fingers."""
+
+
+def base(
+    times: Sequence[float], rows: Sequence[Sequence[float]], opening: float = OPEN, holding: str | None = None
+) -> Segment:
+    """The base through rows of x, y, yaw."""
+    return Segment("base", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding)
+
+
+def arm(times: Sequence[float], rows: Sequence[Array], opening: float = OPEN, holding: str | None = None) -> Segment:
+    """The arm through rows of seven angles."""
+    return Segment("arm", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding)
+
+
+def close(body: str, width: float = 0.05, seconds: float = 0.5, T_tool_body: Array | None = None) -> Segment:
+    """The fingers close on a body."""
+    hold = Hold(body, Pose().matrix if T_tool_body is None else T_tool_body, width)
+    return Segment("gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([OPEN, width]), attach=hold)
+
+
+def let_go(body: str, width: float = 0.05, seconds: float = 0.5) -> Segment:
+    """The fingers open and let a body go."""
+    return Segment("gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([width, OPEN]), detach=body)
+
+
+def plan_of(
+    *actions: tuple[str, tuple[str, ...], Sequence[Segment]],
+    values: Mapping[str, Value] | None = None,
+    initial: Sequence[Fact] = (),
+    certified: Sequence[Fact] = (),
+) -> PlanFile:
+    """Actions of a name, arguments and segments, one after the other without a break."""
+    clock, timed = 0.0, []
+    for name, arguments, segments in actions:
+        lasts = sum(float(segment.times[-1]) for segment in segments)
+        timed.append(TimedAction(name, arguments, clock, lasts, 1.0, tuple(segments)))
+        clock += lasts
+    return PlanFile(
+        file=None, sources=(), robot="panda_mobile", objects={}, initial=tuple(initial), goal="(and)",
+        values=values or {}, actions=tuple(timed), certified=tuple(certified), cost=float(len(timed)), duration=clock,
+    )  # fmt: skip
