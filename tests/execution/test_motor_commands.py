@@ -22,7 +22,7 @@ def playing(world: Noting, grasp: str = "constraint") -> tuple[Player, Watch]:
 
 
 def test_an_unknown_grasp_is_refused_with_the_choices() -> None:
-    with pytest.raises(InputError, match="unknown grasp 'glue'.*Choices: "):
+    with pytest.raises(InputError, match=r"unknown grasp 'glue'.*Choices: "):
         Player(Noting(), "glue")  # type: ignore[arg-type]
 
 

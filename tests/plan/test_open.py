@@ -77,7 +77,7 @@ def test_a_robot_that_nobody_knows_is_refused_with_its_neighbour() -> None:
     from dataclasses import replace
 
     assert robot_of(plan_of()).name == "panda_mobile"
-    with pytest.raises(InputError, match="unknown robot 'panda_mobil'.*Did you mean 'panda_mobile'?"):
+    with pytest.raises(InputError, match=r"unknown robot 'panda_mobil'.*Did you mean 'panda_mobile'?"):
         robot_of(replace(plan_of(), robot="panda_mobil"))
 
 
@@ -109,5 +109,5 @@ def test_values_are_matrices_and_rows(file: Path) -> None:
 
     values["g"]["T_tool_body"]["position"] = [0, 0, 2.5]  # type: ignore[index]
     file.write_text(json.dumps({**DOCUMENT, "values": values}))
-    with pytest.raises(InputError, match="values.g.T_tool_body.position: farther from the hand than anything"):
+    with pytest.raises(InputError, match=r"values.g.T_tool_body.position: farther from the hand than anything"):
         read_motions(file)

@@ -84,9 +84,9 @@ def test_a_file_that_only_a_plan_names_is_not_quoted(tmp_path: Path) -> None:
     secret = tmp_path / "secret"
     secret.write_text("top secret")
     plan = made_from(tmp_path, problem=(secret, "0" * 64))
-    with pytest.raises(InputError, match="the plan names this file, but was made from another one") as told:
-        with unquoted(plan.file, plan_hashes(plan)):
-            quoting(secret)
+    message = "the plan names this file, but was made from another one"
+    with pytest.raises(InputError, match=message) as told, unquoted(plan.file, plan_hashes(plan)):
+        quoting(secret)
     assert "top secret" not in str(told.value) and told.value.line == 3
 
 
@@ -101,5 +101,5 @@ def test_a_file_that_is_known_already_is_quoted(tmp_path: Path, known: str) -> N
 
 
 def test_errors_without_a_file_pass(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="^too slow$"), unquoted(tmp_path / "plan.json", {}):
+    with pytest.raises(InputError, match=r"^too slow$"), unquoted(tmp_path / "plan.json", {}):
         raise InputError("too slow")

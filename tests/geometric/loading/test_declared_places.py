@@ -53,7 +53,7 @@ def test_mistakes_in_a_surface(tmp_path: Path, text: str, words: str) -> None:
 
 
 def test_a_cavity_without_height_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="inside.size: expected 3 numbers, found 2"):
+    with pytest.raises(InputError, match=r"inside.size: expected 3 numbers, found 2"):
         read_cavities("bin", yaml(tmp_path, "inside: {at: [0, 0, 0], size: [1, 1]}"))
 
 

@@ -99,7 +99,7 @@ def test_a_body_with_two_places_has_to_be_asked_for_one(tmp_path: Path) -> None:
         "rack: {box: [1, 1, 1], fixed: true, at: [0, 0, 0.5], surfaces:"
         " {low: {at: [0, 0, 0.5], size: [0.2, 0.2]}, high: {at: [0.3, 0, 0.5], size: [0.2, 0.2]}}}\n"
     )
-    with pytest.raises(InputError, match="a.on: 'rack' has several places to stand. Choices: low, high"):
+    with pytest.raises(InputError, match=r"a.on: 'rack' has several places to stand. Choices: low, high"):
         place_bodies(drafts(tmp_path, two + "a: {sphere: 0.05, on: rack}"))
     assert placed(tmp_path, two + "a: {sphere: 0.05, on: high}")["a"].pose.position[0] == pytest.approx(0.3)
 

@@ -82,9 +82,9 @@ def test_what_is_wrong_is_said(
 
 
 def test_a_misspelt_word_gets_its_neighbour(value: Callable[[str], Node]) -> None:
-    with pytest.raises(InputError, match="unknown colour 'gren'.*Choices: red, green. Did you mean 'green'?"):
+    with pytest.raises(InputError, match=r"unknown colour 'gren'.*Choices: red, green. Did you mean 'green'?"):
         value("gren").text(("red", "green"), "colour")
-    with pytest.raises(InputError, match="unknown key 'radios'.*Did you mean 'radius'?"):
+    with pytest.raises(InputError, match=r"unknown key 'radios'.*Did you mean 'radius'?"):
         value("{radios: 1}").mapping(("radius", "height"))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -63,7 +64,7 @@ def test_smaller_roundings_are_tried_where_larger_ones_hit() -> None:
     assert 0.0 < elbow.reach < ROUNDING
     assert math.log2(ROUNDING / elbow.reach) in range(1, HALVINGS + 1)
     larger = Corner(elbow.vertex, elbow.before, elbow.after, reach=2 * elbow.reach).curve()
-    assert not all(clear(a, b) for a, b in zip(larger[:-1], larger[1:], strict=True))
+    assert not all(clear(a, b) for a, b in itertools.pairwise(larger))
 
 
 def test_where_no_rounding_is_free_the_motion_rests() -> None:
