@@ -66,15 +66,21 @@ class Triangles:
 def triangles(mesh: Mesh) -> Triangles:
     """Shade a mesh with the normals of its corners: shared where faces meet smoothly, the face's
     own at edges.
+
+    Faces share a normal by their angles at the vertex (Thuermer and Wuethrich 1998): by area, or
+    by number, the corner of a box would lean to the side that is cut into more triangles there.
     """
     corners = mesh.vertices[mesh.faces]
-    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    own = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    along = unit(np.roll(corners, -1, axis=1) - corners)
+    back = -np.roll(along, 1, axis=1)
+    angles = np.arccos(np.clip(np.einsum("nij,nij->ni", along, back), -1.0, 1.0))
     _, member = np.unique(np.round(mesh.vertices, 5), axis=0, return_inverse=True)
     member = member.ravel()[mesh.faces]
     summed = np.zeros((int(member.max(initial=0)) + 1, 3))
     for corner in range(3):
-        np.add.at(summed, member[:, corner], area)
-    own = np.repeat(unit(area)[:, None], 3, axis=1)
+        np.add.at(summed, member[:, corner], angles[:, corner, None] * own)
+    own = np.repeat(own[:, None], 3, axis=1)
     shared = unit(summed)[member]
     smooth = np.einsum("nij,nij->ni", own, shared) > CREASE
     colours = np.repeat(np.array([mesh.colour[:3]]), len(corners), axis=0)
@@ -129,6 +135,7 @@ def _shadows(corners: Array, cells: int) -> tuple[Array, Array, Array, Array]:
     side = unit(np.cross(SUN, np.array([0.0, 0.0, 1.0])))
     frame = np.stack([side, np.cross(SUN, side), -SUN], axis=1)
     raised = corners[corners[:, :, 2].max(axis=1) > 0.001]  # the floor throws no shadow
+    raised = raised if len(raised) else corners
     seen = raised @ frame
     low, high = seen.min(axis=(0, 1)), seen.max(axis=(0, 1))
     scale = np.full(3, (cells - 3) / float((high - low)[:2].max()))

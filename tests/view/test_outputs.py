@@ -1,0 +1,99 @@
+"""What a user asks to be shown is checked before time is spent."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from tamp.errors import InputError
+from tamp.view.outputs import MOST_PIXELS, OutputRequest
+from tamp.view.outside import check_inside
+from tamp.view.video_formats import VIDEO_FORMATS, check_suffix
+
+
+def test_what_is_wanted(tmp_path: Path) -> None:
+    nothing = OutputRequest()
+    assert not nothing.any and not nothing.page
+    assert OutputRequest(view=True).page and OutputRequest(html=tmp_path / "a.html").page
+    picture = OutputRequest(png=tmp_path / "a.png")
+    assert picture.any and not picture.page
+    assert picture.outputs == {"--html": None, "--png": tmp_path / "a.png", "--video": None}
+
+
+@pytest.mark.parametrize(
+    ("request_", "words"),
+    [
+        (OutputRequest(png=Path("a.jpg")), "a picture is written as .png"),
+        (OutputRequest(video=Path("a.mp4")), "no moving picture is written as '.mp4'.*Choices: .gif, .webp"),
+        (OutputRequest(video=Path("movie")), "no moving picture is written as 'movie'"),
+        (OutputRequest(at=(1.0, -0.5)), "--at: -0.5 is no time in a plan"),
+        (OutputRequest(at=(math.inf,)), "--at: inf is no time in a plan"),
+        (OutputRequest(at=(math.nan,)), "--at: nan is no time in a plan"),
+        (OutputRequest(speed=0.0), "--speed: 0 is not between 0 and 1000"),
+        (OutputRequest(speed=1001.0), "--speed: 1001 is not between"),
+        (OutputRequest(speed=math.nan), "--speed: nan is not between"),
+        (OutputRequest(size=(15, 100)), "--size: 15x100 is not between 16x16 and 4096x4096"),
+        (OutputRequest(size=(100, MOST_PIXELS + 1)), "--size: 100x4097 is not between"),
+        (OutputRequest(png=Path("a.png"), html=Path("./a.png")), "--html.*--png|--png.*--html"),
+    ],
+)
+def test_what_cannot_be_done_is_refused(
+    request_: OutputRequest, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=words):
+        request_.check()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_limits_themselves_are_fine(tmp_path: Path) -> None:
+    OutputRequest(
+        png=tmp_path / "A.PNG", video=tmp_path / "b.GIF", at=(0.0, 1e9), speed=1000.0, size=(16, MOST_PIXELS)
+    ).check()
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.webp", "a.b.WEBP"])
+def test_moving_pictures_by_their_ending(name: str) -> None:
+    check_suffix(Path(name))
+    assert Path(name).suffix.lower() in VIDEO_FORMATS
+
+
+def test_meshes_beside_and_below_the_problem_may_be_shown(tmp_path: Path) -> None:
+    problem = tmp_path / "here" / "p.yaml"
+    below = tmp_path / "here" / "meshes" / "cup.obj"
+    below.parent.mkdir(parents=True)
+    below.touch()
+    check_inside([below, problem.with_name("beside.obj")], problem)
+    check_inside([], problem)
+
+    outside = tmp_path / "secret.obj"
+    outside.touch()
+    with pytest.raises(InputError, match=r"outside of the problem's folder. Move it there, or say.*--allow-outside"):
+        check_inside([below, outside], problem)
+
+
+def test_a_link_out_of_the_folder_is_outside(tmp_path: Path) -> None:
+    (tmp_path / "secret.obj").touch()
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "cup.obj").symlink_to(tmp_path / "secret.obj")
+    with pytest.raises(InputError, match="outside"):
+        check_inside([folder / "cup.obj"], folder / "p.yaml")
+    with pytest.raises(InputError, match="outside"):
+        check_inside([folder / ".." / "secret.obj"], folder / "p.yaml")
+    (folder / "linked.yaml").symlink_to(tmp_path / "p.yaml")
+    check_inside([tmp_path / "secret.obj"], folder / "linked.yaml")  # the problem's own place counts
+
+
+def test_a_folder_whose_name_begins_alike_is_another(tmp_path: Path) -> None:
+    (tmp_path / "here-too").mkdir()
+    with pytest.raises(InputError, match="outside"):
+        check_inside([tmp_path / "here-too" / "cup.obj"], tmp_path / "here" / "p.yaml")
+
+
+def test_meshes_that_anybody_has_may_be_shown(tmp_path: Path) -> None:
+    import pybullet_data
+
+    check_inside([Path(pybullet_data.getDataPath()) / "duck.obj"], tmp_path / "p.yaml")
