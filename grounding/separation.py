@@ -79,7 +79,9 @@ def separations(form: BodyGeometry, poses: Array, obstacles: Obstacles) -> Array
         obstacles.low,
         obstacles.high,
     )
-    _separate(form.outer, form.outer_box, np.ascontiguousarray(poses, dtype=float), *placed, out)
+    # The kernel takes no read-only arrays, which the matrices of poses are.
+    poses = np.require(poses, float, ["C", "W"])
+    _separate(form.outer, form.outer_box, poses, *placed, out)
     return out
 
 

@@ -56,8 +56,9 @@ def test_a_plan_that_reaches_the_goal_at_its_cost_holds(plan: dict[str, Any]) ->
     ("actions", "cost", "told"),
     [
         ([("home", "mill", 3)], 3, [("goal", "(at port) does not hold")]),
-        ([("home", "port", 3)], 3, [("precondition", "(road home port) does not hold"), ("cost", "its cost is not known"),
-                                    ("goal", "(seen mill) does not hold"), ("cost", "the plan costs 0, not 3")]),
+        ([("home", "port", 3)], 3,
+         [("precondition", "(road home port) does not hold"), ("cost", "its cost is not known"),
+          ("goal", "(seen mill) does not hold"), ("cost", "the plan costs 0, not 3")]),
         ([("mill", "port", 4), ("home", "mill", 3)], 7, [("precondition", "(at mill) does not hold")]),
         ([("home", "mill", 2), ("mill", "port", 4)], 7, [("cost", "it costs 3, not 2")]),
         ([("home", "mill", 3), ("mill", "port", 4)], 6, [("cost", "the plan costs 7, not 6")]),

@@ -70,8 +70,8 @@ def test_a_grasp_is_shown_in_the_hand() -> None:
 
 
 def test_without_a_record_the_plans_own_grasps_are_shown() -> None:
-    values = {"g": {"type": "grasp", "body": "cup", "T_tool_body": POSE, "opening": 0.05}, "p": {"type": "pose", **POSE},
-              "h": {"type": "grasp", "body": "ghost", "T_tool_body": POSE, "opening": 0.05}}  # fmt: skip
+    hold = {"type": "grasp", "T_tool_body": POSE, "opening": 0.05}
+    values = {"g": {**hold, "body": "cup"}, "h": {**hold, "body": "ghost"}, "p": {"type": "pose", **POSE}}
     (marker,) = sample_markers({"values": values}, SCENE)
     assert (marker.body, marker.used, marker.test) == ("Cup", True, None)
     assert sample_markers({}, SCENE) == ()

@@ -1,0 +1,105 @@
+"""Trajectories as text, of a plan made by hand whose every number is known."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from tamp.export.formats import csv_text, json_text, ros_text
+from tamp.export.trajectory import BASE_JOINTS, rates, timed_actions
+from tamp.geometric.robot.robot import ROBOTS
+from tamp.plan.read import Value
+from tests.plan.making import arm, base, close, let_go, plan_of
+
+ROBOT = ROBOTS["panda_mobile"]()
+ARM = tuple(joint.name for joint in ROBOT.joints)
+FINGERS = tuple(finger.name for finger in ROBOT.fingers)
+HOME = np.array(ROBOT.home)
+DOWN = [*HOME, 0.1, 0, 0, 0, 0, 0, 0]
+
+PLAN = plan_of(
+    ("move", ("b1",), [base([0, 1, 2], [[0, 0, 0], [0.5, 0, 0.1], [1, 0, 0.2]])]),
+    ("pick", ("cup",), [arm([0, 1], [HOME, DOWN]), close("cup", 0.05), arm([0, 1], [DOWN, HOME], 0.05, "cup")]),
+    ("place", ("cup",), [let_go("cup", 0.05)]),
+)
+ACTIONS = timed_actions(PLAN, ROBOT)
+
+
+def test_stretches_follow_each_other_from_the_plans_start() -> None:
+    starts = [stretch.times[0] for action in ACTIONS for stretch in action.stretches]
+    ends = [stretch.times[-1] for action in ACTIONS for stretch in action.stretches]
+    assert starts == pytest.approx([0.0, 2.0, 3.0, 3.5, 4.5])
+    assert ends == pytest.approx([2.0, 3.0, 3.5, 4.5, 5.0]) and ends[-1] == PLAN.duration
+
+
+def test_each_finger_stands_at_half_the_opening() -> None:
+    gripper = ACTIONS[1].stretches[1]
+    assert (gripper.part, gripper.joints, gripper.attach) == ("gripper", FINGERS, "cup")
+    assert gripper.positions == pytest.approx(np.array([[0.04, 0.04], [0.025, 0.025]]))
+    assert ACTIONS[2].stretches[0].detach == "cup"
+
+
+def test_rates_lie_between_the_slopes_beside_them_and_rest_at_the_ends() -> None:
+    times = np.array([0.0, 1.0, 1.5, 4.0])
+    positions = np.array([[0.0], [2.0], [1.0], [1.0]])
+    found = rates(times, positions)[:, 0]
+    assert found[0] == found[-1] == 0.0
+    # Of slopes 2 over one second and -2 over half a one, the nearer counts double: (2 * 0.5 - 2 * 1) / 1.5.
+    assert found[1] == pytest.approx(-2 / 3)
+    assert found[2] == pytest.approx((-2.0 * 2.5 + 0.0 * 0.5) / 3.0)
+    assert rates(times[:2], positions[:2]).tolist() == [[0.0], [0.0]]
+
+
+def test_json_tells_what_is_grasped_only_where_it_is() -> None:
+    document = json.loads(json_text(PLAN, ROBOT, ACTIONS))
+    assert document["joints"] == {"base": list(BASE_JOINTS), "arm": list(ARM), "gripper": list(FINGERS)}
+    segments = [segment for action in document["actions"] for segment in action["segments"]]
+    assert [segment.get("attach") for segment in segments] == [None, None, "cup", None, None]
+    assert [segment.get("detach") for segment in segments] == [None, None, None, None, "cup"]
+    assert [segment["holding"] for segment in segments] == [None, None, None, "cup", None]
+    assert segments[0]["velocities"] == [[0.0, 0.0, 0.0], [0.5, 0.0, 0.1], [0.0, 0.0, 0.0]]
+
+
+def rows() -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(csv_text(PLAN, ROBOT, ACTIONS))))
+
+
+def test_csv_says_of_every_joint_where_it_is_also_while_it_stands() -> None:
+    found = rows()
+    assert len(found) == 3 + 2 + 2 + 2 + 2
+    assert [row["number"] for row in found] == ["1"] * 3 + ["2"] * 6 + ["3"] * 2
+    first, last = found[0], found[-1]
+    assert [float(first[name]) for name in ARM] == pytest.approx(HOME)
+    assert [float(first[name]) for name in FINGERS] == [0.04, 0.04]
+    assert [float(last[name]) for name in BASE_JOINTS] == [1.0, 0.0, 0.2]
+    assert [row["holding"] for row in found[7:9]] == ["cup", "cup"]
+    turning = found[1]
+    assert (float(turning["v_base_x"]), float(turning["v_base_yaw"])) == (0.5, 0.1)
+    assert all(float(turning[f"v_{name}"]) == 0.0 for name in (*ARM, *FINGERS))
+
+
+def test_before_its_first_move_the_base_is_where_the_plan_starts() -> None:
+    still = plan_of(("pick", ("cup",), [arm([0, 1], [HOME, DOWN])]),
+                    values={"b": Value("base-conf", np.array([0.5, -1.0, 2.0]))}, initial=[("at-base", "b")])  # fmt: skip
+    text = csv_text(still, ROBOT, timed_actions(still, ROBOT))
+    row = next(csv.DictReader(io.StringIO(text)))
+    assert [float(row[name]) for name in BASE_JOINTS] == [0.5, -1.0, 2.0]
+
+
+def test_ros_times_count_from_each_messages_own_start() -> None:
+    found = json.loads(ros_text(PLAN, ROBOT, ACTIONS))["trajectories"]
+    assert [one["start"] for one in found] == [0.0, 2.0, 3.0, 3.5, 4.5]
+    third = found[2]["message"]["points"][-1]
+    assert third["time_from_start"] == {"sec": 0, "nanosec": 500_000_000}
+    assert [one["message"]["header"]["frame_id"] for one in found] == ["world", "", "", "", ""]
+    assert [one["controller"] for one in found] == ["base", "arm", "gripper", "arm", "gripper"]
+
+
+def test_numbers_are_written_without_a_negative_zero() -> None:
+    tiny = plan_of(("move", (), [base([0, 1], [[-1e-12, 0, 0], [1, 0, 0]])]))
+    text = json_text(tiny, ROBOT, timed_actions(tiny, ROBOT))
+    assert "-0.0" not in text and "e-" not in text
