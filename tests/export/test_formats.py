@@ -11,7 +11,7 @@ import pytest
 
 from tamp.export.formats import csv_text, json_text, ros_text
 from tamp.export.trajectory import BASE_JOINTS, rates, timed_actions
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.plan.read import Value
 from tests.plan.making import arm, base, close, let_go, plan_of
 
@@ -19,7 +19,7 @@ ROBOT = ROBOTS["panda_mobile"]()
 ARM = tuple(joint.name for joint in ROBOT.joints)
 FINGERS = tuple(finger.name for finger in ROBOT.fingers)
 HOME = np.array(ROBOT.home)
-DOWN = [*HOME, 0.1, 0, 0, 0, 0, 0, 0]
+DOWN = HOME + np.array([0.1, 0, 0, 0, 0, 0, 0])
 
 PLAN = plan_of(
     ("move", ("b1",), [base([0, 1, 2], [[0, 0, 0], [0.5, 0, 0.1], [1, 0, 0.2]])]),

@@ -76,6 +76,7 @@ def test_a_placed_forms_box_holds_its_vertices_closely(form: object) -> None:
 
 def test_the_gap_of_boxes_is_a_straight_distance() -> None:
     unit = np.array([[0.0, 0, 0], [1, 1, 1]])
-    assert gap(unit, [*unit, 0.5, 0.5, 0.5]) == 0.0
-    assert gap(unit, [*unit, 1.0, 0, 0]) == 0.0
-    assert gap(unit, [*unit, 4.0, 5.0, 0]) == gap([*unit, 4.0, 5.0, 0], unit) == pytest.approx(5.0)
+    assert gap(unit, unit + 0.5) == 0.0
+    assert gap(unit, unit + np.array([1.0, 0, 0])) == 0.0
+    away = unit + np.array([4.0, 5.0, 0])
+    assert gap(unit, away) == gap(away, unit) == pytest.approx(5.0)

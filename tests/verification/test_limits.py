@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
-from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.loading.robots import ROBOTS
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Room
 from tamp.plan.read import Segment
 from tamp.verification.limits import Excess, check_ranges, excesses

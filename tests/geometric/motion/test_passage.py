@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.motion.passage import Gap, Passage
-from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Body, Box, Cylinder
 from tests.geometric.making import body, scene
 

@@ -1,0 +1,119 @@
+"""Rows of convex parts as the kernels read them, and FCL's exact answers on the same shapes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tamp.geometric.collision.fcl_bodies import FclBody, depth, gap, touch
+from tamp.geometric.collision.tables import (
+    BOX,
+    CENTRE,
+    CYLINDER,
+    HULL,
+    KIND,
+    LEAF_COUNT,
+    LEAVES,
+    MARGIN,
+    POINT,
+    RADIUS,
+    SIZE,
+    SLACK,
+    VERTEX_COUNT,
+    VERTICES,
+    WIDTH,
+    Rows,
+    pose_rows,
+    world_box,
+)
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Part, Shape, Sphere
+from tests.geometric.making import cuboid, hull
+
+_ANGLE = st.floats(-math.pi, math.pi)
+OFF_CENTRE = hull(cuboid((0.2, 0.4, 0.6)) + np.array([1.0, 2.0, 3.0]))
+
+
+@pytest.mark.parametrize(
+    ("shape", "kind", "half", "centre", "radius", "margin"),
+    [
+        (Sphere(0.3), POINT, [0.3] * 3, [0, 0, 0], 0.3, 0.3),
+        (Box((0.2, 0.4, 0.4)), BOX, [0.1, 0.2, 0.2], [0, 0, 0], 0.3, 0.0),
+        (Cylinder(0.3, 0.8), CYLINDER, [0.3, 0.3, 0.4], [0, 0, 0], 0.5, 0.0),
+        (OFF_CENTRE, HULL, [0.1, 0.2, 0.3], [1, 2, 3], math.sqrt(0.14), 0.0),
+    ],
+    ids=["sphere", "box", "cylinder", "hull"],
+)
+def test_a_row_has_the_box_and_the_sphere_around_a_part(
+    shape: Shape, kind: int, half: list, centre: list, radius: float, margin: float
+) -> None:
+    row = Rows().row(Part(shape))
+    assert row.shape == (WIDTH,) and row[KIND] == kind
+    assert row[SIZE : SIZE + 3] == pytest.approx(half) and row[CENTRE : CENTRE + 3] == pytest.approx(centre)
+    assert (row[RADIUS], row[MARGIN], row[SLACK]) == pytest.approx((radius, margin, radius))
+
+
+def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
+    rows = Rows()
+    first, second = rows.row(Part(OFF_CENTRE)), rows.row(Part(hull(cuboid((1, 1, 1)))))
+    assert (first[VERTICES], first[VERTEX_COUNT], second[VERTICES], second[VERTEX_COUNT]) == (0, 8, 8, 8)
+    vertices = rows.vertices()
+    assert vertices.shape == (3, 16) and vertices.flags.c_contiguous
+    assert np.abs(vertices[:, 8:]) == pytest.approx(np.full((3, 8), 0.5))
+
+    leaves = np.array([[0.0, 0.0, 0.1, 0.05], [0.0, 0.0, -0.1, 0.05]])
+    rows.row(Part(Sphere(1.0)), (leaves[:1], 0.01))
+    covered = rows.row(Part(Box((1, 1, 1))), (leaves, 0.02))
+    assert (covered[LEAVES], covered[LEAF_COUNT], covered[SLACK]) == (1, 2, 0.02)
+    assert (rows.leaves()[1:] == leaves).all()
+
+
+def test_nothing_collected_is_empty_tables() -> None:
+    assert Rows().vertices().shape == (3, 0) and Rows().leaves().shape == (0, 4)
+
+
+def test_a_pose_is_a_rotation_row_by_row_and_a_position() -> None:
+    T = Pose.from_xyz_yaw(1.0, 2.0, 3.0, math.pi / 2).matrix
+    assert pose_rows(T[None])[0] == pytest.approx([0, -1, 0, 1, 0, 0, 0, 0, 1, 1, 2, 3], abs=1e-12)
+
+
+@given(_ANGLE, _ANGLE, _ANGLE)
+@settings(max_examples=30)
+def test_the_worlds_box_holds_the_part_and_is_exact_for_boxes(roll: float, pitch: float, yaw: float) -> None:
+    pose = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (roll, pitch, yaw))
+    for shape in (Box((0.2, 0.4, 0.6)), OFF_CENTRE, Cylinder(0.1, 0.3)):
+        low, high = world_box(Rows().row(Part(shape))[None], pose_rows(pose.matrix[None]))
+        least, most = bounds([Part(shape)], pose)
+        assert (low[0] <= least + 1e-12).all() and (high[0] >= most - 1e-12).all()
+        if not isinstance(shape, Cylinder):
+            assert low[0] == pytest.approx(least) and high[0] == pytest.approx(most)
+
+
+SHAPES = [Box((0.2, 0.2, 0.2)), hull(cuboid((0.2, 0.2, 0.2))), Cylinder(0.1, 0.2), Sphere(0.1)]
+
+
+@pytest.mark.parametrize("first", SHAPES, ids=["box", "hull", "cylinder", "sphere"])
+@pytest.mark.parametrize("second", SHAPES, ids=["box", "hull", "cylinder", "sphere"])
+def test_fcl_knows_gaps_and_depths_along_an_axis(first: Shape, second: Shape) -> None:
+    here, there = FclBody((Part(first),)), FclBody((Part(second),))
+    one = here.place(0, np.eye(4))
+    apart = there.place(0, Pose((0.25, 0.0, 0.0)).matrix)
+    assert gap(one, apart) == pytest.approx(0.05, abs=1e-5)
+    assert touch(one, apart, 0.051) and not touch(one, apart, 0.049) and not touch(one, apart, 0.0)
+    assert depth(one, apart) == 0.0
+    inside = there.place(0, Pose((0.17, 0.0, 0.0)).matrix)
+    assert touch(one, inside, 0.0) and gap(one, inside) == 0.0
+    assert depth(one, inside) == pytest.approx(0.03, rel=0.05)
+
+
+def test_a_part_stands_at_its_pose_in_the_body_and_is_moved_with_it() -> None:
+    pair = FclBody((Part(Sphere(0.1), Pose((0.5, 0, 0))), Part(Sphere(0.1), Pose((-0.5, 0, 0)))))
+    turned = Pose.from_xyz_yaw(1.0, 0.0, 0.0, math.pi / 2).matrix
+    assert pair.place(0, turned).getTranslation() == pytest.approx([1.0, 0.5, 0.0])
+    assert pair.place(1, turned).getTranslation() == pytest.approx([1.0, -0.5, 0.0])
+    assert pair.place(0, np.eye(4)).getTranslation() == pytest.approx([0.5, 0.0, 0.0])
