@@ -1,0 +1,139 @@
+"""Streams that wait for actions, and streams that certify what actions change: over predicates that never change."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from tamp.errors import InputError
+from tamp.symbolic.pddl.exogenous import compile_away, renamed
+from tamp.symbolic.pddl.parser import parse_domain, parse_streams
+from tamp.symbolic.pddl.started import without_started
+from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter
+from tamp.verification.formulas import show
+from tamp.verification.semantics import Semantics, State
+
+DOMAIN = parse_domain("""(define (domain safes)
+  (:predicates (safe ?s) (lit ?s) (opens ?c ?s) (open ?s))
+  (:action light :parameters (?s) :precondition (safe ?s) :effect (lit ?s))
+  (:action dim :parameters (?s) :precondition (lit ?s) :effect (not (lit ?s)))
+  (:action open :parameters (?s ?c) :precondition (opens ?c ?s) :effect (open ?s)))""")
+STREAMS = parse_streams(
+    """(define (stream safes)
+  (:stream read :inputs (?s) :domain (and (safe ?s) (lit ?s)) :outputs (?c) :certified (opens ?c ?s)))""",
+    DOMAIN,
+    waiting=True,
+)
+GOAL = Atom("open", ("box",))
+
+
+def test_a_task_whose_streams_wait_for_nothing_stays_as_it_is() -> None:
+    plain = parse_streams(
+        """(define (stream s)
+      (:stream read :inputs (?s) :domain (safe ?s) :outputs (?c) :certified (opens ?c ?s)))""",
+        DOMAIN,
+    )
+    made = compile_away(DOMAIN, plain, GOAL, frozenset({("safe", "box")}))
+    assert (made.domain, made.streams, made.goal) == (DOMAIN, plain, GOAL)
+    assert without_started(DOMAIN, plain, GOAL).domain is DOMAIN
+
+
+def test_a_waiting_stream_is_asked_at_once_and_says_what_it_gave() -> None:
+    made = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box")}))
+    (stream,) = made.streams.streams
+    assert [show(atom) for atom in stream.domain] == ["(safe ?s)"]  # of what never changes
+    assert [show(atom) for atom in stream.certified] == ["(opens ?c ?s)", "(read-result ?s ?c)"]
+
+
+def usable(domain: Domain, facts: set[Fact], code: str = "code") -> bool:
+    """Whether the box can be opened with a code."""
+    semantics = Semantics(domain, {"box": ("object",), code: ("object",)})
+    action = semantics.actions["open"]
+    return not semantics.unmet(action, ("box", code), State.of(facts))
+
+
+def facts_of(state: State) -> set[Fact]:
+    return {(name, *row) for name, rows in state.facts.items() for row in rows}
+
+
+def test_what_it_gave_counts_once_its_domain_has_been_true() -> None:
+    made = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box")}))
+    semantics = Semantics(made.domain, {"box": ("object",), "code": ("object",)})
+    state = State.of({("safe", "box"), ("read-result", "box", "code"), ("opens", "code", "box")})
+    assert not usable(made.domain, facts_of(state))
+    state = semantics.apply(semantics.actions["light"], ("box",), state)
+    assert usable(made.domain, facts_of(state))
+    state = semantics.apply(semantics.actions["dim"], ("box",), state)
+    assert ("lit", "box") not in state and usable(made.domain, facts_of(state))  # it was lit, that is enough
+
+
+def test_what_is_true_or_given_at_first_needs_no_action() -> None:
+    lit = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box"), ("lit", "box")}))
+    assert usable(lit.domain, {*lit.facts, ("read-result", "box", "code")})
+    known = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box"), ("opens", "code", "box")}))
+    assert usable(known.domain, set(known.facts))
+
+
+def test_what_waits_cannot_have_to_be_false() -> None:
+    with pytest.raises(InputError, match=r"'opens' has to be false here, and its stream waits for what actions change"):
+        compile_away(DOMAIN, STREAMS, Not(Atom("opens", ("code", "box"))), frozenset())
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        (Atom("a", ("?x",)), "(b ?x)"),
+        (Not(Atom("a", ())), "(not (b))"),
+        (And((Atom("a", ()), Or((Atom("c", ()), Atom("a", ()))))), "(and (b) (or (c) (b)))"),
+        (Exists((Parameter("?x"),), Atom("a", ("?x",))), "(exists (?x - object) (b ?x))"),
+        (Forall((Parameter("?x"),), Not(Atom("a", ("?x",)))), "(forall (?x - object) (not (b ?x)))"),
+    ],
+)
+def test_predicates_are_renamed_wherever_they_stand(formula: Formula, text: str) -> None:
+    assert show(renamed(formula, {"a": "b"})) == text
+    assert renamed(formula, {}) == formula
+
+
+CHANGED = parse_domain("""(define (domain d) (:predicates (thing ?x) (clean ?x) (shown ?x))
+  (:action wash :parameters (?x) :precondition (thing ?x) :effect (clean ?x))
+  (:action soil :parameters (?x) :precondition (thing ?x) :effect (not (clean ?x)))
+  (:action show :parameters (?x) :precondition (clean ?x) :effect (shown ?x)))""")
+SEEN = """(define (stream d) (:stream see :inputs (?x) :domain (thing ?x) :certified (clean ?x)))"""
+
+
+@pytest.mark.parametrize("order", list(itertools.product(["wash", "soil"], repeat=2)))
+@pytest.mark.parametrize("found", [True, False])
+def test_what_a_stream_finds_holds_until_an_action_ends_it(found: bool, order: tuple[str, ...]) -> None:
+    made = without_started(CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",)))
+    objects = {"cup": ("object",)}
+    before, after = Semantics(CHANGED, objects), Semantics(made.domain, objects)
+    (start,) = made.names
+    plain = State.of({("thing", "cup"), *([("clean", "cup")] if found else [])})
+    rewritten = State.of({("thing", "cup"), *([(start, "cup")] if found else [])})
+    for name in order:
+        plain = before.apply(before.actions[name], ("cup",), plain)
+        rewritten = after.apply(after.actions[name], ("cup",), rewritten)
+        ready = not before.unmet(before.actions["show"], ("cup",), plain)
+        assert ready == (not after.unmet(after.actions["show"], ("cup",), rewritten))
+
+
+def test_its_stream_certifies_what_never_changes() -> None:
+    made = without_started(CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",)))
+    (atom,) = made.streams.streams[0].certified
+    assert atom.predicate not in made.domain.fluent_predicates and made.names == {atom.predicate: "clean"}
+
+
+@pytest.mark.parametrize(
+    ("streams", "goal", "words"),
+    [
+        (SEEN, Not(Atom("clean", ("cup",))), "'clean' has to be false here, and a test that may still pass"),
+        (SEEN[:-1] + "(:stream wait :inputs (?x) :domain (clean ?x) :outputs (?y) :certified (thing ?y)))",
+         Atom("shown", ("cup",)), "stream 'wait' waits for 'clean', which another stream certifies"),
+        (SEEN[:-1] + "(:stream look :inputs (?x) :domain (thing ?x) :fluents (clean) :outputs (?y)"
+         " :certified (thing ?y)))", Atom("shown", ("cup",)), "stream 'look' is shown 'clean' through :fluents"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_moved_is_refused(streams: str, goal: Formula, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        without_started(CHANGED, parse_streams(streams, CHANGED, waiting=True), goal)
