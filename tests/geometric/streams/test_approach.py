@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tamp.geometric.scene.pose import Pose
@@ -90,7 +91,7 @@ def test_a_wider_opening_needs_more_room(problem: Problem) -> None:
     lamp = problem.scene.bodies["lamp"].parts[0].shape.radius  # type: ignore[union-attr]
     # Beside a finger: the open hand hits it on its way in, whatever the fingers do afterwards.
     frame = pose @ from_above().T_tool_body.inverse()
-    x, y, z = frame.apply([[0.0, 0.05 + lamp, 0.0]])[0]
+    x, y, z = frame.apply(np.array([[0.0, 0.05 + lamp, 0.0]]))[0]
     beside = Pose((float(x), float(y), float(z)))
     assert approach_hits(problem.context, pose, from_above(), [("lamp", beside)]) == "lamp"
     assert approach_hits(problem.context, pose, replace(from_above(), opening=0.08), [("lamp", beside)]) == "lamp"
