@@ -48,6 +48,15 @@ def test_speeds_are_those_of_the_trajectory_and_zero_at_rest() -> None:
     assert (rates[:, :3] == 0.0).all() and (rates[2 * RATE :] == 0.0).all()
 
 
+def test_somebody_looks_now_and_then_from_the_first_step_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    world, looks = Noting(), list[int]()
+    player, watch = playing(world)
+    monkeypatch.setattr(watch, "look", lambda: looks.append(len(world.ticks)))
+    player.play(base([0, 1], [[0, 0, 0], [1, 0, 0]]), None, watch)
+    assert looks[: RATE // EVERY] == list(range(1, RATE + 1, EVERY))
+    assert looks[RATE // EVERY :] == list(range(RATE + 1, RATE + RESTING + 1, EVERY))
+
+
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_something_happens_once_at_its_share_of_the_time(share: float) -> None:
     world, happened = Noting(), list[int]()

@@ -83,8 +83,10 @@ def test_csv_says_of_every_joint_where_it_is_also_while_it_stands() -> None:
 
 
 def test_before_its_first_move_the_base_is_where_the_plan_starts() -> None:
-    start = {"b": Value("base-conf", np.array([0.5, -1.0, 2.0]))}
-    still = plan_of(("pick", ("cup",), [arm([0, 1], [HOME, DOWN])]), values=start, initial=[("at-base", "b")])
+    start = {"b": Value("base-conf", np.array([0.5, -1.0, 2.0])), "c": Value("base-conf", np.zeros(3))}
+    still = plan_of(
+        ("pick", ("cup",), [arm([0, 1], [HOME, DOWN])]), values=start, initial=[("goes-to", "c"), ("at-base", "b")]
+    )
     text = csv_text(still, ROBOT, timed_actions(still, ROBOT))
     row = next(csv.DictReader(io.StringIO(text)))
     assert [float(row[name]) for name in BASE_JOINTS] == [0.5, -1.0, 2.0]

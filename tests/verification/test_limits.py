@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -90,6 +91,19 @@ def test_each_joint_has_the_makers_range(robot: Robot, joint: int) -> None:
         assert "limit" not in found(robot, arm([0, 9], [inside, inside]))
         told = found(robot, arm([0, 9], [inside, outside]))["limit"]
         assert robot.joints[joint].name in told.message and told.amount == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(("drive", "told"), [("omnidirectional", False), ("differential", True), ("fixed", True)])
+def test_wheels_do_not_slide_sideways_and_a_fixed_base_not_at_all(robot: Robot, drive: str, told: bool) -> None:
+    sideways = base([0, 9], [[0, 0, 0], [0, 0.5, 0]])
+    found_ = found(replace(robot, drive=drive), sideways)
+    assert ("limit" in found_) == told
+    ahead = found(replace(robot, drive=drive), base([0, 9], [[0, 0, 0], [0.5, 0, 0]]))
+    assert ("limit" in ahead) == (drive == "fixed")
+    if drive == "differential":
+        assert found_["limit"].message == "the base slides sideways by 5e+02 mm, and its wheels do not"
+    if drive == "fixed":
+        assert ahead["limit"].message == "the base moves by 0.5, and it is fixed"
 
 
 def test_fingers_open_no_wider_and_no_faster_than_they_can(robot: Robot) -> None:

@@ -13,7 +13,7 @@ from tamp.geometric.loading.initial_poses import place_bodies
 from tamp.geometric.loading.steadying import TIP, steady, tip
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Sphere
-from tests.geometric.making import body, drafts
+from tests.geometric.making import body, drafts, hull
 
 TABLE = "table: {box: [1.0, 0.6, 0.5], fixed: true, at: [0, 0, 0.25]}\n"
 
@@ -62,6 +62,22 @@ def test_one_that_leans_on_a_corner_rolls_over_two_edges() -> None:
     assert turn is not None
     R = turn @ given.pose.rotation
     assert np.abs(R[2]).max() == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("degrees", "rolls"), [(16.0, True), (40.0, False)])
+def test_many_small_turns_count_together(degrees: float, rolls: bool) -> None:
+    """A prism of 72 sides lies on one of them; its centre of mass is low when it has turned by some degrees."""
+    angle = np.radians(np.arange(72) * 5.0 + 2.5)
+    circle = 0.1 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = np.concatenate([np.column_stack([np.full(72, x), circle]) for x in (-0.1, 0.1)])
+    off = np.radians(degrees)
+    centre = (0.0, 0.09 * np.sin(off), -0.09 * np.cos(off))  # so far from straight down, about x
+    log = Body("log", (Part(hull(points)),), Pose((0, 0, 1.0)), True, center_of_mass=centre)
+    turn = tip(log)
+    assert (turn is not None) == rolls
+    if turn is not None:
+        # Onto the side that is straight below the centre, or the one before it.
+        assert math.degrees(math.acos((np.trace(turn) - 1) / 2)) == pytest.approx(degrees, abs=5.1)
 
 
 def test_what_is_round_lies_still_as_it_is() -> None:

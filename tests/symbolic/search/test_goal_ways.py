@@ -82,6 +82,21 @@ def test_a_universal_part_denied_is_taken_apart_by_its_rules() -> None:
     assert [part.literal for part in parts] == [(("a",), False), (("b",), True)]
 
 
+@pytest.mark.parametrize(
+    ("wanted", "rules"),
+    [
+        (True, (axiom("made", "a"), axiom("made", "b"))),  # a choice: neither is a conjunct
+        (False, (axiom("made", "a b"),)),  # one of the two is to be false, which one is open
+        (True, ()),
+    ],
+)
+def test_what_is_no_conjunction_is_not_taken_apart(wanted: bool, rules: tuple[Axiom, ...]) -> None:
+    made = facts(["made"])
+    goal = Goal(made) if wanted else Goal(frozenset(), made)
+    (part,) = goal_parts(task(goal, *rules, meanings=("made",)))
+    assert part.literal == (("made",), wanted)
+
+
 def test_rules_in_circles_say_nothing() -> None:
     assert ways(Goal(facts("p")), axiom("p", "q"), axiom("q", "p")) == [{frozenset()}]
 
