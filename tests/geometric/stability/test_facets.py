@@ -58,7 +58,8 @@ def test_a_cube_tips_at_45_degrees_and_a_flat_box_later() -> None:
 
 
 def test_the_nearest_edge_counts_and_beyond_it_nothing_holds() -> None:
-    assert tipping_angle(SQUARE, np.array([0.07, 0.02]), 0.03) == pytest.approx(math.radians(45))
+    for centre in ((0.07, 0.02), (-0.07, 0.02), (0.02, 0.07), (0.02, -0.07)):  # 3 cm from each side in turn
+        assert tipping_angle(SQUARE, np.array(centre), 0.03) == pytest.approx(math.radians(45))
     assert tipping_angle(SQUARE, np.array([0.1, 0.0]), 0.2) == pytest.approx(0.0)
     assert tipping_angle(SQUARE, np.array([0.13, 0.0]), 0.03) == pytest.approx(-math.radians(45))
 
