@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
@@ -25,6 +26,9 @@ SIDEWAYS = 0.02
 """Share of a differential drive's way that may be sideways: samples are chords."""
 ROUNDING = 2e-6
 """Metres or radians by which a written position may be rounded."""
+WINDOW = 0.02
+"""Seconds between samples over which an acceleration is measured as well, if they are denser."""
+HARSHER = "too harsh"
 
 
 @dataclass(frozen=True)
@@ -62,17 +66,40 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
         "velocity", speed - allowed, speed - velocity, times, names, speed, "too fast"
     )
 
-    # Mean velocities of neighbouring intervals differ by a mean acceleration times the time
-    # between their middles.
-    still = np.zeros((1, rows.shape[1]))
-    speeds = np.concatenate([still, np.diff(rows, axis=0) / steps[:, None], still])
-    apart = np.concatenate([[steps[0] / 2], (steps[:-1] + steps[1:]) / 2, [steps[-1] / 2]])[:, None]
-    shortest = np.concatenate([steps[:1], np.minimum(steps[:-1], steps[1:]), steps[-1:]])[:, None]
-    harsh = np.abs(np.diff(speeds, axis=0)) / apart
-    allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
-    yield from _worst(
-        "acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh"
-    )
+    yield from _harsh(times, rows, acceleration, names)
+
+
+def _harsh(times: Array, rows: Array, acceleration: Array, names: list[str]) -> Iterator[Excess]:
+    """Yield each worst acceleration, once between neighbouring samples and once between samples
+    that are WINDOW apart: of finer ones the allowance for rounding would let anything pass.
+    """
+    for kept in (np.arange(len(times)), _spread(times)):
+        at, steps = times[kept], np.diff(times[kept])[:, None]
+
+        # Mean velocities of neighbouring intervals differ by a mean acceleration times the time
+        # between their middles.
+        still = np.zeros((1, rows.shape[1]))
+        speeds = np.concatenate([still, np.diff(rows[kept], axis=0) / steps, still])
+        apart = np.concatenate([steps[:1] / 2, (steps[:-1] + steps[1:]) / 2, steps[-1:] / 2])
+        shortest = np.concatenate([steps[:1], np.minimum(steps[:-1], steps[1:]), steps[-1:]])
+
+        harsh = np.abs(np.diff(speeds, axis=0)) / apart
+        allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
+        excess = list(
+            _worst("acceleration", harsh - allowed, harsh - acceleration, at, names, harsh, HARSHER)
+        )
+        yield from excess
+        if excess:
+            return
+
+
+def _spread(times: Array) -> NDArray[np.intp]:
+    """Select samples at least WINDOW apart, the first and the last among them."""
+    kept = [0]
+    for row in range(1, len(times) - 1):
+        if times[row] - times[kept[-1]] >= WINDOW and times[-1] - times[row] >= WINDOW:
+            kept.append(row)
+    return np.array([*kept, len(times) - 1], dtype=np.intp)
 
 
 def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[Excess]:

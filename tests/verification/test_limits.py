@@ -146,3 +146,10 @@ def test_the_makers_table_is_within_itself_and_no_planners(robot: Robot) -> None
         zip(PANDA_MOBILE.lower, robot.lower, strict=True),
         zip(robot.upper, PANDA_MOBILE.upper, strict=True),
     )))  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [41, 401, 4001])
+def test_dense_samples_hide_no_acceleration(robot: Robot, count: int) -> None:
+    limit = float(limits_of(robot).acceleration[0])
+    assert "acceleration" in found(robot, ramp(1.0, 1.6 * limit, count))
+    assert "acceleration" not in found(robot, ramp(1.0, 0.98 * limit, count))
