@@ -42,6 +42,8 @@ class Context:
         holding: What is in the hand at the start; the scene has that body where it was before.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
+        footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
+            whatever stands on them must have its centre of mass, metres.
     """
 
     scene: Scene
@@ -51,6 +53,9 @@ class Context:
     holding: Grasp | None = None
     heights: dict[tuple[int, int], float | None] = field(
         default_factory=dict[tuple[int, int], "float | None"],
+    )
+    footings: dict[tuple[str, Pose], tuple[Array, ...]] = field(
+        default_factory=dict[tuple[str, Pose], "tuple[Array, ...]"],
     )
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(

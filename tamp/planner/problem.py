@@ -17,6 +17,7 @@ from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
 from tamp.planner.initial_state import Initial, initial_state
+from tamp.planner.movable_places import carries, circle, place_facts, with_tops
 from tamp.planner.own_relations import decided
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
@@ -179,6 +180,8 @@ def _read(
 
     domain_path = _domain_path(loaded, domain)
     parsed = parse_domain(read_pddl(domain_path), domain_path)
+    if carries(parsed):
+        loaded = replace(loaded, scene=with_tops(loaded.scene))
 
     streams_path = (
         Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
@@ -201,6 +204,10 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
             passage.text, domain, start.objects, loaded.path,
             line_offset=passage.line - 1, column_offset=passage.column - 1,
         )  # fmt: skip
+
+    if carries(domain):
+        start.facts |= place_facts(loaded.scene, domain, goal)
+        _check_circle(loaded, goal)
 
     _check_metric(loaded)
     return start, goal
@@ -229,6 +236,13 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
         return find_domain(loaded.domain, loaded.path.parent)
     except InputError as error:
         raise error.at(loaded.path, loaded.line_of("domain")) from None
+
+
+def _check_circle(loaded: LoadedProblem, goal: Formula) -> None:
+    chain = circle(goal, loaded.scene)
+    if chain:
+        what = f"the goal wants bodies on each other in a circle: {' on '.join(chain)}"
+        raise InputError(what, file=loaded.path, line=loaded.goal.line)
 
 
 def _check_metric(loaded: LoadedProblem) -> None:
