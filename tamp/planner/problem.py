@@ -195,10 +195,13 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
     loaded, domain = files.loaded, files.domain
     start = initial_state(loaded.scene, domain, holding)
 
-    goal = parse_goal(
-        loaded.goal.text, domain, start.objects, loaded.path,
-        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
-    )  # fmt: skip
+    try:
+        goal = parse_goal(
+            loaded.goal.text, domain, start.objects, loaded.path,
+            line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+        )  # fmt: skip
+    except InputError as error:
+        raise _remedied(error, domain) from None
     for passage in loaded.init:
         start.facts |= parse_facts(
             passage.text, domain, start.objects, loaded.path,
@@ -236,6 +239,16 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
         return find_domain(loaded.domain, loaded.path.parent)
     except InputError as error:
         raise error.at(loaded.path, loaded.line_of("domain")) from None
+
+
+def _remedied(error: InputError, domain: Domain) -> InputError:
+    """Name the domain that knows places of movable bodies where one is wanted without it."""
+    if carries(domain) or error.remedy or "is a movable, not a" not in error.message:
+        return error
+    return InputError(
+        error.message, file=error.file, line=error.line, column=error.column,
+        choices=error.choices, remedy="In 'domain: carriers' movable bodies carry others",
+    )  # fmt: skip
 
 
 def _check_circle(loaded: LoadedProblem, goal: Formula) -> None:

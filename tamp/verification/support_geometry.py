@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -33,11 +34,13 @@ class Stand:
             below it.
         gap: Metres of air above the nearest, infinite when there is nothing.
         lean: Metres by which the centre of mass is out of what carries it; negative inside.
+        carrying: Points of the world's plan at which it is carried, (n, 2), metres.
     """
 
     on: frozenset[str]
     gap: float
     lean: float
+    carrying: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
     @property
     def stable(self) -> bool:
@@ -123,7 +126,18 @@ class Supports:
             name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name
         )
         centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
-        return Stand(on, least, outside(centre, underside[carrying][:, :2]))
+        points = underside[carrying][:, :2]
+        return Stand(on, least, outside(centre, points), points)
+
+    def lean_of(self, body: str, load: Collection[str], stand: Stand) -> float:
+        """Measure by how much the centre of mass of some bodies together is out of what carries one
+        of them that stands so, metres; negative inside.
+        """
+        masses = np.array([self._world.scene.bodies[name].mass for name in load])
+        centres = np.array(
+            [(self._world.pose(name) @ np.append(self._centres[name], 1.0))[:2] for name in load]
+        )
+        return outside(masses @ centres / max(float(masses.sum()), 1e-9), stand.carrying)
 
     def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
         """Say why a body that stands so does not stand on a surface; None when it does."""

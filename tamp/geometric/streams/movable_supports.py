@@ -111,21 +111,20 @@ def _no_room(
     context: Context, body: str, region: Surface | Cavity, T_world_region: Pose
 ) -> Rejection | None:
     """Say why a body can be placed nowhere in a region that is there; None where it may."""
+    refused = no_fit(context, body, region)
+    if refused is not None:
+        return refused
+
+    ways = context.stable_faces(body).ways
+    if isinstance(region, Surface) and not any(_carries(face, region) for face in ways):
+        size = " x ".join(f"{100 * side:.1f}" for side in region.size)
+        what = f"{region.name} is too small to carry {body} ({size} cm)"
+        return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
+
     if T_world_region.rotation[2, 2] < LEVEL:
         what = f"{region.name} is not level: {region.body} lies on another side"
-        return Rejection(
-            what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,)
-        )
-
-    refused = no_fit(context, body, region)
-    if refused is not None or isinstance(region, Cavity):
-        return refused
-    if any(_carries(face, region) for face in context.stable_faces(body).ways):
-        return None
-
-    size = " x ".join(f"{100 * side:.1f}" for side in region.size)
-    what = f"{region.name} is too small to carry {body} (it is {size} cm)"
-    return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
+        return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
+    return None
 
 
 def _carries(face: Face, surface: Surface) -> bool:
