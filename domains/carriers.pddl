@@ -14,6 +14,7 @@
     (holding ?o - movable ?g - grasp)
     (hand-empty)
     (at-base ?b - base-conf)
+    (riding ?o - movable ?p - pose ?below - movable ?pb - pose)  ; as it stood at ?p on ?below at ?pb
     ; what streams certify
     (pose ?o - movable ?p - pose)
     (grounded ?o - movable ?p - pose)                 ; nothing that moves is under it
@@ -22,6 +23,8 @@
     (borne ?o - movable ?p - pose ?below - movable ?pb - pose)
     (stacked ?o - movable ?p - pose ?s - surface ?below - movable ?pb - pose)
     (packed ?o - movable ?p - pose ?c - container ?below - movable ?pb - pose)
+    (sampled ?o - movable ?p - pose)                  ; drawn for itself, or a start
+    (shifted ?o - movable ?p - pose ?below - movable ?pb - pose ?pb2 - pose ?p2 - pose)
     (reachable ?o - movable ?p - pose)
     (grasp ?o - movable ?g - grasp)
     (standing ?b - base-conf)
@@ -35,11 +38,13 @@
     (reach-clear ?o - movable ?p - pose ?g - grasp ?b - base-conf ?q - reach ?o2 - movable ?p2 - pose)
     ; what the scene says: places of fixed bodies; and what the goal may want on a place of a movable one
     (anchored ?s - object)
+    (portable ?o - movable)                                      ; the goal wants it somewhere, with what is on it
     (stackable ?o - movable ?s - object ?below - movable)
     ; what follows
     (on ?o - body ?s - surface)
     (inside ?o - body ?c - container)
     (loaded ?o - movable ?p - pose)
+    (busy ?o - movable)
     (pose-blocked ?o - movable ?p - pose)
     (approach-blocked ?o - movable ?p - pose ?g - grasp)
     (reach-blocked ?o - movable ?p - pose ?g - grasp ?b - base-conf ?q - reach))
@@ -57,6 +62,9 @@
       (and (packed ?o ?p ?c ?below ?pb) (at-pose ?o ?p) (at-pose ?below ?pb))))
   (:derived (loaded ?o - movable ?p - pose)
     (exists (?o2 - movable ?p2 - pose) (and (borne ?o2 ?p2 ?o ?p) (at-pose ?o2 ?p2))))
+  (:derived (busy ?o - movable)
+    (exists (?o2 - movable ?p2 - pose ?below - movable ?pb - pose)
+      (and (riding ?o2 ?p2 ?below ?pb) (not (= ?o ?below)))))
   (:derived (pose-blocked ?o - movable ?p - pose)
     (exists (?o2 - movable ?p2 - pose)
       (and (at-pose ?o2 ?p2) (not (= ?o ?o2)) (not (pose-clear ?o ?p ?o2 ?p2)))))
@@ -78,7 +86,8 @@
     :parameters (?o - movable ?p - pose ?g - grasp ?b - base-conf ?q - reach ?t - motion)
     :precondition (and (pick-motion ?o ?p ?g ?b ?q ?t)
                        (hand-empty) (at-base ?b) (at-pose ?o ?p)
-                       (not (loaded ?o ?p)) (not (approach-blocked ?o ?p ?g)) (not (reach-blocked ?o ?p ?g ?b ?q)))
+                       (not (loaded ?o ?p)) (not (busy ?o))
+                       (not (approach-blocked ?o ?p ?g)) (not (reach-blocked ?o ?p ?g ?b ?q)))
     :effect (and (holding ?o ?g) (not (hand-empty)) (not (at-pose ?o ?p))
                  (increase (total-cost) 1)))
 
@@ -98,4 +107,20 @@
                        (borne ?o ?p ?below ?pb) (at-pose ?below ?pb)
                        (not (pose-blocked ?o ?p)) (not (approach-blocked ?o ?p ?g)) (not (reach-blocked ?o ?p ?g ?b ?q)))
     :effect (and (at-pose ?o ?p) (hand-empty) (not (holding ?o ?g))
-                 (increase (total-cost) 1))))
+                 (increase (total-cost) 1)))
+
+  ; What is on a tray goes where the tray goes. These two say so, nothing moves: from ride to alight only the tray is handled.
+  (:action ride
+    :parameters (?o - movable ?p - pose ?below - movable ?pb - pose)
+    :precondition (and (portable ?below) (sampled ?o ?p) (borne ?o ?p ?below ?pb)
+                       (hand-empty) (at-pose ?o ?p) (at-pose ?below ?pb)
+                       (not (loaded ?o ?p)) (not (busy ?below)))
+    :effect (and (riding ?o ?p ?below ?pb) (not (at-pose ?o ?p))
+                 (increase (total-cost) 0)))
+
+  (:action alight
+    :parameters (?o - movable ?p - pose ?below - movable ?pb - pose ?pb2 - pose ?p2 - pose)
+    :precondition (and (shifted ?o ?p ?below ?pb ?pb2 ?p2)
+                       (hand-empty) (riding ?o ?p ?below ?pb) (at-pose ?below ?pb2))
+    :effect (and (at-pose ?o ?p2) (not (riding ?o ?p ?below ?pb))
+                 (increase (total-cost) 0))))

@@ -97,6 +97,7 @@ def _support_facts(
             if place is not None and place.body == name:
                 predicate = STACKED if below in scene.surfaces else "packed"
                 facts.append((predicate, word, pose, below.lower(), *there))
+    facts.append(("sampled", word, pose))
     if not carriers:
         facts.append(("grounded", word, pose))
     return facts

@@ -27,6 +27,9 @@ STACKABLE = "stackable"
 ANCHORED = "anchored"
 """(anchored ?place): the place is a fixed body's."""
 
+PORTABLE = "portable"
+"""(portable ?o): the goal wants ?o somewhere, and it may be carried there with what is on it."""
+
 NARROWEST = 0.02
 """Metres: nothing is stacked on a top that is narrower."""
 
@@ -80,9 +83,11 @@ def place_facts(scene: Scene, domain: Domain, goal: Formula) -> set[Fact]:
 
     bodies = {name.lower() for name in scene.movable}
     for body, place in _wanted(goal, domain):
+        goes = bodies & {body} if body is not None else bodies
+        facts |= {(PORTABLE, one) for one in goes if one in below.values()}
         facts |= {
             (STACKABLE, one, other, below[other])
-            for one in (bodies & {body} if body is not None else bodies)
+            for one in goes
             for other in (below.keys() & {place} if place is not None else below)
             if one != below[other]
         }

@@ -65,6 +65,18 @@ def sample_inside_movable(
     return _placements(context, "inside", body, region, below, below_pose, call)
 
 
+def shift(
+    context: Context, body: str, pose: Pose, place: str, below: str, was: Pose, now: Pose, call: Call
+) -> Iterator[Pose]:
+    """Return where a body is that stood on another one, when that has been carried elsewhere."""
+    region = context.scene.region(place)
+    shifted = now @ was.inverse() @ pose
+    here = _corners(region, now @ region.pose)
+    under = footing(context, below, now)
+    context.footings[body, shifted] = (*under, here, base(context, body, shifted))
+    yield shifted
+
+
 def _placements(
     context: Context, relation: str, body: str, region: Surface | Cavity, below: str,
     below_pose: Pose, call: Call,

@@ -10,7 +10,11 @@ from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
 from tamp.geometric.streams.inverse_kinematics import inverse_kinematics
 from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
 from tamp.geometric.streams.reach import test_reachable
-from tamp.geometric.streams.movable_supports import sample_inside_movable, sample_on_movable
+from tamp.geometric.streams.movable_supports import (
+    sample_inside_movable,
+    sample_on_movable,
+    shift,
+)
 from tamp.geometric.streams.sampling import sample_grasp, sample_inside, sample_on
 
 STREAMS: Mapping[str, Callable[..., Any]] = {
@@ -19,6 +23,8 @@ STREAMS: Mapping[str, Callable[..., Any]] = {
     "sample-inside": sample_inside,
     "sample-on-movable": sample_on_movable,
     "sample-inside-movable": sample_inside_movable,
+    "shift-on": shift,
+    "shift-inside": shift,
     "inverse-kinematics": inverse_kinematics,
     "test-reachable": test_reachable,
     "test-pose-clear": test_pose_clear,
