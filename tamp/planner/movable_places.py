@@ -81,17 +81,32 @@ def place_facts(scene: Scene, domain: Domain, goal: Formula) -> set[Fact]:
         if scene.bodies[place.body].movable
     }
 
-    bodies = {name.lower() for name in scene.movable}
+    bodies, going = {name.lower() for name in scene.movable}, set[str]()
     for body, place in _wanted(goal, domain):
         goes = bodies & {body} if body is not None else bodies
-        facts |= {(PORTABLE, one) for one in goes if one in below.values()}
+        going |= goes
         facts |= {
             (STACKABLE, one, other, below[other])
             for one in goes
             for other in (below.keys() & {place} if place is not None else below)
             if one != below[other]
         }
-    return facts
+
+    wanted = {(fact[1], fact[3]) for fact in facts if fact[0] == STACKABLE}
+    return facts | {(PORTABLE, one) for one in going if _is_tray(one, wanted, scene)}
+
+
+def _is_tray(body: str, wanted: Collection[tuple[str, str]], scene: Scene) -> bool:
+    """Check whether carrying a body with what is on it may be worth it: several bodies are wanted
+    there, or one that is there.
+
+    A base of a tower is put down first: each body that could ride multiplies the poses.
+    """
+    on_it = [one for one, below in wanted if below == body]
+    there = {
+        name.lower() for name in scene.movable if body in map(str.lower, scene.bodies[name].carriers)
+    }
+    return len(on_it) > 1 or bool(there.intersection(on_it))
 
 
 def _wanted(goal: Formula, domain: Domain) -> Iterator[tuple[str | None, str | None]]:

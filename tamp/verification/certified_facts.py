@@ -62,6 +62,9 @@ class Certified:
             "borne": ("opop", lambda _: None),
             "stacked": ("op?op", lambda _: None),
             "packed": ("op?op", lambda _: None),
+            "sampled": ("op", lambda _: None),
+            "shifted": ("opoppp", self._shifted),
+            "portable": ("o", lambda _: None),
             "anchored": ("?", self._anchored),
             "stackable": ("o?o", self._stackable),
             "grasp": ("og", self._grasp),
@@ -163,6 +166,14 @@ class Certified:
                 value = self._plan.values.get(term)
                 if value is None or value.type != types[kind]:
                     return f"'{term}' is not a {types[kind]}"
+        return None
+
+    def _shifted(self, terms: list[str]) -> str | None:
+        pose, was, now, shifted = (self._plan.values[terms[at]].data for at in (1, 3, 4, 5))
+        moved, turned = apart(now @ np.linalg.inv(was) @ pose, shifted)
+        if moved > CLOSE or turned > ALIKE:
+            off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+            return f"carried along it would be {off} from there"
         return None
 
     def _anchored(self, terms: list[str]) -> str | None:

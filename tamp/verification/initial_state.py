@@ -13,7 +13,7 @@ from tamp.plan.read import PlanFile
 from tamp.plan.violation import Violation
 from tamp.symbolic.pddl.structs import Domain, Fact
 
-FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1}
+FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1, "riding": 4}
 """Fluents whose geometric meaning we know."""
 KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container"})
 """Types that the scene decides about."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from tamp.plan.read import PlanFile
 from tamp.simulation.physics import World
 from tamp.symbolic.pddl.structs import Fact, Formula
@@ -64,10 +66,12 @@ class Standing:
         """Find how a body stands while another one is in the hand."""
         return self._supports.stand(body, absent=in_hand if in_hand != body else None)
 
-    def check(self, in_hand: str | None) -> None:
-        """Check that every body that is not held stands still."""
+    def check(self, in_hand: str | None, aboard: Collection[str] = ()) -> None:
+        """Check that every body that is neither held nor `aboard` of what is stands still."""
         for name in self._world.scene.movable:
-            if name == in_hand or self._floating.get(name) == self._world.pose(name).tobytes():
+            if name == in_hand or name in aboard:
+                continue
+            if self._floating.get(name) == self._world.pose(name).tobytes():
                 continue
             stand = self.stand(name, in_hand)
             why = stand.why or self._why_overloaded(name, in_hand)
