@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
-from tamp.plan.read import PlanFile
+from tamp.plan.read import Hold, PlanFile
 from tamp.simulation.physics import World
 from tamp.verification.certified_facts import ALIKE, CLOSE
 from tamp.verification.collision_sweep import Sweeper
@@ -32,12 +32,27 @@ class Loads:
         self._meant = meant(semantics.domain, "riding")
         self._upright: dict[str, Array] = {}
 
-    def on(self, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
+    def on(self, hold: Hold, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
         """Return what rides on a body that the hand closes on, of which it is felt that it rests
-        there; the rest is left behind.
+        there; the rest is left behind. The plan must say the same of it.
         """
-        if not self._meant:
-            return ()
+        load = self._riders(body, T_world_tool, state) if self._meant else ()
+        says, rides = {name for name, _ in hold.load}, {one.body.lower() for one in load}
+        if says != rides:
+            told, true = (" and ".join(sorted(names)) or "nothing" for names in (says, rides))
+            message = f"the plan says that {told} goes with {body}, by the facts {true} rides on it"
+            self._log.add("grasp", message, body, *sorted(says ^ rides))
+        T_body_tool = np.linalg.inv(self._world.pose(body))
+        for name, T_body_rider in hold.load:
+            seen = T_body_tool @ self._world.pose(self._bodies[name]) if name in rides else None
+            moved, turned = (0.0, 0.0) if seen is None else apart(seen, T_body_rider)
+            if moved > CLOSE or turned > ALIKE:
+                off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+                message = f"{name} is {off} from where the plan has it on {body}"
+                self._log.add("grasp", message, name, body, depth=moved)
+        return load
+
+    def _riders(self, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
         self._upright[body] = self._world.pose(body)[2, :3].copy()
         load: list[Held] = []
         for rider, _, below, _ in state.all("riding"):

@@ -241,7 +241,7 @@ class Replay:
         self._world.place(body, T_world_body)
         if why:
             self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
-        load = self._loads.on(body, T_world_tool, self._state)
+        load = self._loads.on(hold, body, T_world_tool, self._state)
         course.held = Held(body, T_tool_body, load)
         self._standing.check(body, {one.body for one in load})
 
