@@ -12,8 +12,8 @@ from tamp.execution.expected import Expected
 from tamp.execution.observation import Truth
 from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.geometric.streams.registry import STREAMS
 from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.geometric.streams.registry import STREAMS
 from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
 from tamp.relations.observed import Observation, moved, observe

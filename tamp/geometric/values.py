@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from tamp.geometric.scene.pose import Array, Pose
 
-
 Load = tuple[tuple[str, Pose], ...]
 """Bodies that stand on another one, each with its pose in that one's frame, T_body_rider."""
 

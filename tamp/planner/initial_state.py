@@ -68,9 +68,7 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
     return state
 
 
-def _support_facts(
-    scene: Scene, body: Body, poses: Mapping[str, str], carries: bool
-) -> list[Fact]:
+def _support_facts(scene: Scene, body: Body, poses: Mapping[str, str], carries: bool) -> list[Fact]:
     """Say what a body rests on at its start: places, and bodies that move.
 
     Args:

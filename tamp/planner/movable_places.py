@@ -104,7 +104,9 @@ def _is_tray(body: str, wanted: Collection[tuple[str, str]], scene: Scene) -> bo
     """
     on_it = [one for one, below in wanted if below == body]
     there = {
-        name.lower() for name in scene.movable if body in map(str.lower, scene.bodies[name].carriers)
+        name.lower()
+        for name in scene.movable
+        if body in map(str.lower, scene.bodies[name].carriers)
     }
     return len(on_it) > 1 or bool(there.intersection(on_it))
 

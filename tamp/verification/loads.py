@@ -72,9 +72,7 @@ class Loads:
         if held is None or not held.load:
             return
         up = self._upright[held.body]
-        leans = [
-            float((sweeper.tool(row)[2, :3] @ held.T_tool_body[:3, :3]) @ up) for row in rows
-        ]
+        leans = [float((sweeper.tool(row)[2, :3] @ held.T_tool_body[:3, :3]) @ up) for row in rows]
         lean = math.acos(max(-1.0, min(1.0, min(leans))))
         if lean > LEAN:
             others = " and ".join(one.body for one in held.load)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -129,15 +128,32 @@ class Supports:
         points = underside[carrying][:, :2]
         return Stand(on, least, outside(centre, points), points)
 
-    def lean_of(self, body: str, load: Collection[str], stand: Stand) -> float:
-        """Measure by how much the centre of mass of some bodies together is out of what carries one
-        of them that stands so, metres; negative inside.
+    def why_overloaded(self, body: str, absent: str | None = None) -> str | None:
+        """Say how a body that stands tips under what stands on it, and on that; None when it does
+        not. What rests on several bodies is no one's load.
         """
+        load, waiting = {body}, [body]
+        while waiting:
+            under = waiting.pop()
+            for other in self._world.scene.movable:
+                if other in load or other == absent:
+                    continue
+                if self.stand(other, absent).on == {under}:
+                    load.add(other)
+                    waiting.append(other)
+        if len(load) == 1:
+            return None
+
         masses = np.array([self._world.scene.bodies[name].mass for name in load])
         centres = np.array(
             [(self._world.pose(name) @ np.append(self._centres[name], 1.0))[:2] for name in load]
         )
-        return outside(masses @ centres / max(float(masses.sum()), 1e-9), stand.carrying)
+        centre = masses @ centres / max(float(masses.sum()), 1e-9)
+        beyond = outside(centre, self.stand(body, absent).carrying)
+        if beyond <= LEAN:
+            return None
+        others = " and ".join(sorted(load - {body}))
+        return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"
 
     def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
         """Say why a body that stands so does not stand on a surface; None when it does."""

@@ -10,7 +10,7 @@ from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.verification.formulas import show
 from tamp.verification.initial_state import meant
 from tamp.verification.semantics import Semantics, State
-from tamp.verification.support_geometry import LEAN, Stand, Supports
+from tamp.verification.support_geometry import Stand, Supports
 from tamp.verification.violation_log import Log
 
 RELATIONS = {
@@ -46,9 +46,7 @@ class Standing:
 
         facts = sorted({*plan.certified, *plan.initial})
         self._relations = [
-            fact
-            for fact in facts
-            if fact[0] in known and len(fact) == RELATIONS.get(fact[0])
+            fact for fact in facts if fact[0] in known and len(fact) == RELATIONS.get(fact[0])
         ]
         self._checked: set[Fact] = set()
 
@@ -74,27 +72,9 @@ class Standing:
             if self._floating.get(name) == self._world.pose(name).tobytes():
                 continue
             stand = self.stand(name, in_hand)
-            why = stand.why or self._why_overloaded(name, in_hand)
+            why = stand.why or self._supports.why_overloaded(name, in_hand)
             if why:
                 self._log.add("support", f"{name} does not stand: {why}", name)
-
-    def _why_overloaded(self, name: str, in_hand: str | None) -> str | None:
-        """Say how a body tips under what stands on it and on that; None when it does not."""
-        load, waiting = {name}, [name]
-        while waiting:
-            under = waiting.pop()
-            for other in self._world.scene.movable:
-                on = self.stand(other, in_hand).on if other != in_hand else frozenset[str]()
-                if other not in load and on == {under}:
-                    load.add(other)
-                    waiting.append(other)
-        if len(load) == 1:
-            return None
-        beyond = self._supports.lean_of(name, load, self.stand(name, in_hand))
-        if beyond <= LEAN:
-            return None
-        others = " and ".join(sorted(load - {name}))
-        return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"
 
     def check_relations(self, state: State, in_hand: str | None) -> None:
         """Check certified relations of bodies with places, in the first state with it there."""

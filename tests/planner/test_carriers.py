@@ -126,10 +126,7 @@ def test_what_is_left_behind_is_found(tray: dict[str, Any]) -> None:
 
     spoilt = copy.deepcopy(tray)
     (attach,) = (
-        segment["attach"]
-        for action in spoilt["actions"]
-        for segment in action["segments"]
-        if segment.get("attach")
+        segment["attach"] for action in spoilt["actions"] for segment in action["segments"] if segment.get("attach")
     )
     attach["load"] = [one for one in attach["load"] if one["body"] != "cup"]
     assert "by the facts cup and glass and mug rides on it" in violations(spoilt)
@@ -147,7 +144,9 @@ def test_where_a_rider_gets_to_is_worked_out_again(tray: dict[str, Any]) -> None
 def test_a_body_is_not_taken_from_under_another(tower: dict[str, Any]) -> None:
     assert steps(tower).index("pick can") < steps(tower).index("place-on cube")
     spoilt = copy.deepcopy(tower)
-    for fact in [fact for fact in spoilt["initial"] if fact[0] in ("borne", "stacked", "rests-on") and fact[1] == "can"]:
+    for fact in [
+        fact for fact in spoilt["initial"] if fact[0] in ("borne", "stacked", "rests-on") and fact[1] == "can"
+    ]:
         spoilt["initial"].remove(fact)
     spoilt["initial"].append(["grounded", "can", "can_start"])
     assert "(grounded can can_start) does not hold: it rests on base" in violations(spoilt)

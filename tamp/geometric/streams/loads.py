@@ -90,9 +90,8 @@ def plan_loaded_pick(
 ) -> Iterator[Motion | Rejection]:
     """Plan a pick of a body with what stands on it: level, from home to it and back."""
     body, whole = grasp.body, context.loaded(grasp.body, load)
-    others = {
-        name: other for name, other in standing(call).items() if name not in dict(((body, 0), *load))
-    }
+    carried_along = {body, *(name for name, _ in load)}
+    others = {name: other for name, other in standing(call).items() if name not in carried_along}
     refused = _refused(context, whole, pose, grasp, base, reach, load, others, call)
     if refused is not None:
         yield refused
@@ -117,19 +116,17 @@ def plan_loaded_pick(
         empty = planned.path
         confs = [context.conf(stand, arm) for arm in empty]
         if not all(among.edge_free(a, b) for a, b in pairwise(confs)):
-            free = plan_arm(
-                among, stand, context.home, out, context.robot, call.rng, call.deadline
-            )
+            free = plan_arm(among, stand, context.home, out, context.robot, call.rng, call.deadline)
             if free.path is None:
                 yield Rejection("no motion found", kind=RejectionKind.NO_MOTION)
                 continue
             empty = free.path
-        opened = context.robot.opening
+        opened, back = context.robot.opening, planned.path[::-1][1:]
         yield Motion(
             (
                 Path("arm", np.concatenate([empty, reach.approach]), opened),
                 Grip((opened, grasp.opening), attach=grasp, load=load),
-                Path("arm", np.concatenate([reach.lift, planned.path[::-1][1:]]), grasp.opening, body),
+                Path("arm", np.concatenate([reach.lift, back]), grasp.opening, body),
             )
         )
 

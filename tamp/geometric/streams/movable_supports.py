@@ -66,7 +66,14 @@ def sample_inside_movable(
 
 
 def shift(
-    context: Context, body: str, pose: Pose, place: str, below: str, was: Pose, now: Pose, call: Call
+    context: Context,
+    body: str,
+    pose: Pose,
+    place: str,
+    below: str,
+    was: Pose,
+    now: Pose,
+    call: Call,
 ) -> Iterator[Pose]:
     """Return where a body is that stood on another one, when that has been carried elsewhere."""
     region = context.scene.region(place)

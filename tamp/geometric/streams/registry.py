@@ -9,12 +9,12 @@ from tamp.geometric.streams.approach import test_approach, test_approach_clear
 from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
 from tamp.geometric.streams.inverse_kinematics import inverse_kinematics
 from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
-from tamp.geometric.streams.reach import test_reachable
 from tamp.geometric.streams.movable_supports import (
     sample_inside_movable,
     sample_on_movable,
     shift,
 )
+from tamp.geometric.streams.reach import test_reachable
 from tamp.geometric.streams.sampling import sample_grasp, sample_inside, sample_on
 
 STREAMS: Mapping[str, Callable[..., Any]] = {
