@@ -94,6 +94,6 @@ class Loads:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 message = f"{name} is {off} from where it rides on {below}"
                 self._log.add("state", message, name, depth=moved)
-            if course.held is not None and course.in_hand == below:
-                if name not in {one.body for one in course.held.load}:
-                    self._log.add("state", f"{name} does not ride on {below}", name)
+            load = {one.body for one in course.held.load} if course.held else set[str]()
+            if course.in_hand == below and name not in load:
+                self._log.add("state", f"{name} does not ride on {below}", name)
