@@ -1,4 +1,4 @@
-"""Write tamp/geometric/robot/assets/<robot>_reachability.npz: the table that base poses are drawn from.
+"""Write tamp/geometric/robot/assets/<robot>/reachability.npz: the table that base poses are drawn from.
 
     python benchmarks/build_reachability.py
 
@@ -15,10 +15,11 @@ import sys
 import numpy as np
 from scipy.ndimage import minimum_filter
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.reachability import asset
-from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box
 
@@ -52,7 +53,7 @@ def comfortable(robot: Robot, kinematics: Kinematics, solutions: Array) -> int:
     margin = 0.03 * (upper - lower)
     kept = solutions[np.all((solutions > lower + margin) & (solutions < upper - margin), axis=1)]
     count = 0
-    base = robot.links[0].parts[0]
+    base = robot.link(robot.base).parts[0]
     assert isinstance(base.shape, Box)
     half = np.array(base.shape.size) / 2
     for q in kept[np.abs(kept[:, 0]) < TURN]:
@@ -91,7 +92,7 @@ def build(robot: Robot) -> dict[str, Array]:
 def main() -> None:
     """Build the tables of the robots named on the command line, of all by default."""
     for name in sys.argv[1:] or sorted(ROBOTS):
-        np.savez_compressed(asset(name), **build(ROBOTS[name]()))  # pyright: ignore[reportArgumentType]
+        np.savez_compressed(asset(ROBOTS[name]()), **build(ROBOTS[name]()))  # pyright: ignore[reportArgumentType]
 
 
 if __name__ == "__main__":

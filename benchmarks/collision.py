@@ -22,8 +22,8 @@ import numpy as np
 from benchmarks.collision_reference import PlainFcl, random_confs, random_pose, random_scene
 from benchmarks.common import record, table
 from tamp.geometric.collision.collisions import PADDING, Arrangement, Attachment, Collisions
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import panda_mobile
 from tamp.geometric.scene.pose import Array
 
 RESULTS = "collision.jsonl"
@@ -88,7 +88,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(arguments)
-    robot = panda_mobile()
+    robot = ROBOTS["panda_mobile"]()
     kinematics = Kinematics(robot)
     total: Counter[str] = Counter()
     for number in range(options.scenes):

@@ -121,7 +121,7 @@ class PlainFcl:
         if attachment:
             body = scene.bodies[attachment.body]
             self.parts += [(body.name, part.pose.matrix, _object(part, np.eye(4))) for part in body.parts]
-        group = {link.name for link in robot.links[-3:]} | {held}
+        group = robot.grippers | {held}
         self.grounded = {link.name for link in robot.links[:2]}
         self.pairs = [
             (a, b) for b in range(len(self.parts)) for a in range(b)

@@ -1,6 +1,8 @@
 """How often and how fast IK finds reachable poses, and how often the reachability table's base poses are right.
 
-    python -m benchmarks.inverse_kinematics [--poses 3000] [--seed 0]
+    python -m benchmarks.inverse_kinematics [ROBOT ...] [--poses 3000] [--seed 0]
+
+Robots are shipped ones by name or folders; by default all that come with tamp.
 
 Reachable poses are FK of uniformly random joint angles within the limits. Typical grasps are top grasps at table height
 and side grasps into compartments. Appends to benchmarks/results/inverse_kinematics.jsonl.
@@ -16,10 +18,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.common import percentile, record, table
+from tamp.geometric.loading.robots import ROBOTS, find_robot, load_robot
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
 from tamp.geometric.robot.reachability import Reachability
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 
 RESULTS = "inverse_kinematics.jsonl"
@@ -30,7 +33,7 @@ def measure_solve(robot: Robot, poses: int, seed: int) -> list[dict[str, Any]]:
     """Success and time of queries on reachable poses."""
     kinematics, ik = Kinematics(robot), ArmIK(robot)
     rng = np.random.default_rng(seed)
-    targets = [kinematics.arm_tool(q) for q in rng.uniform(robot.lower, robot.upper, (poses, 7))]
+    targets = [kinematics.arm_tool(q) for q in rng.uniform(robot.lower, robot.upper, (poses, len(robot.joints)))]
     ik.solve(targets[0])
     rows: list[dict[str, Any]] = []
     for name, enough in SETTINGS.items():
@@ -47,6 +50,26 @@ def measure_solve(robot: Robot, poses: int, seed: int) -> list[dict[str, Any]]:
             "solutions": float(np.mean(counts)), "worst_error": worst,
         })  # fmt: skip
     return rows
+
+
+def measure_unreachable(robot: Robot, seed: int, poses: int = 300) -> list[dict[str, Any]]:
+    """Time of queries on poses beyond the farthest of 20,000 that the arm reaches, by 1 to 20 cm."""
+    kinematics, ik, rng = Kinematics(robot), ArmIK(robot), np.random.default_rng(seed)
+    reached = [kinematics.arm_tool(q) for q in rng.uniform(robot.lower, robot.upper, (20_000, len(robot.joints)))]
+    foot = np.array(robot.T_base_arm.position)
+    length = max(float(np.linalg.norm(T[:3, 3] - foot)) for T in reached)
+    times, found = [], 0
+    for T in reached[:poses]:
+        way = T[:3, 3] - foot
+        T = T.copy()
+        T[:3, 3] = foot + way / np.linalg.norm(way) * (length + rng.uniform(0.01, 0.2))
+        start = time.perf_counter()
+        found += len(ik.solve(T, 1)) > 0
+        times.append(time.perf_counter() - start)
+    return [{
+        "figure": "unreachable", "case": "1 to 20 cm too far", "queries": poses, "found": found / poses,
+        "median_ms": 1000 * percentile(times, 50), "p95_ms": 1000 * percentile(times, 95),
+    }]  # fmt: skip
 
 
 def typical_grasps(seed: int, count: int) -> dict[str, list[Array]]:
@@ -91,16 +114,20 @@ def measure_reachability(robot: Robot, seed: int, count: int = 50, bases: int = 
 def main() -> None:
     """Measure, append and print."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("robots", nargs="*", metavar="ROBOT")
     parser.add_argument("--poses", type=int, default=3000)
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
-    robot = panda_mobile()
-    groups = measure_solve(robot, options.poses, options.seed), measure_reachability(robot, options.seed)
-    for rows in groups:
-        for row in rows:
-            config = {"robot": robot.name, "figure": row.pop("figure"), "case": row["case"]}
-            record(RESULTS, seed=options.seed, config=config, **{k: v for k, v in row.items() if k != "case"})
-        table(rows, title=f"inverse kinematics: {config['figure']}")
+    for name in options.robots or ROBOTS:
+        robot = load_robot(find_robot(name))
+        groups = [measure_solve(robot, options.poses, options.seed), measure_unreachable(robot, options.seed)]
+        if robot.drive != "fixed":
+            groups.append(measure_reachability(robot, options.seed))
+        for rows in groups:
+            for row in rows:
+                config = {"robot": robot.name, "figure": row.pop("figure"), "case": row["case"]}
+                record(RESULTS, seed=options.seed, config=config, **{k: v for k, v in row.items() if k != "case"})
+            table(rows, title=f"{robot.name}, inverse kinematics: {config['figure']}")
 
 
 if __name__ == "__main__":

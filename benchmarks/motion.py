@@ -19,6 +19,7 @@ import tyro
 from benchmarks.common import record, table, times
 from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
 from tamp.geometric.loading.load import load_scene
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.path import length
@@ -26,7 +27,7 @@ from tamp.geometric.motion.result import Planned
 from tamp.geometric.motion.timing import Timed, prefetch, time_path
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Cavity, Scene
 from tamp.system.deadline import Deadline

@@ -246,7 +246,7 @@ def _mobile(robot: Robot) -> str:
     """The arm's URDF on a base that slides along x and y and turns."""
     text = re.sub(r"package://", f"{robot.urdf.parent}/", robot.urdf.read_text())
     foot = robot.T_base_arm
-    chassis = robot.links[0].parts[0]
+    chassis = robot.link(robot.base).parts[0]
     if not isinstance(chassis.shape, Box):
         raise TypeError(f"the base is a {type(chassis.shape).__name__}, not a box")
     box, at = chassis.shape.size, chassis.pose.position

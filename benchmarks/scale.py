@@ -1,19 +1,27 @@
-"""Growth with the number of objects: solved runs and times for 4 to 20 objects, and the exponent between the medians.
+"""Growth with the number of objects: solved runs and times for 4 to 60 objects, and the exponent between the medians.
 
 python -m benchmarks.scale --seeds 20 --time 30
+python -m benchmarks.scale 30 34 36 40 60 --time 60       # made here: on eight boards, 60 on sixteen
 """
 
 from __future__ import annotations
 
 import math
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 
 import tyro
 
 from benchmarks import solve
 from benchmarks.common import percentile, record, table
+from benchmarks.scale_scenes import scene
 
-SIZES = {"four_objects": 4, "eight_objects": 8, "twelve_objects": 12, "twenty_objects": 20}
+SHIPPED = {"four_objects": 4, "eight_objects": 8, "twelve_objects": 12, "twenty_objects": 20}
+MADE = {"30": 8, "34": 8, "36": 8, "40": 8, "60": 16}
+"""Objects, and the boards that they go to."""
+
+SIZES = {**SHIPPED, **{name: int(name) for name in MADE}}
 
 
 @dataclass(frozen=True)
@@ -23,12 +31,13 @@ class Options:
     Attributes:
         seeds: Runs of each problem.
         time: Budget of one run in seconds; twenty objects have twice as much.
-        problems: Some of four_objects, eight_objects, twelve_objects, twenty_objects.
+        problems: Some of four_objects, eight_objects, twelve_objects, twenty_objects, which are all by default,
+            and 30, 34, 36, 40, 60.
     """
 
     seeds: int = 20
     time: float = 30.0
-    problems: tyro.conf.Positional[tuple[str, ...]] = tuple(SIZES)
+    problems: tyro.conf.Positional[tuple[str, ...]] = tuple(SHIPPED)
 
 
 def exponent(few: float, many: float, ratio: float) -> float:
@@ -38,11 +47,21 @@ def exponent(few: float, many: float, ratio: float) -> float:
 
 def main(options: Options) -> None:
     """Run all, print the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        measure(options, Path(folder))
+
+
+def measure(options: Options, folder: Path) -> None:
+    """Run all problems; those that are made are written into the folder."""
     rows: list[dict[str, object]] = []
     medians: dict[str, float] = {}
     for name in options.problems:
         seconds = options.time * (2.0 if SIZES[name] >= 20 else 1.0)
-        chosen = solve.Options(problems=(name,), seeds=options.seeds, time=seconds, out="scale.jsonl")
+        path = folder / f"scale_{name}.yaml"
+        if name in MADE:
+            path.write_text(scene(int(name), MADE[name]), encoding="utf-8")
+        where = str(path) if name in MADE else name
+        chosen = solve.Options(problems=(where,), seeds=options.seeds, time=seconds, out="scale.jsonl")
         results = []
         for _, seed, result in solve.runs(chosen):
             record("scale.jsonl", seed=seed, config={"problem": name, "time_s": seconds}, **result)

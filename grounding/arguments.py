@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from grounding.registry import RELATIONS
+from grounding.relations.options import Ask, New, check_name
 from tamp.errors import InputError
 from tamp.system.options import read_command
 
@@ -24,6 +25,9 @@ class Generate:
     """train or test; they share no object and no support."""
     count: int = 20000
     """Scenes; half of them are positive."""
+    layout: str = "household"
+    """household: odd and small furniture, many bodies, any face down; or paper: as the paper's
+    public code lays its scenes out, which is easier."""
     seed: int = 0
     """Of all randomness: the same seed gives the same bytes."""
     out: Path | None = None
@@ -42,9 +46,13 @@ class Explore:
     """Make labelled scenes by trying poses in physics; an interrupted run goes on where it was."""
 
     relation: Annotated[str, tyro.conf.Positional]
-    """on or inside."""
+    """on or inside, or one's own with --demos."""
     count: int = 1000
     """Scenes; in half of them the relation came to hold."""
+    demos: Path | None = None
+    """Of a relation of one's own: demonstrations. --out is a folder then, which gets candidates as
+    demonstration files, with what the classifier takes them for: only that is to be looked over.
+    """
     model: Path | None = None
     """Weights of a grounding that proposes half of the poses, moved at random; by default all poses
     are random.
@@ -110,8 +118,11 @@ class Train:
     """transfer or flow; the paper's mlp-bb, gnn-bb, mlp-pc, gnn-pc, tree-bb, tree-pc."""
     scheme: str | None = None
     """Of the paper's networks: what teaches the generator, discriminator, classifier or both; by
-    default both.
+    default discriminator for on, both for others.
     """
+    departures: tuple[str, ...] = ()
+    """Of the paper's networks: what is done otherwise than there, any of residual-turn,
+    mean-weights, scaled-classifier."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -140,13 +151,21 @@ class Evaluate:
     """The data set; by default data/RELATION_test.npz of the weights' relation."""
     scenes: int | None = None
     """At most so many scenes."""
+    draws: int = 1
+    """Poses a scene for the oracles on boxes; the published evaluation draws 9."""
     seed: int = 0
     """Of the scenes' order and of the draws."""
+    demos: Path | None = None
+    """Of a relation of one's own: demonstrations that it was not shown, to judge its classifier."""
+    pictures: Path | None = None
+    """Of a relation of one's own: a folder that gets pictures of what it would do."""
 
 
-Arguments = Generate | Explore | Collect | Encoder | Train | Evaluate
+Arguments = New | Ask | Generate | Explore | Collect | Encoder | Train | Evaluate
 
 COMMANDS = {
+    "new": New,
+    "ask": Ask,
     "generate": Generate,
     "explore": Explore,
     "collect": Collect,
@@ -175,13 +194,16 @@ def parsed(arguments: list[str]) -> Arguments:
 
 
 def _check(chosen: Arguments) -> None:
+    if isinstance(chosen, New | Ask):
+        check_name(chosen.relation)
     if (
         isinstance(chosen, Generate | Explore | Encoder | Train)
         and chosen.relation not in RELATIONS
+        and not (isinstance(chosen, Explore) and chosen.demos is not None)
     ):
         _check_own(chosen)
 
-    for name in ("count", "workers", "samples", "iterations", "points", "scenes"):
+    for name in ("count", "workers", "samples", "iterations", "points", "scenes", "pool"):
         number = vars(chosen).get(name)
         if number is not None and number < 1:
             raise InputError(f"--{name} must be positive, not {number}")
@@ -196,6 +218,8 @@ def _check(chosen: Arguments) -> None:
         ("data", ".npz"),
     ):
         path = vars(chosen).get(name)
+        if isinstance(chosen, Explore) and chosen.demos is not None:
+            continue
         if path is not None and path.suffix != suffix:
             raise InputError(f"--{name}: the file must end in {suffix}", file=path)
 
@@ -213,6 +237,7 @@ def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
     )
 
 
-def data_file(relation: str, split: str) -> Path:
+def data_file(relation: str, split: str, layout: str = "household") -> Path:
     """Return the default path of a relation's data."""
-    return Path("data") / f"{relation}_{split}.npz"
+    name = split if layout == "household" else f"{layout}_{split}"
+    return Path("data") / f"{relation}_{name}.npz"

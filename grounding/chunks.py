@@ -7,7 +7,7 @@ from __future__ import annotations
 import io
 import os
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -18,7 +18,7 @@ from grounding.dataset import Dataset, write_dataset
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
 from grounding.scenes import OTHERS, LabelledScene
-from grounding.supports import support_templates
+from grounding.supports import Support
 from tamp.errors import InputError
 from tamp.system import guard
 from tamp.system.files import write_whole
@@ -67,6 +67,11 @@ class Job(Protocol):
     @property
     def folder(self) -> MeshFolder | None:
         """Return the folder of one's own meshes."""
+        ...
+
+    @property
+    def supports(self) -> Mapping[str, Support]:
+        """Return the pieces of furniture by name."""
         ...
 
     @property
@@ -191,10 +196,8 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
 
 def _packed(job: Job, number: int, start: int, size: int) -> bytes:
     """Serialize the scenes of one chunk as the bytes of an npz."""
-    tables = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
-    names = {
-        name: row for row, name in enumerate([*tables, *object_templates(job.split, job.folder)])
-    }
+    objects = object_templates(job.split, job.folder)
+    names = {name: row for row, name in enumerate([*job.supports, *objects])}
     arrays: dict[str, Any] = _arrays(job.chunk(number, start, size), names, job.kinds)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **arrays)
@@ -234,7 +237,6 @@ def _merged(job: Job, files: Sequence[Path]) -> Dataset:
             loaded.append({name: archive[name] for name in archive.files})
 
     arrays = {name: np.concatenate([one[name] for one in loaded]) for name in loaded[0]}
-    supports = {**support_templates(job.relation, job.split), **support_templates("on", job.split)}
     objects = object_templates(job.split, job.folder)
     card = {
         "relation": job.relation,
@@ -242,10 +244,10 @@ def _merged(job: Job, files: Sequence[Path]) -> Dataset:
         "seed": job.seed,
         "count": job.count,
         "objects": list(objects),
-        "supports": list(support_templates(job.relation, job.split)),
+        "supports": list(job.supports),
         "by type": {kind: int((arrays["kind"] == row).sum()) for row, kind in enumerate(job.kinds)},
         "feasible": float(arrays["feasible"].mean()),
         **job.card(arrays),
     }
-    templates = {**{name: support.parts for name, support in supports.items()}, **objects}
+    templates = {**{name: support.parts for name, support in job.supports.items()}, **objects}
     return Dataset(arrays, templates, job.kinds, card)

@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import NoReturn, Protocol
 
 from grounding.arguments import (
+    Ask,
     Collect,
     Encoder,
     Evaluate,
     Explore,
     Generate,
+    New,
     Train,
     data_file,
     parsed,
@@ -68,7 +70,15 @@ def run(shown: Progress, arguments: list[str]) -> int:
     chosen = parsed(arguments)
     shown.quiet = False
     show = partial(_show, shown=shown)
-    if isinstance(chosen, Generate):
+    if isinstance(chosen, New):
+        from grounding.relations.cli_new import new
+
+        new(chosen)
+    elif isinstance(chosen, Ask):
+        from grounding.relations.cli_ask import ask
+
+        ask(chosen)
+    elif isinstance(chosen, Generate):
         _generate(chosen, show)
     elif isinstance(chosen, Explore):
         _explore(chosen, show)
@@ -86,9 +96,11 @@ def run(shown: Progress, arguments: list[str]) -> int:
 def _generate(chosen: Generate, show: Show) -> None:
     from grounding.generate import Job, generate
 
-    out = chosen.out or data_file(chosen.relation, chosen.split)
+    out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout)
     check_out(out, DATA, mesh_files(chosen))
-    job = Job(chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen))
+    job = Job(
+        chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen), chosen.layout
+    )
     data = generate(
         job, out, chosen.workers, lambda done, total: show(f"{done:,} of {total:,} scenes")
     )
@@ -97,6 +109,11 @@ def _generate(chosen: Generate, show: Show) -> None:
 
 
 def _explore(chosen: Explore, show: Show) -> None:
+    if chosen.demos is not None:
+        from grounding.relations.cli_ask import explore_own
+
+        explore_own(chosen.relation, chosen.demos, chosen.out, chosen.count, chosen.seed)
+        return
     from grounding.exploration import Exploration, explore
 
     out = chosen.out or data_file(chosen.relation, "explored")
@@ -170,6 +187,7 @@ def _train(chosen: Train, show: Show) -> None:
         samples=chosen.samples,
         seed=chosen.seed,
         scheme=chosen.scheme,
+        departures=chosen.departures or None,
         iterations=chosen.iterations,
         encoder=encoder,
         state=out.with_suffix(".state"),
@@ -201,9 +219,15 @@ def _train(chosen: Train, show: Show) -> None:
 
 def _evaluate(chosen: Evaluate, show: Show) -> None:
     from grounding.evaluate import evaluate, wilson
-    from grounding.registry import load_model, shipped_model
+    from grounding.registry import is_few_shot, load_model, shipped_model
     from grounding.weights import read_weights
 
+    if is_few_shot(chosen.weights):
+        from grounding.relations.cli_evaluate import evaluate_own
+
+        wanted = (chosen.scenes or 50, chosen.seed)
+        evaluate_own(Path(chosen.weights), chosen.demos, chosen.pictures, *wanted)
+        return
     relation, equals, name = chosen.weights.partition("=")
     if equals and not chosen.weights.endswith(".safetensors"):
         model = shipped_model(relation, chosen.model or name)
@@ -217,6 +241,7 @@ def _evaluate(chosen: Evaluate, show: Show) -> None:
         chosen.scenes,
         chosen.seed,
         lambda done, total: show(f"{done} of {total} scenes"),
+        chosen.draws,
     )
     show("", last=True)
     for name, share in (
@@ -226,6 +251,10 @@ def _evaluate(chosen: Evaluate, show: Show) -> None:
     ):
         low, high = wilson(share, found.scenes)
         print(f"{name:9} {share:.4f}  [{low:.4f}, {high:.4f}]")
+    print(f"published {found.published:.4f}  by the published oracle at 3 cm")
+    print(f"          {found.published_scaled:.4f}  at 6.3 cm, which it comes to for clouds")
+    print(f"ceiling   {found.blind_mca:.4f}  MCA of an ideal generator that sees no surroundings")
+    print(f"          {found.blind_published:.4f}  by the published oracle")
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
     print(f"one pose  {found.milliseconds:.2f} ms")
     print(json.dumps(asdict(found)))

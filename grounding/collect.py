@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,36 +16,22 @@ from numpy.typing import NDArray
 from grounding.dataset import Dataset
 from grounding.relation_scene import Region, region_of
 from grounding.relational.measures import RegionFrame
+from grounding.relations.demonstration_file import (
+    Demonstration,
+    demonstration_files,
+    read_labels,
+)
 from grounding.variety import contradictions
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.scene.pose import Array
-from tamp.geometric.scene.scene import Part, Scene
+from tamp.geometric.scene.scene import Part
 from tamp.geometric.stability.stable_poses import SNAP_TILT
-from tamp.symbolic.pddl.nodes import Group, Node, Symbol, error
-from tamp.symbolic.pddl.sexpr import read
 
 KINDS = ("holds", "does not hold")
 
 HANGS = 0.005
 """Metres by which a body may be off its place: physics leaves a millimetre or two."""
-
-
-@dataclass(frozen=True, eq=False)
-class Demonstration:
-    """A scene in which a relation holds, or does not.
-
-    Attributes:
-        scene: Everything stands where the label is about.
-        arguments: The relation's: a body, and the surface or container that it stands to.
-        holds: The label.
-        source: Where it is said, for messages: "lying.yaml:9".
-    """
-
-    scene: Scene
-    arguments: tuple[str, str]
-    holds: bool = True
-    source: str = ""
 
 
 def collect(relation: str, demonstrations: Iterable[Demonstration]) -> Dataset:
@@ -143,71 +128,29 @@ def read_demonstrations(relation: str, files: Sequence[Path]) -> Iterator[Demons
         InputError: A file is no problem, or its goal says nothing of the relation, or what it says
             is not about a body and a surface or container.
     """
-    for path in _files(files):
-        loaded = load_scene(path)
-        goal = loaded.goal
-        said: list[Demonstration] = []
-        for form in read(goal.text, path, line_offset=goal.line - 1, column_offset=goal.column - 1):
-            for group, holds in _facts(form, relation.lower()):
-                where = f"{path}:{group.place.line}:{group.place.column}"
-                demonstration = Demonstration(
-                    loaded.scene, _names(group, loaded.scene), holds, where
-                )
-                try:
-                    _bodies(demonstration)
-                except InputError as found:
-                    raise found.at(path, group.place.line) from None
-                said.append(demonstration)
-
-        if not said:
-            remedy = f"goal: ({relation} BODY PLACE), or goal: (not ({relation} BODY PLACE))"
-            raise InputError(
-                f"the goal says nothing of '{relation}'", file=path, line=goal.line, remedy=remedy
-            )
-
-        yield from said
-
-
-def _files(files: Sequence[Path]) -> Iterator[Path]:
-    for path in files:
-        if not path.is_dir():
-            yield path
-            continue
-        inside = sorted(path.glob("*.yaml"))
-        if not inside:
-            raise InputError("no .yaml files in this folder", file=path)
-        yield from inside
-
-
-def _facts(form: Node, relation: str, holds: bool = True) -> Iterator[tuple[Group, bool]]:
-    """Yield the relation's facts in a formula, and whether they are asserted or denied."""
-    if isinstance(form, Symbol):
-        return
-    if form.head == relation:
-        yield form, holds
-    elif form.head in ("and", "not"):
-        for part in form.items[1:]:
-            yield from _facts(part, relation, holds != (form.head == "not"))
-
-
-def _names(group: Group, scene: Scene) -> tuple[str, str]:
-    known = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
-    words = [part for part in group.items[1:] if isinstance(part, Symbol)]
-    if len(words) != 2 or len(group.items) != 3:
-        raise error(group.place, "a demonstration names a body, and a surface or container")
-    for word in words:
-        if word.text not in known:
-            raise error(
-                word, f"unknown object '{word.written}'", found=word.written, choices=known.values()
-            )
-    return known[words[0].text], known[words[1].text]
+    for path in demonstration_files(files):
+        loaded = load_scene(path, demonstration=True)
+        for label in read_labels(loaded, relation):
+            where = f"{path}:{label.line}:{label.column}"
+            demonstration = Demonstration(loaded.scene, label.arguments, label.holds, where)
+            try:
+                _bodies(demonstration)
+            except InputError as found:
+                raise found.at(path, label.line) from None
+            yield demonstration
 
 
 def _bodies(one: Demonstration) -> tuple[list[str], Region]:
     """Return the bodies of a scene, what the place is of first, then the body, then the others; and
     the place.
     """
-    scene, (name, place_name) = one.scene, one.arguments
+    scene = one.scene
+    if len(one.arguments) != 2:
+        raise InputError(
+            "a demonstration names a body, and a surface or container",
+            remedy="Of one body, or of several, learn it so: tamp-learn new NAME --demos FOLDER",
+        )
+    name, place_name = one.arguments
     if name not in scene.bodies:
         raise InputError(f"'{name}' is no body", found=name, choices=scene.bodies)
     place = scene.surfaces.get(place_name) or scene.cavities.get(place_name)

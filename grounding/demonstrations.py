@@ -154,23 +154,29 @@ class DemonstrationGenerator:
         return hit[0] if len(hit) else None
 
     def _sticking(self, scene: SampledScene, rng: Random) -> Array | None:
-        region, body = scene.support.region, scene.body
-        tall = [face for face in body.faces if face.extent > region.size[2] + 0.005]
-        if tall and rng.random() < 0.5:
-            face = tall[int(rng.integers(len(tall)))]
-            x, y = rng.uniform(-0.5, 0.5, 2) * region.size[:2] * 0.6
-            return (
-                scene.T_world_region
-                @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
-            )
-        pose = random_rest(body, (*region.size[:2], math.inf), True, rng)
-        if pose is None:
-            return None
-        points = body.vertices @ pose[:3, :3].T + pose[:3, 3]
-        axis, sign = int(rng.integers(2)), float(rng.choice([-1.0, 1.0]))
-        outermost = (sign * points[:, axis]).max()
-        pose[axis, 3] += sign * (region.size[axis] / 2 + rng.uniform(0.005, 0.1) - outermost)
-        return scene.T_world_region @ pose
+        return sticking_out(scene, rng)
+
+
+def sticking_out(scene: SampledScene, rng: Random) -> Array | None:
+    """Sample a pose at rest in a cavity, shape (4, 4), with the body too tall for it or across its
+    side; None where none was found.
+    """
+    region, body = scene.support.region, scene.body
+    tall = [face for face in body.faces if face.extent > region.size[2] + 0.005]
+    if tall and rng.random() < 0.5:
+        face = tall[int(rng.integers(len(tall)))]
+        x, y = rng.uniform(-0.5, 0.5, 2) * region.size[:2] * 0.6
+        return (
+            scene.T_world_region @ resting_pose(face, rng.uniform(-math.pi, math.pi), x, y).matrix
+        )
+    pose = random_rest(body, (*region.size[:2], math.inf), True, rng)
+    if pose is None:
+        return None
+    points = body.vertices @ pose[:3, :3].T + pose[:3, 3]
+    axis, sign = int(rng.integers(2)), float(rng.choice([-1.0, 1.0]))
+    outermost = (sign * points[:, axis]).max()
+    pose[axis, 3] += sign * (region.size[axis] / 2 + rng.uniform(0.005, 0.1) - outermost)
+    return scene.T_world_region @ pose
 
 
 _NEGATIVES: Mapping[str, Callable[[DemonstrationGenerator, SampledScene, Random], Array | None]] = {

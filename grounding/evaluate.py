@@ -14,7 +14,9 @@ import numpy as np
 
 from grounding.dataset import Dataset
 from grounding.model import Model
-from grounding.oracles import ItemOf, Verdict, paper_verdicts, settled
+from grounding.oracles import NEAR, ItemOf, Verdict, paper_verdicts, settled
+from grounding.paper.blind import blind_ceiling
+from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
 from tamp.simulation.drop import Drops
 
 NOTHING = "nothing proposed"
@@ -35,6 +37,11 @@ class Evaluation:
         failures: How the failures failed in physics, shares by verdict.
         mca_failures: How they failed by the paper's oracle.
         milliseconds: Of one returned pose, the median.
+        draws: Poses a scene that the two box oracles judged.
+        published: Success by the published code's oracle (`grounding.paper.oracle`) at 3 cm.
+        published_scaled: The same at the tolerance to which it comes for clouds.
+        blind_mca, blind_published: The blind ceilings of `mca` and `published`: what an ideal
+            generator that does not see the surroundings reaches on these scenes.
     """
 
     scenes: int
@@ -45,6 +52,11 @@ class Evaluation:
     failures: dict[str, float]
     mca_failures: dict[str, float]
     milliseconds: float
+    draws: int
+    published: float
+    published_scaled: float
+    blind_mca: float
+    blind_published: float
 
 
 def evaluate(
@@ -53,9 +65,10 @@ def evaluate(
     scenes: int | None = None,
     seed: int = 0,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    draws: int = 1,
 ) -> Evaluation:
-    """Ask for one pose in each scene, and judge it by both oracles; the planner's collision test
-    takes no part.
+    """Ask for poses in each scene, and judge them by the oracles on boxes, the first one in
+    physics; the planner's collision test takes no part.
 
     Args:
         model: The grounding.
@@ -63,12 +76,14 @@ def evaluate(
         scenes: At most so many of them, drawn by seed.
         seed: Of the scenes' order and of the model's draws.
         progress: Called with the scenes done and all.
+        draws: Poses a scene, each asked for on its own; 9 in the published evaluation.
     """
     rng = np.random.default_rng(seed)
     order = rng.permutation(len(data))[: scenes or len(data)]
     verdicts: Counter[str] = Counter()
     papers: Counter[str] = Counter()
     feasible, times = 0, []
+    published = np.zeros(2)
     items = ItemOf()
 
     with Drops() as drops:
@@ -79,23 +94,36 @@ def evaluate(
             times.append(time.perf_counter() - started)
             verdict = settled(situation, poses, drops, items)[0] if len(poses) else None
             verdicts[str(verdict or NOTHING)] += 1
-            papers[str(paper_verdicts(situation, poses)[0] if len(poses) else NOTHING)] += 1
+
+            more = [model.propose(situation, 1, rng) for _ in range(draws - 1)]
+            for drawn in (poses, *more):
+                papers[str(paper_verdicts(situation, drawn)[0] if len(drawn) else NOTHING)] += 1
+                published += [
+                    published_oracle(situation, drawn, near).sum() for near in (NEAR, CLOUD_NEAR_M)
+                ]
+
             known = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
             feasible += known or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
 
     count = len(order)
+    ceiling = blind_ceiling(data, order, draws, seed)
 
     return Evaluation(
         count,
-        papers[Verdict.HOLDS] / count,
+        papers[Verdict.HOLDS] / papers.total(),
         verdicts[Verdict.HOLDS] / count,
         feasible / count,
         accuracy(model, data, scenes, seed),
         _failures(verdicts),
         _failures(papers),
         1e3 * float(np.median(times)),
+        draws,
+        float(published[0]) / papers.total(),
+        float(published[1]) / papers.total(),
+        ceiling.mca,
+        ceiling.published,
     )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
@@ -29,6 +30,7 @@ from grounding.oracles import Verdict, settled
 from grounding.random_poses import random_turn
 from grounding.registry import load_model
 from grounding.scenes import LabelledScene, SampledScene, Scenes, free
+from grounding.supports import Support, household_supports
 from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import GROWTH
@@ -87,6 +89,11 @@ class Exploration:
     def split(self) -> str:
         """Return "train": exploration is for training."""
         return "train"
+
+    @property
+    def supports(self) -> Mapping[str, Support]:
+        """Return the pieces of furniture by name, those of the relation first."""
+        return household_supports(self.relation, self.split)
 
     @property
     def kinds(self) -> tuple[str, ...]:

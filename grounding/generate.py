@@ -5,6 +5,7 @@ positive.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -18,8 +19,15 @@ from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE, DemonstrationGenerator
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS
+from grounding.paper.demonstrations import PaperDemonstrations
+from grounding.paper.scenes import paper_supports
 from grounding.scenes import LabelledScene
+from grounding.supports import Support, household_supports
+from tamp.errors import InputError
 from tamp.simulation.drop import Drops
+
+LAYOUTS = {"household": DemonstrationGenerator, "paper": PaperDemonstrations}
+"""Who lays scenes out: densely, on small and odd pieces, any face down; or as the paper's code."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,7 @@ class Job:
         count: Scenes, half of them positive.
         seed: Of all randomness.
         folder: Of one's own meshes.
+        layout: One of LAYOUTS.
     """
 
     relation: str
@@ -39,6 +48,7 @@ class Job:
     count: int
     seed: int = 0
     folder: MeshFolder | None = None
+    layout: str = "household"
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -48,11 +58,19 @@ class Job:
     @property
     def key(self) -> str:
         """Return the key of all but the count."""
-        return json.dumps([self.relation, self.split, self.seed, self.folder and self.folder.key])
+        parts = [self.relation, self.split, self.seed, self.folder and self.folder.key]
+        return json.dumps(parts if self.layout == "household" else [*parts, self.layout])
+
+    @property
+    def supports(self) -> Mapping[str, Support]:
+        """Return the pieces of furniture by name, those of the relation first."""
+        if self.layout == "paper":
+            return paper_supports(self.relation, self.split)
+        return household_supports(self.relation, self.split)
 
     def chunk(self, number: int, start: int, size: int) -> list[LabelledScene]:
         """Make the first `size` scenes of chunk `number`."""
-        maker = _maker(self.relation, self.split, self.folder)
+        maker = _maker(self.relation, self.split, self.folder, self.layout)
         kinds = kinds_of(self.relation, start + size)[start:]
         rng = np.random.default_rng(
             [self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number]
@@ -60,14 +78,20 @@ class Job:
         return [maker.make(kind, rng) for kind in kinds]
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """Return no further entries of the card."""
-        return {}
+        """Return the card's own entries."""
+        return {"layout": self.layout}
 
 
 def generate(
     job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
 ) -> Dataset:
-    """Make a data set of demonstrations and write it, see `make_dataset`."""
+    """Make a data set of demonstrations and write it, see `make_dataset`.
+
+    Raises:
+        InputError: As there, or an unknown layout.
+    """
+    if job.layout not in LAYOUTS:
+        raise InputError(f"unknown layout '{job.layout}'", found=job.layout, choices=[*LAYOUTS])
     return make_dataset(job, out, workers, progress)
 
 
@@ -92,5 +116,7 @@ def kinds_of(relation: str, count: int) -> list[str]:
 
 
 @lru_cache(maxsize=2)
-def _maker(relation: str, split: str, folder: MeshFolder | None) -> DemonstrationGenerator:
-    return DemonstrationGenerator(relation, split, Drops(), folder)
+def _maker(
+    relation: str, split: str, folder: MeshFolder | None, layout: str
+) -> DemonstrationGenerator | PaperDemonstrations:
+    return LAYOUTS[layout](relation, split, Drops(), folder)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from grounding.certainty import cannot_tell
 from grounding.model import Model
@@ -16,6 +17,9 @@ from tamp.errors import InputError
 from tamp.geometric.samplers.choice import ANY
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
+
+if TYPE_CHECKING:
+    from grounding.relations.grounding import LearnedRelation
 
 SHIPPED = Path(__file__).resolve().parent / "assets"
 """Where the shipped weights are."""
@@ -77,6 +81,9 @@ TRAINING_VARIANTS: Mapping[str, str] = {
 
 PARAMETER_FREE: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
 """Model name to what makes it of nothing."""
+
+FEW_SHOT = "conjunctions"
+"""The model of relations from a few demonstrations (`tamp-learn new`)."""
 
 RELATIONS = ("on", "inside")
 
@@ -146,16 +153,37 @@ def shipped_model(relation: str, name: str) -> Model:
     return load_model(path, model)
 
 
-def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer:
+def load_grounding(path: Path, model: str | None = None) -> Grounding | Proposer | LearnedRelation:
     """Load a model for the planner; without a classifier where the card says that it cannot tell
     yet.
     """
-    grounding = _grounding(load_model(path, model))
-    why = cannot_tell(read_weights(path).card)
+    weights = read_weights(path)
+    few = weights.card.get("model") == FEW_SHOT
+    grounding = _learned_relation(weights, path) if few else _grounding(load_model(path, model))
+    why = cannot_tell(weights.card)
     return grounding if why is None else Proposer(grounding, why)
 
 
-def file_grounding(relation: str, path: Path) -> Grounding | Proposer:
+def is_few_shot(name: str) -> bool:
+    """Check whether a name is a file of weights that `tamp-learn new` has written."""
+    path = Path(name)
+    if path.suffix != ".safetensors" or not path.is_file():
+        return False
+    return read_weights(path).card.get("model") == FEW_SHOT
+
+
+def _learned_relation(weights: Weights, path: Path) -> LearnedRelation:
+    from grounding.relations.grounding import LearnedRelation
+
+    try:
+        return LearnedRelation(weights)
+    except InputError as error:
+        raise error.at(path) from None
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"these are no weights of '{FEW_SHOT}': {error}", file=path) from None
+
+
+def file_grounding(relation: str, path: Path) -> Grounding | Proposer | LearnedRelation:
     """Load a grounding of a file that must be about this relation.
 
     Raises:

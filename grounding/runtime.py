@@ -11,6 +11,7 @@ from numpy.random import Generator as Random
 
 from grounding.model import Model
 from grounding.relation_scene import relation_scene_of
+from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.placement import SNAP_HEIGHT, Placement, placement_on
@@ -52,7 +53,7 @@ class Proposer:
         cannot_tell: Why it does not judge.
     """
 
-    def __init__(self, grounding: Grounding, cannot_tell: str) -> None:
+    def __init__(self, grounding: Generator, cannot_tell: str) -> None:
         self._grounding, self.cannot_tell = grounding, cannot_tell
 
     def propose(

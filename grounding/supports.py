@@ -44,6 +44,13 @@ def support_templates(relation: str, split: str) -> Mapping[str, Support]:
     return found
 
 
+def household_supports(relation: str, split: str) -> dict[str, Support]:
+    """Return all pieces of a household scene by name: the relation's first, then what is stood
+    on.
+    """
+    return {**support_templates(relation, split), **support_templates("on", split)}
+
+
 def scaled_region(region: Region, factor: float) -> Region:
     """Scale the region of a support that is made larger."""
     matrix = region.matrix.copy()

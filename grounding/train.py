@@ -5,9 +5,7 @@ imported when they are used.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +18,9 @@ from grounding.relational.measures import Measures, RegionFrame
 from grounding.relational.model import relational_weights
 from grounding.relational.proposals import Transfer
 from grounding.relational.ranker import Ranker
+from grounding.train_options import NETWORKS as NETWORKS
+from grounding.train_options import OPTIONS as OPTIONS
+from grounding.train_options import TrainArgs as TrainArgs
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
 
@@ -28,53 +29,20 @@ RANKS_FROM = 100
 section 3).
 """
 
-NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
-
-OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "scheme": NETWORKS,
-    "iterations": NETWORKS,
-    "encoder": ("mlp-pc", "gnn-pc", "tree-pc"),
-}
-"""Fields of TrainArgs that only some models have."""
-
 SHOWN = 500
 """Labels that one of the paper's classifiers is asked of again."""
 
 ITERATIONS = 30_000
 """Of the paper's networks: of the classifier, and then of the generator."""
 
+DEFAULTS = TrainArgs()
+
 Say = Callable[[str], None]
 """What is told how far it is."""
 
 
-@dataclass(frozen=True)
-class TrainArgs:
-    """The training options.
-
-    Attributes:
-        samples: How many scenes of the data set; None for all.
-        seed: Of initial weights and batches.
-        demonstrations: At most so many positive ones are kept to draw from, by `transfer`.
-        scheme: What teaches the generator of one of the paper's networks: discriminator, classifier
-            or both; None for both.
-        iterations: Of the paper's networks; None for the paper's 30,000.
-        encoder: Weights of an encoder of clouds, which the models on clouds need.
-        state: Where an interrupted training of the paper's networks goes on from, and is saved.
-        commit: Of the code, for the card.
-    """
-
-    samples: int | None = None
-    seed: int = 0
-    demonstrations: int = 2000
-    scheme: str | None = None
-    iterations: int | None = None
-    encoder: Path | None = None
-    state: Path | None = None
-    commit: str = ""
-
-
 def train(
-    data: Dataset, model: str, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None
+    data: Dataset, model: str, args: TrainArgs = DEFAULTS, progress: Say = lambda line: None
 ) -> Weights:
     """Train a grounding.
 
@@ -122,7 +90,7 @@ def check(relation: str, model: str, args: TrainArgs) -> None:
 
 
 def train_relational(
-    data: Dataset, args: TrainArgs = TrainArgs(), progress: Say = lambda line: None, *, flow: bool
+    data: Dataset, args: TrainArgs = DEFAULTS, progress: Say = lambda line: None, *, flow: bool
 ) -> Weights:
     """Train a relational grounding of the first scenes of a data set: demonstrations to transfer,
     or a flow, and the ranker.
@@ -171,7 +139,11 @@ def train_relational(
         "samples": count,
         "seed": args.seed,
         "commit": args.commit,
-        "data": {name: data.card[name] for name in ("split", "seed", "count") if name in data.card},
+        "data": {
+            name: data.card[name]
+            for name in ("split", "seed", "count", "layout")
+            if name in data.card
+        },
         "validation accuracy": score,
         "ranks": ranks,
         **_certainty(measured, holds, usable, ranks, score, args.seed),
@@ -224,18 +196,20 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
     """Train one of the paper's networks, on as many scenes in the order of
     `grounding.paper.feature_table.order`.
     """
+    from grounding.paper.training import HEADLINE_SCHEME
     from grounding.paper.training import train as train_networks
 
     (weights,) = train_networks(
         data,
         model,
-        args.scheme or "both",
+        args.scheme or HEADLINE_SCHEME.get(data.relation, "both"),
         sizes=[args.samples or len(data)],
         seeds=[args.seed],
         encoder=_encoder(args),
         state=args.state,
         progress=progress,
         iterations=args.iterations or ITERATIONS,
+        departures=args.departures or (),
     )
     return _signed(_checked(weights, data, args), args)
 

@@ -91,15 +91,15 @@ def test_mistakes_are_said(options: Options, tmp_path: Path) -> None:
 def test_a_line_that_was_cut_off_is_measured_again(tmp_path: Path) -> None:
     path, one = tmp_path / "r.jsonl", Case("success", "on", "flow", 10, 0, 5)
     other = replace(one, seed=1)
-    Journal(path).add(one, mca=0.5)
+    Journal(path, Case).add(one, mca=0.5)
     path.write_bytes(path.read_bytes() + b'{"config": {"meas')
-    journal = Journal(path)
+    journal = Journal(path, Case)
     assert journal.missing([one, other, other]) == [other]
     journal.add(other, mca=0.25)
-    assert [line["mca"] for line in Journal(path).found([other, one])] == [0.5, 0.25]
+    assert [line["mca"] for line in Journal(path, Case).found([other, one])] == [0.5, 0.25]
     path.write_text('{"config": {"problem": "swap"}}\n')
     with pytest.raises(InputError, match="no measurement of a grounding"):
-        Journal(path)
+        Journal(path, Case)
 
 
 def test_the_cases_of_the_figures() -> None:

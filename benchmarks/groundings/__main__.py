@@ -68,7 +68,7 @@ def main(options: Options) -> None:
         InputError: An unknown model, damaged results, no data and no leave to make them.
     """
     plan, library, out, folder = _arranged(options)
-    journal = Journal(out)
+    journal = Journal(out, Case)
     for figure in FIGURES if options.figure == "all" else [options.figure]:
         wanted = cases(figure, plan)
         left_out = _measure(journal, wanted, library)

@@ -14,11 +14,13 @@ from torch import Tensor
 
 from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
+from grounding.paper.clouds import cloud
 from grounding.paper.encoders import centred, scaled
 from grounding.paper.feature_table import FeatureTable, order
-from grounding.paper.features import PC
+from grounding.paper.features import PC, UNTURNED
 from grounding.paper.rotations import quaternions
 from grounding.paper.runtime import NumpyEncoder
+from grounding.relation_scene import Placed
 
 BATCH = {"cpu": 16, "cuda": 512}
 """Clouds that are encoded at once."""
@@ -32,8 +34,10 @@ def embedding_table(
     *,
     count: int | None = None,
     surroundings: bool = True,
+    residual: bool = True,
 ) -> FeatureTable:
-    """Compute the table of `table_of` with `CloudFeatures(encoder)` by torch; agrees to 1e-5.
+    """Compute the table of `table_of` with `CloudFeatures(encoder, residual)` by torch; agrees to
+    1e-5.
 
     Args:
         data: The scenes.
@@ -42,6 +46,7 @@ def embedding_table(
         device: Where torch computes.
         count: Only so many scenes, the first of `order`.
         surroundings: Whether the other bodies are encoded as well; they are most of the work.
+        residual: See `CloudFeatures`.
     """
     indices = order(data.holds)[:count]
     scenes = [data[int(index)].situation for index in indices]
@@ -62,7 +67,9 @@ def embedding_table(
     middle = (rotations @ (centroids[template] * scale[:, None])[:, :, None])[:, :, 0] + matrices[
         :, :3, 3
     ]
-    features[:, 3:7] = quaternions(rotations)
+    features[:, 3:7] = UNTURNED if residual else quaternions(rotations)
+    if residual:
+        middle = matrices[:, :3, 3] + np.stack([_extent_middle(item) for item in placed])
     encode = _TorchEncoder(encoder, np.stack([points for points, _ in clouds]), device)
     batch = BATCH.get(device, 512)
     for start in range(0, len(placed), batch):
@@ -81,6 +88,12 @@ def embedding_table(
     share = np.where(there, 1 / np.maximum(sizes[:, None] - 2, 1), 0).astype(np.float32)
     arguments = np.concatenate([features[first], features[first + 1]], axis=1)
     return FeatureTable(arguments, others, share, data.holds[indices])
+
+
+def _extent_middle(item: Placed) -> NDArray[np.float64]:
+    """Return the middle of the extent of a turned cloud, shape (3,), from the body's origin."""
+    points = cloud(item.form) @ item.matrix[:3, :3].T
+    return (points.min(axis=0) + points.max(axis=0)) / 2
 
 
 class _TorchEncoder:

@@ -9,7 +9,7 @@ centroids of clouds; metres.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 from weakref import WeakKeyDictionary
 
@@ -33,6 +33,9 @@ PC = 135
 CODE = 128
 """Numbers of a cloud's code."""
 
+UNTURNED = np.array([0.0, 0.0, 0.0, 1.0])
+"""The identity's quaternion xyzw."""
+
 Encoder = Callable[[Array], NDArray[Any]]
 """From the posed, centred cloud, shape (points, 3) in metres, to its code, shape (CODE,)."""
 
@@ -47,6 +50,8 @@ class Observation:
         origin: The position of argument 0 in the world, which has been subtracted, shape (3,).
         centre: The position of argument 1 in its own frame, shape (3,).
         extents: Half the edges of argument 1's own box, shape (3,).
+        start: The rotation from which a generator's quaternion turns argument 1, shape (3, 3): its
+            own where turns are residual, none where they are absolute.
     """
 
     arguments: Array
@@ -54,6 +59,7 @@ class Observation:
     origin: Array
     centre: Array
     extents: Array
+    start: Array = field(default_factory=lambda: np.eye(3))
 
 
 class Features(Protocol):
@@ -77,9 +83,16 @@ class Features(Protocol):
 class BoxFeatures:
     """BB. The box along the world's axes is that of the posed object-aligned box, in data as in
     completed proposals.
+
+    Args:
+        residual: Whether argument 1 is shown as its box along the world's axes, turned by nothing,
+            and a generator turns it from where it was. The paper's boxes are turned absolutely.
     """
 
     size = BB
+
+    def __init__(self, residual: bool = False) -> None:
+        self._residual = residual
 
     def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
         """See Features."""
@@ -92,16 +105,20 @@ class BoxFeatures:
         centres = _moved(matrices, (corners[:, 0] + corners[:, 1]) / 2)
         features = box_features(centres - centres[0], quaternions(matrices[:, :3, :3]), corners)
         low, high = body.form.corners
-        return Observation(
-            features[:2], features[2:], centres[0], (low + high) / 2, (high - low) / 2
-        )
+        middle, half = (low + high) / 2, (high - low) / 2
+        start = np.eye(3)
+        if self._residual:
+            start = body.matrix[:3, :3]
+            features[1] = _unturned(features[1:2, :3], start[None], half)[0]
+        return Observation(features[:2], features[2:], centres[0], middle, half, start)
 
     def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
         """See Features."""
+        centres = _moved(poses, seen.centre) - seen.origin
+        if self._residual:
+            return _unturned(centres, poses[:, :3, :3], seen.extents)
         corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
-        return box_features(
-            _moved(poses, seen.centre) - seen.origin, quaternions(poses[:, :3, :3]), corners
-        )
+        return box_features(centres, quaternions(poses[:, :3, :3]), corners)
 
 
 class CloudFeatures:
@@ -109,12 +126,16 @@ class CloudFeatures:
 
     Args:
         encoder: What makes codes of clouds.
+        residual: As in the published data: every quaternion is the identity, since what a body is
+            turned like is in its code, a position is the middle of the posed cloud's extent, and a
+            generator turns argument 1 from where it was. Else quaternions are true, positions
+            centroids, turns absolute.
     """
 
     size = PC
 
-    def __init__(self, encoder: Encoder) -> None:
-        self._encode = encoder
+    def __init__(self, encoder: Encoder, residual: bool = True) -> None:
+        self._encode, self._residual = encoder, residual
         self._known: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
     def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
@@ -124,18 +145,22 @@ class CloudFeatures:
         origin = features[0, :3].copy()
         features[:, :3] -= origin
         low, high = situation.body.form.corners
+        matrix, start = situation.body.matrix, np.eye(3)
         centre = cloud(situation.body.form).mean(axis=0)
-        return Observation(features[:2], features[2:], origin, centre, (high - low) / 2)
+        if self._residual:
+            start = matrix[:3, :3]
+            centre = start.T @ (features[1, :3] + origin - matrix[:3, 3])
+        return Observation(features[:2], features[2:], origin, centre, (high - low) / 2, start)
 
     def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
         """See Features. Each pose's cloud is encoded, unless argument 1 is turned as it was."""
         features = np.empty((len(poses), PC))
-        features[:, :3] = _moved(poses, seen.centre) - seen.origin
-        features[:, 3:7] = quaternions(poses[:, :3, :3])
-        centred = cloud(situation.body.form) - seen.centre
         for row, pose in zip(features, poses, strict=True):
             same = np.array_equal(pose[:3, :3], situation.body.matrix[:3, :3])
-            row[7:] = seen.arguments[1, 7:] if same else self._encode(centred @ pose[:3, :3].T)
+            row[:] = self._described(
+                Placed(situation.body.form, pose), seen.arguments[1, 7:] if same else None
+            )
+        features[:, :3] -= seen.origin
         return features
 
     def _features(self, item: Placed) -> Array:
@@ -144,13 +169,16 @@ class CloudFeatures:
             self._known[item] = self._described(item)
         return self._known[item]
 
-    def _described(self, item: Placed) -> Array:
-        points = cloud(item.form)
-        centroid, rotation = points.mean(axis=0), item.matrix[:3, :3]
-        code = self._encode((points - centroid) @ rotation.T)
-        return np.concatenate(
-            [rotation @ centroid + item.matrix[:3, 3], quaternions(rotation[None])[0], code]
-        )
+    def _described(self, item: Placed, code: Array | None = None) -> Array:
+        rotation, position = item.matrix[:3, :3], item.matrix[:3, 3]
+        points = cloud(item.form) @ rotation.T
+        middle = points.mean(axis=0)
+        if code is None:
+            code = self._encode(points - middle)
+        if self._residual:
+            middle = (points.min(axis=0) + points.max(axis=0)) / 2
+            return np.concatenate([middle + position, UNTURNED, code])
+        return np.concatenate([middle + position, quaternions(rotation[None])[0], code])
 
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:
@@ -180,13 +208,22 @@ def completed(seen: Observation, positions: Array, turns: Array) -> Array:
 
 def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
     """Compute T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have
-    them, turned by (n, 4).
+    them, turned by (n, 4) from its start.
     """
     poses = np.zeros((len(positions), 4, 4))
     poses[:, 3, 3] = 1.0
-    poses[:, :3, :3] = rotations(turns)
+    poses[:, :3, :3] = rotations(turns) @ seen.start
     poses[:, :3, 3] = seen.origin + positions - poses[:, :3, :3] @ seen.centre
     return poses
+
+
+def _unturned(centres: Array, turned: Array, half: Array) -> Array:
+    """Compute BB, shape (n, 19), of boxes of half edges (3,) turned by (n, 3, 3), each shown as its
+    box along the world's axes with the identity's quaternion.
+    """
+    reach = np.abs(turned) @ half
+    corners = np.stack([-reach, reach], axis=1)
+    return box_features(centres, np.tile(UNTURNED, (len(centres), 1)), corners)
 
 
 def _moved(matrices: Array, points: Array) -> Array:

@@ -30,6 +30,9 @@ Arrays = Mapping[str, NDArray[Any]]
 
 _REMEDY = "Train it again: tamp-learn train --help"
 
+RESIDUAL = "turn.residual"
+"""The array whose presence says that a generator turns argument 1 from where it was."""
+
 NOISE = 4
 """Gaussian numbers that the generator is given."""
 
@@ -180,15 +183,16 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
         )
 
     _check_scene(classifier, inputs // 2)
+    residual = RESIDUAL in arrays
     if inputs == 2 * BB:
-        return BoxFeatures()
+        return BoxFeatures(residual)
     if inputs == 2 * PC:
         encoder = {
             name.removeprefix("encoder."): array
             for name, array in arrays.items()
             if "encoder." in name
         }
-        return CloudFeatures(NumpyEncoder(encoder))
+        return CloudFeatures(NumpyEncoder(encoder), residual)
 
     raise InputError(
         f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)"

@@ -75,6 +75,7 @@ class Trainer:
         self.critic = Ensemble(networks.critic_shapes(features), start)
         self.generator = Ensemble(networks.generator_shapes(features, self.scene), start)
         self._best = self.classifier.flat.clone()
+        self._mean = self.generator.flat.clone()
         self._least = torch.full((len(self.sizes),), torch.inf)
         self._done = torch.zeros(2, dtype=torch.int64)  # iterations of classifier and generator
         spared = [min(size // 10, VALIDATION) if size >= 100 else 0 for size in self.sizes]
@@ -142,6 +143,8 @@ class Trainer:
                     save_state(state, self._tensors(), self._run())
         if stage == 0:
             self.classifier.flat.copy_(self._best)
+        elif self.args.mean_weights:
+            self.generator.flat.copy_(self._mean)
 
     def _classify(self, start: int, end: int) -> float:
         """Train the classifier by equation 1, from one iteration to another; returns the mean loss
@@ -215,18 +218,36 @@ class Trainer:
             )
             loss.backward()
             self.generator.update(self.args.rate)
+            self._mean.lerp_(self.generator.flat, 1.0 - self.args.mean_weights)
 
         return float(loss.detach()) / batch / len(self.sizes)
 
     def _loss(self, batch: Batch, noise: Tensor) -> Tensor:
         """Compute the generator's loss: equation 3, equation 4, or their sum."""
         proposed = Batch(generate(self.generator.weights, batch, noise), batch.others, batch.share)
+        if self.scheme == "both" and self.args.scaled_classifier:
+            return self._scaled_loss(proposed)
         loss = torch.zeros(())
         if self.scheme != "classifier":
             loss = loss - score(self.critic.fixed, proposed).sum()
         if self.scheme != "discriminator":
             loss = loss + softplus(-score(self.classifier.fixed, proposed)).sum()
         return loss
+
+    def _scaled_loss(self, proposed: Batch) -> Tensor:
+        """Compute the sum of equations 3 and 4 with each model's classifier weighted such that its
+        gradient at the proposals is as long as the critic's on average.
+        """
+        critic = -score(self.critic.fixed, proposed).sum(dim=1)
+        classifier = softplus(-score(self.classifier.fixed, proposed)).sum(dim=1)
+        lengths = [
+            torch.autograd.grad(loss.sum(), proposed.arguments, retain_graph=True)[0]
+            .norm(dim=2)
+            .mean(dim=1)
+            for loss in (critic, classifier)
+        ]
+        weight = lengths[0] / lengths[1].clamp_(min=1e-6)
+        return (critic + weight.detach() * classifier).sum()
 
     def _critic_steps(self, step: int) -> int:
         if self.scheme == "classifier":
@@ -263,7 +284,8 @@ class Trainer:
             for name, part in parts.items()
             for key in ("flat", "square")
         }
-        return {**tensors, "best": self._best, "least": self._least, "done": self._done}
+        kept = {"best": self._best, "least": self._least, "done": self._done, "mean": self._mean}
+        return tensors | kept
 
     def _run(self) -> str:
         """Return the run's identity: what a state must agree in to go on from it."""

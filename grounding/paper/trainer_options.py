@@ -19,6 +19,10 @@ class Args:
             `every`-th.
         validate_every: Iterations between looks at the validation split.
         save_every: Iterations between saved states, a multiple of `block`.
+        mean_weights: Share of its running mean that the generator keeps a step, 0 for the last
+            weights alone, as in the paper.
+        scaled_classifier: Whether the classifier's gradient at a proposal is brought to the
+            critic's mean length, where both teach; in the paper it is not.
         block: Iterations whose random numbers are drawn together, from seed, size, stage and the
             first of them.
     """
@@ -34,3 +38,5 @@ class Args:
     validate_every: int = 500
     save_every: int = 2000
     block: int = 500
+    mean_weights: float = 0.0
+    scaled_classifier: bool = False

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from grounding.dataset import Dataset
 from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
-from grounding.paper.runtime import NumpyEncoder
+from grounding.paper.runtime import RESIDUAL, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import Args
 from grounding.weights import Weights
@@ -17,6 +19,21 @@ from tamp.errors import InputError
 
 MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
 """Network and features."""
+
+DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier")
+"""What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
+it was, as the published one on clouds does; the running mean of the generator's weights is kept;
+the classifier's gradient is brought to the critic's length where both teach.
+"""
+
+MEAN_WEIGHTS = 0.999
+"""The share of the running mean that is kept a step."""
+
+HEADLINE_SCHEME = {"on": "discriminator"}
+"""What teaches the generator unless it is said, by relation; `both` for all others. The published
+example trains on `discriminator`, and on `on` `both` drives generators over the edge
+(docs/paper-models.md).
+"""
 
 
 def train(
@@ -27,6 +44,7 @@ def train(
     sizes: Sequence[int],
     seeds: Sequence[int],
     iterations: int = 30_000,
+    departures: Sequence[str] = (),
     encoder: Weights | None = None,
     table: FeatureTable | None = None,
     state: Path | None = None,
@@ -42,6 +60,7 @@ def train(
         sizes: How many of the examples each model sees.
         seeds: As many; initial weights, order of the examples and noise.
         iterations: Of the classifier, and then of the generator.
+        departures: What is done otherwise than in the paper, any of DEPARTURES.
         encoder: What codes the clouds, for the models on clouds.
         table: The data's features, if they are known already.
         state: A file to go on from, and to save the state of the run in every 2,000 iterations.
@@ -51,17 +70,23 @@ def train(
         InputError: An unknown model or scheme, sizes that the data do not have, no encoder, another
             run's state.
     """
-    _check(data, model, scheme, sizes, seeds, encoder)
-    table = table or features_of(data, model, encoder, progress, max(sizes))
-    trainer = Trainer(
-        table, model.startswith("gnn"), scheme, sizes, seeds, Args(iterations=iterations)
+    _check(data, model, scheme, sizes, seeds, encoder, departures)
+    residual = _clouds(model) or "residual-turn" in departures
+    table = table or features_of(data, model, encoder, progress, max(sizes), residual)
+    args = Args(
+        iterations=iterations,
+        mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
+        scaled_classifier="scaled-classifier" in departures,
     )
+    trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, args)
     trainer.run(state, progress)
     extra = (
         {f"encoder.{name}": array for name, array in encoder.arrays.items()}
         if _clouds(model) and encoder
         else {}
     )
+    if residual:
+        extra[RESIDUAL] = np.ones(1, np.float32)
 
     return [
         Weights(
@@ -70,12 +95,13 @@ def train(
                 "relation": data.relation,
                 "model": model,
                 "scheme": scheme,
+                "departures": sorted(departures),
                 "samples": size,
                 "seed": seed,
                 "iterations": iterations,
                 "data": {
                     key: data.card[key]
-                    for key in ("split", "seed", "count", "commit")
+                    for key in ("split", "seed", "count", "commit", "layout")
                     if key in data.card
                 },
                 "architecture": {name: list(array.shape) for name, array in arrays.items()},
@@ -91,14 +117,22 @@ def features_of(
     encoder: Weights | None,
     progress: Callable[[str], None],
     count: int | None = None,
+    residual: bool = False,
 ) -> FeatureTable:
-    """Compute the features that a model is trained on, of the first `count` scenes or of all."""
+    """Compute the features that a model is trained on, of the first `count` scenes or of all; with
+    `residual` those for turns from where argument 1 was.
+    """
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
         return embedding_table(
-            data, NumpyEncoder(encoder.arrays), progress, count=count, surroundings=around
+            data,
+            NumpyEncoder(encoder.arrays),
+            progress,
+            count=count,
+            surroundings=around,
+            residual=residual,
         )
-    return table_of(data, BoxFeatures(), progress, count)
+    return table_of(data, BoxFeatures(residual), progress, count)
 
 
 def _clouds(model: str) -> bool:
@@ -112,7 +146,11 @@ def _check(
     sizes: Sequence[int],
     seeds: Sequence[int],
     encoder: Weights | None,
+    departures: Sequence[str],
 ) -> None:
+    for found in departures:
+        if found not in DEPARTURES:
+            raise InputError(f"unknown departure '{found}'", found=found, choices=DEPARTURES)
     if model not in MODELS:
         raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
     if scheme not in SCHEMES:

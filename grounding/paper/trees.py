@@ -20,7 +20,7 @@ from grounding.paper.features import (
     poses_of,
 )
 from grounding.paper.rotations import rotations
-from grounding.paper.runtime import Arrays, NumpyEncoder, unit
+from grounding.paper.runtime import RESIDUAL, Arrays, NumpyEncoder, unit
 from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
@@ -195,7 +195,7 @@ def _features(arrays: Arrays) -> Features:
             for name, array in arrays.items()
             if "encoder." in name
         }
-        return CloudFeatures(NumpyEncoder(encoder))
+        return CloudFeatures(NumpyEncoder(encoder), RESIDUAL in arrays)
     raise _refused(f"a range of {size} features; known: {BB} (boxes), {PC} (clouds)")
 
 

@@ -34,7 +34,7 @@ class _Worker:
     since: float = 0.0
 
 
-class Processes:
+class ProcessPool:
     """Processes, each with an interpreter of its own and libraries that use one thread.
 
     Args:

@@ -16,7 +16,7 @@ SELDOM = 5.0
 """Seconds between two lines where no terminal can rewrite one."""
 
 
-class Watch:
+class ProgressLine:
     """A line that is rewritten on a terminal, and printed now and then elsewhere.
 
     Args:

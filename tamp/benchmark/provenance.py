@@ -16,7 +16,7 @@ FOLDER = Path(__file__).resolve().parent
 
 
 @cache
-def origin() -> dict[str, Any]:
+def provenance() -> dict[str, Any]:
     """Return the provenance: commit (of the checkout that runs, with +changes, or "unknown"),
     machine and versions.
     """

@@ -30,7 +30,7 @@ STARTING = 300.0
 """Seconds that a cluster may take to find a place for a run."""
 
 
-class RayCrew:
+class RayPool:
     """Tasks on a Ray cluster, one a core.
 
     Args:

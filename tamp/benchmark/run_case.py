@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tamp.benchmark.case import Case
-from tamp.benchmark.provenance import origin
+from tamp.benchmark.provenance import provenance
 from tamp.geometric.samplers.choice import Registry
 from tamp.geometric.samplers.mixture import Account
 from tamp.geometric.samplers.python_file import given_by_files
@@ -31,7 +31,7 @@ def warm_up() -> None:
     solve(load_problem("one_object"), max_time=60.0)
 
 
-def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
+def run_case(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
     """Run a case; what comes back is one line of the results. Times in seconds.
 
     An error of the planner or the judge is an outcome, too: a benchmark of a thousand runs goes on,
@@ -53,7 +53,7 @@ def do(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:
             "explanation": traceback.format_exception(error),
         }
     told = {"config": case.config, "seed": case.seed, **line}
-    return {**told, **origin(), "load": round(os.getloadavg()[0], 2)}
+    return {**told, **provenance(), "load": round(os.getloadavg()[0], 2)}
 
 
 def _run(case: Case, registry: Callable[[], Registry]) -> dict[str, Any]:

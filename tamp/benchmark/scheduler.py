@@ -1,4 +1,4 @@
-"""Leading a crew through the runs of a benchmark, so that none is lost and none is done twice."""
+"""Schedule the runs of a benchmark over workers: none is lost, and none is done twice."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from tamp.benchmark.case import Case
 from tamp.benchmark.log import Log
-from tamp.benchmark.worker_pool import Crew
+from tamp.benchmark.worker_pool import WorkerPool
 
 ATTEMPTS = 3
 """So often a run is given out whose worker is lost on the way; then it is written down as lost."""
@@ -17,14 +17,14 @@ LOST = "LOST"
 """The outcome of such a run."""
 
 
-def lead(
-    cases: list[Case], crew: Crew, log: Log, ended: Callable[[dict[str, Any], int], None]
+def run_all(
+    cases: list[Case], pool: WorkerPool, log: Log, ended: Callable[[dict[str, Any], int], None]
 ) -> None:
-    """Do all runs that the log does not have. The crew stays.
+    """Do all runs that the log does not have. The pool stays.
 
     Args:
         cases: All of them.
-        crew: Who does them.
+        pool: Who does them.
         log: What is known, and where each line is written as soon as its run has ended.
         ended: Called for each run that has ended, with its line and the number of runs that are
             still to come.
@@ -33,22 +33,22 @@ def lead(
     losses: Counter[Case] = Counter()
     under_way = 0
     while waiting or under_way:
-        while waiting and under_way < crew.size:
-            crew.start(waiting.popleft())
+        while waiting and under_way < pool.size:
+            pool.start(waiting.popleft())
             under_way += 1
-        for case, line in crew.finished():
+        for case, line in pool.finished():
             under_way -= 1
             if line is None:
                 losses[case] += 1
                 if losses[case] < ATTEMPTS:
                     waiting.append(case)
                     continue
-                line = lost(case)
+                line = crashed_result(case)
             log.add(line)
             ended(line, len(waiting) + under_way)
 
 
-def lost(case: Case) -> dict[str, Any]:
+def crashed_result(case: Case) -> dict[str, Any]:
     """Return the line of a run whose workers were lost each time: it counts as one that took all
     its time in vain.
     """

@@ -21,7 +21,7 @@ verifying, a busy machine.
 """
 
 
-class Crew(Protocol):
+class WorkerPool(Protocol):
     """Workers."""
 
     size: int

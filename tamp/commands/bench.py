@@ -18,7 +18,7 @@ from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress
 
 if TYPE_CHECKING:
-    from tamp.benchmark.worker_pool import Crew
+    from tamp.benchmark.worker_pool import WorkerPool
     from tamp.geometric.samplers.choice import Registry
 
 BASELINE = "uniform"
@@ -58,7 +58,7 @@ def _run(chosen: Run) -> list[dict[str, Any]]:
         label, texts = labelled(sampler, served)
         samplers[label] = served
         sources |= texts
-    return _lead(
+    return _run_all(
         chosen,
         samplers,
         range(chosen.first, chosen.first + chosen.seeds),
@@ -74,10 +74,10 @@ def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
     samplers, skipped = among(FIG8, _known())
     for name, why in skipped.items():
         print(f"skipped {name}: {why}", file=sys.stderr)
-    return _lead(chosen, samplers, range(chosen.seeds), "adaptive")
+    return _run_all(chosen, samplers, range(chosen.seeds), "adaptive")
 
 
-def _lead(
+def _run_all(
     chosen: Runs,
     samplers: Mapping[str, Mapping[str, str]],
     seeds: range,
@@ -87,8 +87,8 @@ def _lead(
     """Check everything, run what is missing, print the tables; all results of the file."""
     from tamp.benchmark.case import cases, named
     from tamp.benchmark.log import Log
-    from tamp.benchmark.progress import Watch
-    from tamp.benchmark.scheduler import lead
+    from tamp.benchmark.progress import ProgressLine
+    from tamp.benchmark.scheduler import run_all
     from tamp.geometric.samplers.choice import sampler_files
     from tamp.geometric.samplers.python_file import given_by_files
     from tamp.planner.problem import load_problem
@@ -112,27 +112,27 @@ def _lead(
         log.check(chosen.time, algorithm)
         missing = log.missing(wanted)
         if missing:
-            crew = _crew(chosen, len(missing))
+            pool = _pool(chosen, len(missing))
             try:
-                lead(missing, crew, log, Watch(len(wanted), quiet=chosen.quiet).ended)
+                run_all(missing, pool, log, ProgressLine(len(wanted), quiet=chosen.quiet).ended)
             finally:
-                crew.close()
+                pool.close()
         lines = log.lines
     _print_tables(lines)
     return lines
 
 
-def _crew(chosen: Runs, runs: int) -> Crew:
-    from tamp.benchmark.run_case import do, warm_up
+def _pool(chosen: Runs, runs: int) -> WorkerPool:
+    from tamp.benchmark.run_case import run_case, warm_up
 
-    work = partial(do, registry=_registry)
+    work = partial(run_case, registry=_registry)
     if chosen.ray is not None:
-        from tamp.benchmark.ray_pool import RayCrew
+        from tamp.benchmark.ray_pool import RayPool
 
-        return RayCrew(chosen.ray, work, warm_up, chosen.jobs)
-    from tamp.benchmark.process_pool import Processes
+        return RayPool(chosen.ray, work, warm_up, chosen.jobs)
+    from tamp.benchmark.process_pool import ProcessPool
 
-    return Processes(min(chosen.jobs or os.cpu_count() or 1, runs), work, warm_up)
+    return ProcessPool(min(chosen.jobs or os.cpu_count() or 1, runs), work, warm_up)
 
 
 def _registry() -> Registry:

@@ -42,3 +42,8 @@ def bench() -> NoReturn:
 def learn() -> NoReturn:
     """Run tamp-learn."""
     guarded("grounding.cli")
+
+
+def robot() -> NoReturn:
+    """Run tamp-robot."""
+    guarded("tamp.commands.robot")

@@ -50,7 +50,7 @@ class Execute:
     """As for tamp-solve, over the plan's own: what says whether a relation of your own holds, and
     for planning anew."""
     problem: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """The problem, instead of the one the plan names."""
+    """The problem, or a shipped one's name, instead of the one the plan names."""
     json: bool = False
     """Print one JSON document instead of text."""
     quiet: bool = False

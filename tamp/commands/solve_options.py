@@ -52,8 +52,18 @@ class SceneOptions:
     part; it does unless NAME is hand-made, too."""
     algorithm: Annotated[str, tyro.conf.arg(metavar="NAME")] = "adaptive"
     """adaptive, or incremental (simple, for comparison)."""
-    steering: Annotated[str, tyro.conf.arg(metavar="NAME")] = "se2"
-    """How the base moves: se2 (in any direction) or reeds-shepp (like a car)."""
+    steering: Annotated[
+        str | None,
+        tyro.conf.arg(metavar="NAME", help_behavior_hint="(default: as the robot drives)"),
+    ] = None
+    """How the base moves: se2 (in any direction), reeds-shepp (like a car) or differential (turns
+    on the spot, drives straight)."""
+    robot: Annotated[
+        str | None,
+        tyro.conf.arg(metavar="ROBOT", help_behavior_hint="(default: the problem's)"),
+        NotWithPddl(NO_SCENE),
+    ] = None
+    """A shipped robot's name, or a folder that tamp-robot made."""
     view: Annotated[bool, NotWithPddl(NO_SCENE)] = False
     """Open the plan, or the scene and what was tried, in the browser until Ctrl-C."""
     html: Annotated[

@@ -19,12 +19,12 @@ from tamp.planner.report import headline, improvement, summary
 from tamp.planner.solution import Solution
 from tamp.planner.solve import ALGORITHMS
 from tamp.planner.statistics_file import add_statistics, read_statistics
-from tamp.planner.suggestions.why import why
+from tamp.planner.suggestions.why import suggest_changes
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system import guard
 from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress, say
-from tamp.view.outputs import Wishes, fulfil
+from tamp.view.outputs import OutputRequest, write_outputs
 from tamp.view.outside import check_inside
 
 
@@ -42,19 +42,19 @@ def solve_scene(request: Request) -> bool | None:
         InputError: Anything wrong with the files or the names, with its place.
     """
     options, shown = request.options, request.shown
-    wishes = _wishes(options)
+    outputs = _requested_outputs(options)
 
     loaded = load(request)
-    planned = plan(request, loaded, wishes.page)
+    planned = plan(request, loaded, outputs.page)
     judged = judge(request, loaded, planned)
     written = write(request, loaded, planned, judged)
     followed = follow_up(request, loaded, planned, written)
     tell(request, loaded, planned, judged, written, followed)
 
-    if planned.stopped and (wishes.any or options.verify or options.scene.execute):
+    if planned.stopped and (outputs.any or options.verify or options.scene.execute):
         shown.line("interrupted: the plan was neither judged, carried out nor drawn")
         return None
-    show(wishes, planned, shown)
+    show(outputs, planned, shown)
 
     if written.error is not None:
         raise written.error
@@ -78,6 +78,7 @@ def load(request: Request) -> Loaded:
         groundings=groundings,
         registry=request.registry,
         steering=options.scene.steering,
+        robot=options.scene.robot,
     )
     shown.begin("loading")
     problem = load_again()
@@ -93,7 +94,7 @@ def load(request: Request) -> Loaded:
     if options.scene.statistics is not None:
         domain_name = problem.stream_task.task.domain.name
         known = read_statistics(options.scene.statistics, domain_name)
-        problem = replace(problem, stream_task=replace(problem.stream_task, known=known))
+        problem = replace(problem, stream_task=replace(problem.stream_task, posteriors=known))
 
     shown.line(headline(problem))
     return Loaded(problem, load_again, request.budget.elapsed())
@@ -162,7 +163,7 @@ def follow_up(request: Request, loaded: Loaded, planned: Planned, written: Writt
     if options.scene.why and not solution.solved and not planned.stopped:
         looking = "looking for changes that would make it solvable ..."
         shown.line(f"{summary(solution, loaded.seconds)}\n\n  {looking}")
-        because = why(
+        because = suggest_changes(
             solution,
             lambda scene: loaded.load(scene=scene),
             max_time=options.time,
@@ -202,14 +203,14 @@ def tell(
         shown.line(f"\n{executed.text()}")
 
 
-def show(wishes: Wishes, planned: Planned, shown: Progress) -> None:
+def show(outputs: OutputRequest, planned: Planned, shown: Progress) -> None:
     """Draw the plan, or what was tried, where that is wanted."""
-    if not wishes.any:
+    if not outputs.any:
         return
-    from tamp.view.open import film_of_solution
+    from tamp.view.open import timeline_of_solution
 
     shown.begin("drawing")
-    fulfil(wishes, *film_of_solution(planned.solution), None, shown.line)
+    write_outputs(outputs, *timeline_of_solution(planned.solution), None, shown.line)
 
 
 def _document(
@@ -227,14 +228,14 @@ def _document(
     return document
 
 
-def _wishes(options: Arguments) -> Wishes:
+def _requested_outputs(options: Arguments) -> OutputRequest:
     """Refuse an unknown algorithm and what cannot be shown before time is spent."""
     scene = options.scene
     if scene.algorithm not in ALGORITHMS:
         what = f"unknown algorithm '{scene.algorithm}'"
         raise InputError(what, found=scene.algorithm, choices=ALGORITHMS)
 
-    wishes = Wishes(html=scene.html, png=scene.png, video=scene.video, view=scene.view)
-    if wishes.any:
-        wishes.check()
-    return wishes
+    outputs = OutputRequest(html=scene.html, png=scene.png, video=scene.video, view=scene.view)
+    if outputs.any:
+        outputs.check()
+    return outputs

@@ -12,7 +12,7 @@ from tamp.execution.report import Execution
 from tamp.geometric.samplers.choice import Registry
 from tamp.planner.problem import Problem
 from tamp.planner.solution import Solution
-from tamp.planner.suggestions.why import Why
+from tamp.planner.suggestions.why import Suggestions
 from tamp.system.progress import Progress
 from tamp.verification.report import Report
 
@@ -97,5 +97,5 @@ class Written:
 class FollowUp:
     """The steps after the plan: why there is none, or how it went in physics."""
 
-    why: Why | None
+    why: Suggestions | None
     execution: Execution | None

@@ -30,9 +30,9 @@ class Verify:
     plan: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN")]
     """The plan file that tamp-solve wrote."""
     problem: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """The problem, instead of the file that the plan names."""
+    """The problem, or a shipped one's name, instead of the file that the plan names."""
     domain: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """The domain, instead of the file that the plan names."""
+    """The domain, or a shipped one's name, instead of the file that the plan names."""
     streams: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """The streams, instead of the file that the plan names."""
     sampler: Annotated[

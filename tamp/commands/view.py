@@ -16,7 +16,7 @@ from tamp.system.command_line import INTERRUPTED, as_command
 from tamp.system.options import read_options
 from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress, say
-from tamp.view.outputs import Wishes, fulfil
+from tamp.view.outputs import OutputRequest, write_outputs
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class View:
     what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN|PROBLEM")]
     """A plan.json of tamp-solve, a problem.yaml, or a shipped one."""
     problem: Annotated[str | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
-    """The problem, instead of the file that the plan names."""
+    """The problem, or a shipped one's name, instead of the file that the plan names."""
     html: Annotated[Path | None, tyro.conf.arg(metavar="FILE", help_behavior_hint="")] = None
     """Write one HTML file that needs no network."""
     allow_outside: bool = False
@@ -69,7 +69,7 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
 
 def _view(options: View) -> None:
     files = (options.html, options.png, options.video)
-    wishes = Wishes(
+    request = OutputRequest(
         html=options.html,
         png=options.png,
         video=options.video,
@@ -80,17 +80,17 @@ def _view(options: View) -> None:
         port=options.port,
         browser=not options.no_browser,
     )
-    wishes.check()
-    from tamp.view.open import open_film
+    request.check()
+    from tamp.view.open import open_timeline
     from tamp.view.outside import check_inside
 
     def check(files: Sequence[Path], meshes: Sequence[Path]) -> None:
-        check_outputs(wishes.outputs, (*files, *meshes))
+        check_outputs(request.outputs, (*files, *meshes))
         if options.html is not None and not options.allow_outside:
             check_inside(meshes, files[0])
 
-    film, story, document = open_film(options.what, options.problem, check)
-    fulfil(wishes, film, story, document, Path(options.what), say)
+    timeline, story, document = open_timeline(options.what, options.problem, check)
+    write_outputs(request, timeline, story, document, Path(options.what), say)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

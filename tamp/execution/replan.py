@@ -25,7 +25,7 @@ from tamp.plan.sources import source_file
 from tamp.plan.write import plan_text
 from tamp.planner.problem import Problem, load_problem
 from tamp.planner.solve import solve
-from tamp.symbolic.pddl.complement import signed_atoms
+from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.initial_state import apart
 

@@ -131,7 +131,10 @@ def _start(plan: PlanFile, robot: Robot) -> Array:
     if it ever moves.
     """
     places = [
-        plan.values.get(fact[1]) for fact in plan.initial if fact[0] == "at-base" and len(fact) == 2
+        plan.values.get(fact[1])
+        for predicate in ("at-base", "standing")  # a robot that does not drive only stands
+        for fact in plan.initial
+        if fact[0] == predicate and len(fact) == 2
     ]
     known = [value.data for value in places if value is not None and value.type == "base-conf"]
     base = known[0] if known else np.zeros(3)

@@ -38,7 +38,8 @@ class Context:
         scene: The problem's geometry.
         robot: Its robot.
         mixtures: Relation to the generators that serve it.
-        steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car.
+        steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car,
+            "differential": turning on the spot and straight ahead.
         holding: What is in the hand at the start; the scene has that body where it was before.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
@@ -113,8 +114,8 @@ class Context:
         return parts, boxes[:, 0], boxes[:, 1]
 
     @cached_property
-    def home(self) -> Float[Array, " 7"]:
-        """Return the arm's configuration between actions, shape (7,)."""
+    def home(self) -> Float[Array, " joints"]:
+        """Return the arm's configuration between actions, shape (n,)."""
         arm = self.scene.robot.arm
         return np.array(self.robot.home if arm is None else arm)
 
@@ -122,6 +123,16 @@ class Context:
     def carrying_up(self) -> Float[Array, " 3"]:
         """Return the direction of up in the tool's frame while the arm is at home, shape (3,)."""
         return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
+
+    def stands(
+        self, T_world_tool: Float[Array, "4 4"], rng: np.random.Generator, count: int
+    ) -> Float[Array, "k 3"]:
+        """Sample base poses (k, 3) from which the arm likely reaches a tool pose (4, 4); a robot
+        that does not drive has the one where it is.
+        """
+        if self.robot.drive == "fixed":
+            return np.array([self.scene.robot.base])
+        return self.reachability.sample(T_world_tool, rng, count)
 
     def stable_faces(self, body: str) -> StableFaces:
         """Return the ways in which a body can rest."""
@@ -135,9 +146,9 @@ class Context:
         return self._radii[body]
 
     def conf(
-        self, base: tuple[float, float, float] | Float[Array, " 3"], arm: Float[Array, " 7"]
-    ) -> Float[Array, " 10"]:
-        """Return the configuration (10,) of a base and an arm."""
+        self, base: tuple[float, float, float] | Float[Array, " 3"], arm: Float[Array, " joints"]
+    ) -> Float[Array, " conf"]:
+        """Return the configuration (3 + n,) of a base and an arm."""
         return np.concatenate([np.asarray(base, dtype=float), arm])
 
     def attachment(self, grasp: Grasp) -> Attachment:

@@ -12,10 +12,10 @@ from tamp.errors import InputError
 from tamp.pddlstream.problem import PDDLProblem, bind
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
-from tamp.symbolic.algorithms.incremental import Incremental
+from tamp.symbolic.algorithms.incremental import plan_incrementally, start_incremental
 from tamp.symbolic.algorithms.registry import ALGORITHMS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Result, StreamTask
-from tamp.symbolic.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or
+from tamp.symbolic.algorithms.result import Outcome, Result, SearchStatistics, StreamTask
+from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
@@ -56,7 +56,7 @@ class Solution:
     explanation: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
-    effort: Effort = field(default_factory=Effort)
+    effort: SearchStatistics = field(default_factory=SearchStatistics)
     seconds: float = 0.0
 
     @property
@@ -93,6 +93,7 @@ def solve(
         raise InputError(f"unknown algorithm '{algorithm}'", found=algorithm, choices=ALGORITHMS)
     if not max_time > 0.0:
         raise InputError(f"the time must be positive, not {max_time:g}")
+
     parts = cast(tuple[Any, ...], problem)
     if not isinstance(cast(Any, problem), tuple | list) or len(parts) != len(PDDLProblem._fields):
         names_of_parts = ", ".join(PDDLProblem._fields)
@@ -108,6 +109,7 @@ def solve(
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return Solution(outcome, warnings=warnings, seconds=deadline.elapsed())
+
     values = result.objects.values
     solved = result.outcome is Outcome.SOLVED
     outcome, explanation = result.outcome, result.explanation
@@ -146,34 +148,24 @@ def _run(task: StreamTask, algorithm: str, seed: int, deadline: Deadline) -> Res
         return result
     # Two things no stream promises: facts besides its outputs, and an output that equals a value of
     # the goal.
-    second = Incremental(task, make_rng, deadline, _silent, pruned=False)
-    looked = second.solve(CLOSER_LOOK)
-    if looked.outcome is Outcome.EXHAUSTED and second.binder.units < CLOSER_LOOK:
+    second = start_incremental(task, make_rng, deadline, _silent, pruned=False)
+    looked = plan_incrementally(second, CLOSER_LOOK)
+    if looked.outcome is Outcome.EXHAUSTED and second.binder.draws < CLOSER_LOOK:
         # Not for want of draws: there are plans, but nothing proves that none of them holds.
         return looked
     open_end = bool(second.streams.wild) or not all(
         isinstance(value, str) for value in _goal_values(task)
     )
     if looked.outcome is Outcome.EXHAUSTED and open_end:
-        looked = second.solve()
+        looked = plan_incrementally(second)
     return looked if looked.outcome is Outcome.SOLVED or open_end else result
 
 
 def _goal_values(task: StreamTask) -> list[Any]:
     """Return the values that the goal names."""
-    stack: list[Formula] = [task.task.goal]
-    found: list[Any] = []
-    while stack:
-        formula = stack.pop()
-        match formula:
-            case Atom():
-                found += [task.values[term] for term in formula.terms if term in task.values]
-            case And(parts) | Or(parts):
-                stack += parts
-            case Not(body) | Exists(_, body) | Forall(_, body):
-                stack.append(body)
-    return found
+    terms = (term for atom in atoms(task.task.goal) for term in atom.terms)
+    return [task.values[term] for term in terms if term in task.values]
 
 
-def _silent(effort: Effort) -> None:
+def _silent(effort: SearchStatistics) -> None:
     pass

@@ -8,8 +8,10 @@ from typing import Any
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
-from tamp.geometric.robot.robot import ROBOTS, Robot
+from tamp.geometric.loading.robots import find_robot, load_robot
+from tamp.geometric.robot.robot import Robot
 from tamp.plan.read import PlanFile, read_plan
+from tamp.plan.robot_check import check_robot
 from tamp.plan.sources import check_files, plan_hashes, sha256, source_file, unquoted
 from tamp.plan.symbolic import is_symbolic
 from tamp.system.reading import is_file, read_json
@@ -48,7 +50,7 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
     plan = _read(path)
     source = source_file(plan, "problem", None if problem is None else Path(problem))
     with unquoted(path, plan_hashes(plan, problem=None if problem is None else source)):
-        loaded = load_scene(source)
+        loaded = load_scene(source, plan.robot if plan.robot_given else None)
     files = {"problem": source}
     domain = plan.source("domain")
     if domain is not None and is_file(domain.path):
@@ -87,10 +89,12 @@ def robot_of(plan: PlanFile) -> Robot:
     Raises:
         InputError: Nobody knows it.
     """
-    if plan.robot not in ROBOTS:
-        what = f"unknown robot '{plan.robot}'"
-        raise InputError(what, file=plan.file, found=plan.robot, choices=tuple(ROBOTS))
-    return ROBOTS[plan.robot]()
+    try:
+        robot = load_robot(find_robot(plan.robot))
+    except InputError as error:
+        raise error.at(plan.file) from None
+    check_robot(plan, robot)
+    return robot
 
 
 def _read(path: Path) -> PlanFile:

@@ -17,7 +17,7 @@ from tamp.system.json_fields import Field, clipped
 from tamp.system.reading import read_json
 
 FORMAT, VERSION = "tamp-plan", 1
-WIDTHS = {"base": 3, "arm": 7}
+WIDTHS = {"base": 3, "arm": None}
 ARMS_LENGTH = 2.0
 """Metres from the hand beyond which nothing is held."""
 PARTS = ("base", "arm", "gripper")
@@ -51,7 +51,7 @@ class Segment:
     Attributes:
         part: "base", "arm" or "gripper".
         times: Seconds from the segment's start, shape (n,).
-        positions: Rows x, y, yaw or joint angles, shape (n, 3 or 7); no columns for the gripper.
+        positions: Rows x, y, yaw or joint positions, shape (n, 3 or joints); of the gripper none.
         opening: The fingers' opening at each time, shape (n,), metres.
         holding: The body in the hand on the way.
         attach: The grasp that begins when the fingers have closed.
@@ -72,8 +72,8 @@ class Value:
     """The value that an object of a stream stands for.
 
     `data` is T_world_body (4, 4) of a pose, a Hold of a grasp, x, y, yaw (3,) of a base-conf, the
-    rows (n, 7) of a reach's approach and lift, for each segment of a motion its part and rows (None
-    when they are not given), and None of every type that we do not know.
+    rows (n, joints) of a reach's approach and lift, for each segment of a motion its part and rows
+    (None when they are not given), and None of every type that we do not know.
     """
 
     type: str
@@ -94,7 +94,7 @@ class TimedAction:
 
 @dataclass(frozen=True, eq=False)
 class PlanFile:
-    """A plan. It rests on the static facts `certified`; `algorithm` and `samplers` made it."""
+    """A plan. `robot_given`: its robot was given beside the problem, which names another one."""
 
     file: Path | None
     sources: tuple[Source, ...]
@@ -108,6 +108,7 @@ class PlanFile:
     cost: float
     duration: float
     algorithm: str = "adaptive"
+    robot_given: bool = False
     samplers: Mapping[str, str] = dataclasses.field(default_factory=dict[str, str])
 
     def source(self, role: str) -> Source | None:
@@ -155,19 +156,20 @@ def _options(options: Field | None) -> dict[str, Any]:
     if options is None:
         return {}
     algorithm, samplers = options.get("algorithm"), options.get("samplers")
-    chosen = {} if algorithm is None else {"algorithm": algorithm.text()}
-    named = (
-        {}
-        if samplers is None
-        else {relation: name.text() for relation, name in samplers.fields().items()}
-    )
-    return {**chosen, "samplers": named}
+    named = {} if samplers is None else samplers.fields()
+    return {
+        **({} if algorithm is None else {"algorithm": algorithm.text()}),
+        "samplers": {relation: name.text() for relation, name in named.items()},
+        "robot_given": "robot" in options,
+    }
 
 
 def _sources(inputs: Field) -> tuple[Source, ...]:
-    sources = [_source(role, field) for role, field in inputs.fields().items() if role != "meshes"]
-    meshes = inputs.get("meshes")
-    sources += [_source("mesh", field) for field in (meshes.items() if meshes else ())]
+    lists = {"meshes": "mesh", "robot": "robot"}
+    sources = [_source(role, field) for role, field in inputs.fields().items() if role not in lists]
+    for key, role in lists.items():
+        files = inputs.get(key)
+        sources += [_source(role, field) for field in (files.items() if files else ())]
     for role in ("problem", "domain"):
         inputs[role].mapping()
     return tuple(sources)
@@ -204,7 +206,7 @@ def _value(field: Field) -> Value:
     elif type_ == "base-conf":
         data = field["base"].numbers(3)
     elif type_ == "reach":
-        data = (field["approach"].rows(7), field["lift"].rows(7))
+        data = (field["approach"].rows(), field["lift"].rows())
     elif type_ == "motion" and "segments" in field:
         data = tuple(_stretch(item) for item in field["segments"].items())
     return Value(type_, data)

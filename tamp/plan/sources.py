@@ -10,6 +10,7 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.plan.read import PlanFile
 from tamp.plan.violation import Violation
+from tamp.system.files import find_domain, find_problem
 from tamp.system.reading import is_file
 
 MOST_HASHED = 1_000_000_000
@@ -17,15 +18,14 @@ MOST_HASHED = 1_000_000_000
 
 
 def source_file(plan: PlanFile, role: str, override: Path | None) -> Path:
-    """Find the problem's or domain's file: the user's, else where the plan says, else beside it.
+    """Find the problem's or domain's file: the user's, who may give a shipped one's name, else
+    where the plan says, else beside it.
 
     Raises:
         InputError: There is none.
     """
     if override is not None:
-        if not is_file(override):
-            raise InputError(f"no such file: {override}")
-        return override
+        return find_problem(override) if role == "problem" else find_domain(override)
     source = plan.source(role)
     if source is None:
         raise InputError(f"the plan does not say from which {role} it was made", file=plan.file)

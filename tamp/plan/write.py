@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import platform
 import re
@@ -13,6 +12,7 @@ from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Reach
 from tamp.geometric.values import Path as Polyline
+from tamp.plan.inputs import inputs_document
 from tamp.planner.recorder import Sample
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
@@ -36,14 +36,13 @@ def plan_document(solution: Solution) -> dict[str, Any]:
     return {
         "format": "tamp-plan",
         "version": 1,
-        "inputs": {
-            "problem": _file(problem.files["problem"][0]),
-            "domain": _file(problem.files["domain"][0]),
-            "streams": _file(problem.files["streams"][0]),
-            "meshes": [_file(path) for path in problem.files["meshes"]],
-        },
+        "inputs": inputs_document(problem.files),
         "seed": solution.seed,
-        "options": {"algorithm": solution.algorithm, "samplers": samplers},
+        "options": {
+            "algorithm": solution.algorithm,
+            "samplers": samplers,
+            **({"robot": problem.scene.robot.model} if problem.robot_given else {}),
+        },
         "versions": {
             "tamp": distribution_version(),
             "python": platform.python_version(),
@@ -284,13 +283,6 @@ def _numbers(row: Array) -> list[float]:
 
 def _rows(rows: Array) -> list[list[float]]:
     return [_numbers(row) for row in rows]
-
-
-def _file(path: Path) -> dict[str, str]:
-    try:
-        return {"path": str(path), "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
-    except OSError as error:
-        raise InputError(f"it cannot be read any more: {error.strerror}", file=path) from error
 
 
 def _compact(text: str) -> str:

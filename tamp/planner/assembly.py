@@ -12,7 +12,7 @@ from tamp.planner.contradictions import contradictions
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Action, Solution
-from tamp.planner.timed_trajectories import Timed, trajectories
+from tamp.planner.timed_trajectories import TimingCache, trajectories
 from tamp.symbolic.algorithms.result import Outcome, Result
 
 
@@ -26,20 +26,22 @@ def random_streams(seed: int) -> Callable[[str], np.random.Generator]:
     return make_rng
 
 
-def timed(problem: Problem, result: Result, known: Timed | None = None) -> tuple[Action, ...]:
+def with_trajectories(
+    problem: Problem, result: Result, cache: TimingCache | None = None
+) -> tuple[Action, ...]:
     """Return the plan's actions with their trajectories; none where there is no plan.
 
     Args:
         problem: The problem.
         result: Of an algorithm.
-        known: Paths that were timed for earlier plans; added to.
+        cache: Paths that were timed for earlier plans; added to.
     """
     if result.outcome is not Outcome.SOLVED:
         return ()
     names = problem.stream_task.values
     actions: list[Action] = []
     start = 0.0
-    moved = trajectories(problem.context, result.actions, result.objects.values, known)
+    moved = trajectories(problem.context, result.actions, result.objects.values, cache)
     for action, trajectory in zip(result.actions, moved, strict=True):
         objects = tuple(
             str(names[name]) for name in action.arguments if isinstance(names.get(name), str)
@@ -51,7 +53,7 @@ def timed(problem: Problem, result: Result, known: Timed | None = None) -> tuple
     return tuple(actions)
 
 
-def assemble(
+def build_solution(
     problem: Problem,
     result: Result,
     plan: tuple[Action, ...],
@@ -100,7 +102,7 @@ def assemble(
     )
 
 
-def ended_early(
+def interrupted_solution(
     problem: Problem,
     outcome: Outcome,
     seed: int,

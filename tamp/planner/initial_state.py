@@ -17,7 +17,7 @@ STACKED = "stacked"
 
 
 @dataclass
-class Initial:
+class InitialState:
     """Objects by name with types, initial facts, values behind names. PDDL names are lower case."""
 
     objects: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
@@ -25,7 +25,7 @@ class Initial:
     values: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
-def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) -> Initial:
+def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) -> InitialState:
     """Say the scene in the words of the domain.
 
     Facts of predicates that the domain does not declare are left out. Where it declares a predicate
@@ -37,7 +37,7 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         domain: The domain.
         holding: What is in the hand; that body is nowhere else.
     """
-    state = Initial()
+    state = InitialState()
     for name, body in scene.bodies.items():
         _object(state, domain, name, "movable" if body.movable else "fixed")
     for name in scene.surfaces:
@@ -101,7 +101,7 @@ def _support_facts(scene: Scene, body: Body, poses: Mapping[str, str], carries: 
     return facts
 
 
-def _object(state: Initial, domain: Domain, name: str, kind: str) -> None:
+def _object(state: InitialState, domain: Domain, name: str, kind: str) -> None:
     word = name.lower()
     state.values[word] = name
     types = (kind,) if kind in domain.types else ()
@@ -111,7 +111,7 @@ def _object(state: Initial, domain: Domain, name: str, kind: str) -> None:
             state.facts.add((predicate, word))
 
 
-def _value(state: Initial, domain: Domain, name: str, type_: str, value: Any) -> str:
+def _value(state: InitialState, domain: Domain, name: str, type_: str, value: Any) -> str:
     """Name a start value; a body that has its name already keeps it."""
     while name in state.objects or name in domain.constants:
         name += "_"

@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
+from tamp.errors import InputError
+from tamp.geometric.loading.load import LoadedProblem
 from tamp.geometric.loading.tops import top_of
 from tamp.geometric.scene.scene import Body, Hull, Scene
 from tamp.symbolic.pddl.structs import (
@@ -131,6 +133,28 @@ def _atoms(formula: Formula) -> Iterator[Atom]:
         case And(parts) | Or(parts):
             for part in parts:
                 yield from _atoms(part)
+
+
+def remedied(error: InputError, domain: Domain) -> InputError:
+    """Name the domain that knows places of movable bodies where one is wanted without it."""
+    if carries(domain) or error.remedy or "is a movable, not a" not in error.message:
+        return error
+    return InputError(
+        error.message, file=error.file, line=error.line, column=error.column,
+        choices=error.choices, remedy="In 'domain: carriers' movable bodies carry others",
+    )  # fmt: skip
+
+
+def check_circle(loaded: LoadedProblem, goal: Formula) -> None:
+    """Check that a goal does not want bodies on each other in a circle.
+
+    Raises:
+        InputError: It does, with the bodies.
+    """
+    chain = circle(goal, loaded.scene)
+    if chain:
+        what = f"the goal wants bodies on each other in a circle: {' on '.join(chain)}"
+        raise InputError(what, file=loaded.path, line=loaded.goal.line)
 
 
 def circle(goal: Formula, scene: Scene) -> tuple[str, ...]:

@@ -9,14 +9,19 @@ from dataclasses import replace
 from random import Random
 
 from tamp.errors import InputError
-from tamp.planner.assembly import assemble, ended_early, random_streams, timed
+from tamp.planner.assembly import (
+    build_solution,
+    interrupted_solution,
+    random_streams,
+    with_trajectories,
+)
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Improvement, Solution
-from tamp.planner.timed_trajectories import Timed
+from tamp.planner.timed_trajectories import TimingCache
 from tamp.symbolic.algorithms.anytime import solve_anytime
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result
+from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
@@ -61,18 +66,18 @@ def optimize(
     deadline = Deadline(max_time)
     recorder = Recorder() if record else None
     task = problem.stream_task if recorder is None else recorder.watched(problem.stream_task)
-    known: Timed = {}
+    cache: TimingCache = {}
     best: list[Solution] = []
 
     def better(result: Result) -> bool:
         began = deadline.elapsed()
-        if len(known) > MANY:
-            known.clear()
-        plan = timed(problem, result, known)
+        if len(cache) > MANY:
+            cache.clear()
+        plan = with_trajectories(problem, result, cache)
 
         now = deadline.elapsed()
         seconds = {"total": now, "timing": now - began}
-        found = assemble(problem, _frozen(result), plan, seed, "adaptive", seconds, recorder)
+        found = build_solution(problem, _frozen(result), plan, seed, "adaptive", seconds, recorder)
         if best and not improves(found, best[0]):
             return False
 
@@ -100,14 +105,16 @@ def optimize(
         result = Alarm(deadline, strangers=STRANGERS).run(plan)
         if not best:
             seconds = {"total": deadline.elapsed(), "timing": 0.0}
-            return assemble(problem, result, (), seed, "adaptive", seconds, recorder)
+            return build_solution(problem, result, (), seed, "adaptive", seconds, recorder)
     except OutOfTime:
         pass
     except KeyboardInterrupt:
         outcome = Outcome.INTERRUPTED
 
     if not best:
-        return ended_early(problem, outcome, seed, "adaptive", deadline.elapsed(), recorder)
+        return interrupted_solution(
+            problem, outcome, seed, "adaptive", deadline.elapsed(), recorder
+        )
     return replace(best[0], seconds={**best[0].seconds, "total": deadline.elapsed()})
 
 
@@ -127,5 +134,5 @@ def _frozen(result: Result) -> Result:
     )
 
 
-def _silent(effort: Effort) -> None:
+def _silent(effort: SearchStatistics) -> None:
     pass

@@ -5,22 +5,23 @@ from __future__ import annotations
 import importlib
 import time
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 from tamp.planner.optimize import improves, optimize
 from tamp.planner.problem import Problem
 from tamp.planner.solution import Solution
 from tamp.planner.solve import solve
-from tamp.symbolic.algorithms.result import Effort, Outcome, Progress
+from tamp.symbolic.algorithms.result import Outcome, Progress, SearchStatistics
 from tamp.symbolic.search.heuristics.loops.selection import prepare as prepare_loops
 from tamp.system.deadline import Deadline
 from tamp.system.race import Tell, member_seed, race
 
-EVERY = 0.1
+SECONDS_BETWEEN_REPORTS = 0.1
 """Seconds between two reports of a run's progress."""
 
-FINAL = (Outcome.SOLVED, Outcome.INFEASIBLE)
+FINAL_OUTCOMES = (Outcome.SOLVED, Outcome.INFEASIBLE)
 """Outcomes that settle the matter, whichever run says so."""
 
 
@@ -58,91 +59,129 @@ def solve_parallel(
     Raises:
         InputError: As for `solve`.
     """
-    if jobs == 1 and improved is not None:
-        return optimize(
-            problem,
-            max_time=max_time,
-            seed=seed,
-            progress=progress,
-            improved=improved,
-            record=record,
-        )
+    deadline = Deadline(max_time)
+    settings = _Settings(problem, seed, algorithm, accept, record, improved is not None)
     if jobs == 1:
-        return solve(
-            problem,
-            max_time=max_time,
-            seed=seed,
-            algorithm=algorithm,
-            progress=progress,
-            record=record,
-        )
+        return _planned(settings, seed, algorithm, max_time, progress, improved)
 
     # No fork while a thread is importing it.
     importlib.import_module("tamp.geometric.motion.parametrization")
     prepare_loops()
-    deadline = Deadline(max_time)
-    best: list[Solution] = []
-
-    def member(number: int) -> Callable[[Tell], dict[str, Any]]:
-        def run(tell: Tell) -> dict[str, Any]:
-            left, own = deadline.left(), member_seed(seed, number)
-            told = _seldom(tell) if number == 0 else None
-            if improved is not None:
-                shared = optimize(
-                    problem,
-                    max_time=left,
-                    seed=own,
-                    progress=told,
-                    improved=lambda plan: tell(_parts(plan)),
-                    record=record,
-                )
-                return {"good": True, "parts": _parts(shared)}
-
-            name = "incremental" if number == 2 else algorithm
-            solution = solve(
-                problem, max_time=left, seed=own, algorithm=name, progress=told, record=record
-            )
-            good = accept is None or not solution.solved or accept(solution)
-            return {"good": good, "parts": _parts(solution)}
-
-        return run
-
-    def ends(number: int, answer: dict[str, Any]) -> bool:
-        outcome = answer["parts"]["outcome"]
-        if number == 0 and outcome not in (Outcome.SOLVED, Outcome.TIMEOUT):
-            return True
-        return outcome in FINAL and answer["good"] and improved is None
-
-    def news(number: int, told: Effort | dict[str, Any]) -> None:
-        if isinstance(told, Effort):
-            if progress is not None:
-                progress(told)
-            return
-        solution = Solution(problem=problem, **told)
-        if improved is not None and (not best or improves(solution, best[0])):
-            best[:] = [solution]
-            improved(solution)
-
+    best = _Best(settings, progress, improved)
+    members = [partial(_member, settings, deadline, number) for number in range(jobs)]
     outcome = Outcome.TIMEOUT
     try:
-        found = race([member(number) for number in range(jobs)], ends, deadline, news)
+        found = race(members, partial(_ends, settings), deadline, best.hear)
     except KeyboardInterrupt:
         found, outcome = None, Outcome.INTERRUPTED
 
-    if best:
-        return best[0]
+    if best.plan is not None:
+        return best.plan
     if found is None:
         return Solution(problem, outcome, seed, algorithm, seconds={"total": deadline.elapsed()})
     return Solution(problem=problem, **found.answer["parts"])
 
 
+@dataclass(frozen=True, eq=False)
+class _Settings:
+    """Settings that all runs of a race share.
+
+    Attributes:
+        problem: To plan.
+        seed: Of the first run.
+        algorithm: Of all runs but the third.
+        accept: Looks at a plan, in the process that made it.
+        record: As for `solve`.
+        optimizing: Whether runs go on after their first plan.
+    """
+
+    problem: Problem
+    seed: int
+    algorithm: str
+    accept: Callable[[Solution], bool] | None
+    record: bool
+    optimizing: bool
+
+
+def _planned(
+    settings: _Settings,
+    seed: int,
+    algorithm: str,
+    max_time: float,
+    progress: Progress | None,
+    improved: Callable[[Solution], None] | None,
+) -> Solution:
+    """Plan once, in this process."""
+    problem, record = settings.problem, settings.record
+    if improved is not None:
+        return optimize(
+            problem, max_time=max_time, seed=seed, progress=progress, improved=improved,
+            record=record,
+        )  # fmt: skip
+    return solve(
+        problem, max_time=max_time, seed=seed, algorithm=algorithm, progress=progress, record=record
+    )
+
+
+def _member(settings: _Settings, deadline: Deadline, number: int, tell: Tell) -> dict[str, Any]:
+    """Make one run of the race; answer with its plan's parts and whether it may end the race."""
+    solution = _planned(
+        settings,
+        member_seed(settings.seed, number),
+        "incremental" if number == 2 else settings.algorithm,
+        deadline.left(),
+        _seldom(tell) if number == 0 else None,
+        (lambda plan: tell(_parts(plan))) if settings.optimizing else None,
+    )
+    checked = settings.accept is not None and not settings.optimizing and solution.solved
+    good = not checked or settings.accept is None or settings.accept(solution)
+    return {"good": good, "parts": _parts(solution)}
+
+
+def _ends(settings: _Settings, number: int, answer: dict[str, Any]) -> bool:
+    """Check whether an answer ends the race."""
+    outcome = answer["parts"]["outcome"]
+    if number == 0 and outcome not in (Outcome.SOLVED, Outcome.TIMEOUT):
+        return True
+    return outcome in FINAL_OUTCOMES and answer["good"] and not settings.optimizing
+
+
+class _Best:
+    """Hears what runs tell: the first one's progress, and plans, of which it keeps the best.
+
+    Attributes:
+        plan: The best so far.
+    """
+
+    def __init__(
+        self,
+        settings: _Settings,
+        progress: Progress | None,
+        improved: Callable[[Solution], None] | None,
+    ) -> None:
+        self._problem, self._progress, self._improved = settings.problem, progress, improved
+        self.plan: Solution | None = None
+
+    def hear(self, number: int, told: SearchStatistics | dict[str, Any]) -> None:
+        """Hear what a run tells."""
+        if isinstance(told, SearchStatistics):
+            if self._progress is not None:
+                self._progress(told)
+            return
+
+        solution = Solution(problem=self._problem, **told)
+        if self._improved is not None and (self.plan is None or improves(solution, self.plan)):
+            self.plan = solution
+            self._improved(solution)
+
+
 def _seldom(tell: Tell) -> Progress:
     last = 0.0
 
-    def progress(effort: Effort) -> None:
+    def progress(effort: SearchStatistics) -> None:
         nonlocal last
         now = time.monotonic()
-        if now - last >= EVERY:
+        if now - last >= SECONDS_BETWEEN_REPORTS:
             last = now
             tell(effort)
 

@@ -11,13 +11,14 @@ from tamp.errors import InputError
 from tamp.geometric.context import Context
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.loading.overlaps import check_overlaps
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, mix
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
-from tamp.planner.initial_state import Initial, initial_state
-from tamp.planner.movable_places import carries, circle, place_facts, with_tops
+from tamp.planner.initial_state import InitialState, initial_state
+from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
 from tamp.planner.own_relations import decided
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
@@ -33,8 +34,9 @@ from tamp.system.files import find_domain
 METRIC = "minimize total-cost"
 """The metric that a problem may name."""
 
-STEERINGS = ("se2", "reeds-shepp")
-"""How the base may move: in any direction, or like a car."""
+STEERINGS = ("se2", "reeds-shepp", "differential")
+"""How the base may move: in any direction, like a car, or turning on the spot and straight ahead.
+"""
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ class Problem:
         classifiers: By relation of the user's own, what says whether it holds.
         relations: The same relations: their facts and of what they are asked.
         complements: Predicates of the task that the user's files do not have.
+        robot_given: Whether the robot is another one than the problem's file names.
     """
 
     name: str
@@ -66,6 +69,7 @@ class Problem:
     classifiers: Mapping[str, Classifier] = field(default_factory=dict[str, Classifier])
     relations: Mapping[str, Relation] = field(default_factory=dict[str, Relation])
     complements: frozenset[str] = frozenset()
+    robot_given: bool = False
 
 
 def load_problem(
@@ -77,7 +81,8 @@ def load_problem(
     groundings: Mapping[str, Grounding] | None = None,
     registry: Registry | None = None,
     functions: Mapping[str, Callable[..., Any]] | None = None,
-    steering: str = "se2",
+    steering: str | None = None,
+    robot: str | Path | None = None,
     scene: Scene | None = None,
     holding: Grasp | None = None,
 ) -> Problem:
@@ -99,18 +104,20 @@ def load_problem(
             (`samplers.choice`).
         functions: Further stream functions by name, f(context, *inputs, call=...), and those that
             compute costs, f(context, *inputs).
-        steering: How the base moves: "se2" or "reeds-shepp".
+        steering: How the base moves: "se2", "reeds-shepp" or "differential"; by default as the
+            robot drives.
+        robot: A shipped robot's name or a robot's folder, instead of the one that the file names.
         scene: Where things are by now, instead of where the file has them; and what is in the hand
             by now, `holding`.
 
     Raises:
         InputError: Anything wrong with the files or the names, with its place.
     """
-    if steering not in STEERINGS:
+    if steering is not None and steering not in STEERINGS:
         raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
     load_compiled_loops()  # numba is loaded anyway
 
-    files = _read(problem, domain, streams, scene)
+    files = _read(problem, domain, streams, scene, None if robot is None else str(robot))
     start, goal = _task(files, holding)
 
     served = Served.of(files.loaded, samplers or {}, groundings or {}, registry or {})
@@ -135,7 +142,7 @@ def load_problem(
         context=context,
         stream_task=StreamTask(task, (*bound, *known.streams), start.values, costs),
         goal=" ".join(files.loaded.goal.text.split()),
-        files=files.by_role(),
+        files={**files.by_role(), "robot": _own_robot(context.robot)},
         samplers={relation: choice.text for relation, choice in served.choices.items()},
         warnings=(
             *files.loaded.warnings,
@@ -146,6 +153,7 @@ def load_problem(
         classifiers=known.classifiers,
         relations=known.relations,
         complements=known.complements,
+        robot_given=robot is not None,
     )
 
 
@@ -171,10 +179,14 @@ class _Files:
 
 
 def _read(
-    problem: str | Path, domain: str | Path | None, streams: str | Path | None, scene: Scene | None
+    problem: str | Path,
+    domain: str | Path | None,
+    streams: str | Path | None,
+    scene: Scene | None,
+    robot: str | None,
 ) -> _Files:
     """Read the problem, its domain and the domain's streams; take the scene as it is by now."""
-    loaded = load_scene(problem)
+    loaded = load_scene(problem, robot)
     if scene is not None:
         loaded = replace(loaded, scene=scene)
 
@@ -190,7 +202,7 @@ def _read(
     return _Files(loaded, parsed, domain_path, declared, streams_path)
 
 
-def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
+def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
     """Say the scene in the domain's words, with the facts that the file adds; parse the goal."""
     loaded, domain = files.loaded, files.domain
     start = initial_state(loaded.scene, domain, holding)
@@ -201,7 +213,7 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
             line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
         )  # fmt: skip
     except InputError as error:
-        raise _remedied(error, domain) from None
+        raise remedied(error, domain) from None
     for passage in loaded.init:
         start.facts |= parse_facts(
             passage.text, domain, start.objects, loaded.path,
@@ -210,20 +222,30 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[Initial, Formula]:
 
     if carries(domain):
         start.facts |= place_facts(loaded.scene, domain, goal)
-        _check_circle(loaded, goal)
+        check_circle(loaded, goal)
 
     _check_metric(loaded)
     return start, goal
 
 
-def _context(files: _Files, served: Served, steering: str, holding: Grasp | None) -> Context:
+def _context(files: _Files, served: Served, steering: str | None, holding: Grasp | None) -> Context:
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
     mixtures = {
         relation: mix(relation, served.choices[relation], made)
         for relation, made in served.generators.items()
     }
-    return Context(scene, ROBOTS[scene.robot.model](), mixtures, steering, holding)
+    robot = load_robot(scene.robot.model)
+    usual = "differential" if robot.drive == "differential" else "se2"
+    context = Context(scene, robot, mixtures, steering or usual, holding)
+    if robot.drive != "fixed":
+        _ = context.reachability  # read now: what is damaged is told before planning
+    return context
+
+
+def _own_robot(robot: Robot) -> tuple[Path, ...]:
+    """List the files of a robot that does not come with tamp."""
+    return () if robot.name in ROBOTS and robot.folder.parent == ASSETS else robot.files
 
 
 def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
@@ -239,23 +261,6 @@ def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
         return find_domain(loaded.domain, loaded.path.parent)
     except InputError as error:
         raise error.at(loaded.path, loaded.line_of("domain")) from None
-
-
-def _remedied(error: InputError, domain: Domain) -> InputError:
-    """Name the domain that knows places of movable bodies where one is wanted without it."""
-    if carries(domain) or error.remedy or "is a movable, not a" not in error.message:
-        return error
-    return InputError(
-        error.message, file=error.file, line=error.line, column=error.column,
-        choices=error.choices, remedy="In 'domain: carriers' movable bodies carry others",
-    )  # fmt: skip
-
-
-def _check_circle(loaded: LoadedProblem, goal: Formula) -> None:
-    chain = circle(goal, loaded.scene)
-    if chain:
-        what = f"the goal wants bodies on each other in a circle: {' on '.join(chain)}"
-        raise InputError(what, file=loaded.path, line=loaded.goal.line)
 
 
 def _check_metric(loaded: LoadedProblem) -> None:

@@ -12,12 +12,12 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection, Wild
 from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.algorithms.result import Attempt, StreamTask
+from tamp.symbolic.algorithms.result import SkeletonAttempt, StreamTask
 
-LIMIT = 2000
+MAX_SAMPLES = 2000
 """Samples that are kept of a run, beside those of the plan,"""
 
-EACH = 200
+MAX_SAMPLES_PER_BODY = 200
 """and of one stream for one body, refused by it or not, so that one that is hard to place leaves
 room for others.
 """
@@ -52,30 +52,30 @@ class Record:
 
     samples: tuple[Sample, ...]
     dropped: int
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[SkeletonAttempt, ...]
 
 
 class Recorder:
     """Listens to a run's streams; of what they say nothing is changed."""
 
-    def __init__(self, limit: int = LIMIT, each: int = EACH) -> None:
+    def __init__(self, limit: int = MAX_SAMPLES, each: int = MAX_SAMPLES_PER_BODY) -> None:
         self.samples: list[Sample] = []
         self.dropped = 0
         self._limit, self._each = limit, each
-        self._known: dict[Pose | Grasp, Sample] = {}
-        self._late: dict[Pose | Grasp, Sample] = {}
+        self._by_value: dict[Pose | Grasp, Sample] = {}
+        self._dropped_by_value: dict[Pose | Grasp, Sample] = {}
         self._counts: Counter[tuple[str, str, bool]] = Counter()
 
     def watched(self, task: StreamTask) -> StreamTask:
         """Return the same task with streams that are listened to."""
         return replace(task, streams=tuple(self._watched(stream) for stream in task.streams))
 
-    def record(self, attempts: tuple[Attempt, ...], used: Iterable[object] = ()) -> Record:
+    def record(self, attempts: tuple[SkeletonAttempt, ...], used: Iterable[object] = ()) -> Record:
         """Return what was heard, all of the values that the plan uses included."""
         late = [
-            self._late[value]
+            self._dropped_by_value[value]
             for value in used
-            if isinstance(value, Pose | Grasp) and value in self._late
+            if isinstance(value, Pose | Grasp) and value in self._dropped_by_value
         ]
         return Record((*self.samples, *late), self.dropped - len(late), attempts)
 
@@ -108,7 +108,9 @@ class Recorder:
             ):  # the first one is what the stream is about, others are those in its way
                 subject = next((part for part in inputs if isinstance(part, kind)), None)
                 sample = (
-                    None if subject is None else self._known.get(subject) or self._late.get(subject)
+                    None
+                    if subject is None
+                    else self._by_value.get(subject) or self._dropped_by_value.get(subject)
                 )
                 if sample is not None:
                     sample.refusals[stream, value.reason] += 1
@@ -122,8 +124,8 @@ class Recorder:
     def _sample(
         self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool
     ) -> Sample | None:
-        if value in self._known:
-            return self._known[value]
+        if value in self._by_value:
+            return self._by_value[value]
         names = tuple(part for part in inputs if isinstance(part, str))
         if not names:
             return None
@@ -132,9 +134,9 @@ class Recorder:
         if len(self.samples) >= self._limit or self._counts[kind] >= self._each:
             self.dropped += 1
             if not refused:  # the plan may come to use it
-                self._late[value] = sample
+                self._dropped_by_value[value] = sample
             return None
         self._counts[kind] += 1
-        self._known[value] = sample
+        self._by_value[value] = sample
         self.samples.append(sample)
         return sample

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 from tamp.errors import printable
 from tamp.planner.problem import Problem
+from tamp.planner.relation_words import relation_words
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
 from tamp.symbolic.algorithms.result import Outcome
@@ -24,7 +25,7 @@ STANDING = ("supported", "contained")
 
 PARTS = {
     "motion": ("plan-",),
-    "ik": ("inverse-kinematics",),
+    "ik": ("inverse-kinematics", "inverse-kinematics-here"),
     "grasps": ("sample-grasp",),
     "placements": ("sample-",),
     "tests": ("test-",),
@@ -115,12 +116,14 @@ def _tried(solution: Solution) -> list[str]:
 
 def _rows(solution: Solution) -> list[str]:
     """List the actions in columns: number, name, bodies, where, how long."""
-    places = _places(solution)
+    places, relations = _places(solution), relation_words(solution)
     rows: list[tuple[str, str, str]] = []
     for action in solution.plan:
         bases = [segment for segment in action.trajectory.segments if segment.part == "base"]
         where = _move(bases, first=not rows) if bases else _manipulated(action, places)
         what = [name for name in action.objects if name not in where.split()]
+        if not bases and not where.startswith("from "):
+            where = f"{_named(action, relations)} {where}".strip()
         rows.append((action.name, " ".join(what), where))
     widths = [max(len(row[column]) for row in rows) for column in range(3)]
     columns = [
@@ -150,12 +153,15 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     return places
 
 
+def _named(action: Action, said: dict[tuple[str, str], str]) -> str:
+    """Return what is said of a body and a pose among an action's arguments."""
+    names = action.arguments
+    return next((said[body, pose] for body in names for pose in names if (body, pose) in said), "")
+
+
 def _manipulated(action: Action, places: dict[tuple[str, str], str]) -> str:
     """Say where a body is taken from, or put."""
-    names = action.arguments
-    where = next(
-        (places[body, pose] for body in names for pose in names if (body, pose) in places), ""
-    )
+    where = _named(action, places)
     taken = any(segment.attach is not None for segment in action.trajectory.segments)
     return f"from {where.partition(' ')[2]}" if where and taken else where
 

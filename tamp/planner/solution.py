@@ -9,9 +9,9 @@ from tamp.geometric.samplers.mixture import Account
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Record
 from tamp.planner.timed_trajectories import Trajectory
-from tamp.symbolic.algorithms.experience.failure_counts import Tally
+from tamp.symbolic.algorithms.experience.failure_counts import FailureCount
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
-from tamp.symbolic.algorithms.result import Effort, Outcome
+from tamp.symbolic.algorithms.result import Outcome, SearchStatistics
 from tamp.symbolic.pddl.structs import Fact
 
 
@@ -79,9 +79,9 @@ class Solution:
     values: Mapping[str, object] = field(default_factory=dict[str, object])
     certified: tuple[Fact, ...] = ()
     statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
-    effort: Effort = field(default_factory=Effort)
+    effort: SearchStatistics = field(default_factory=SearchStatistics)
     explanation: tuple[str, ...] = ()
-    tallies: tuple[Tally, ...] = ()
+    tallies: tuple[FailureCount, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None

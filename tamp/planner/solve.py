@@ -8,14 +8,19 @@ from functools import partial
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.planner.assembly import assemble, ended_early, random_streams, timed
+from tamp.planner.assembly import (
+    build_solution,
+    interrupted_solution,
+    random_streams,
+    with_trajectories,
+)
 from tamp.planner.contradictions import contradictions
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Action, Solution
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
 from tamp.symbolic.algorithms.registry import ALGORITHMS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Progress, Result, StreamTask
+from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
@@ -59,17 +64,17 @@ def solve(
     def plan() -> tuple[Result, tuple[Action, ...], float]:
         result = _borne_out(problem, task, seed, algorithm, deadline, progress or _silent)
         planned = deadline.elapsed()
-        return result, timed(problem, result), planned
+        return result, with_trajectories(problem, result), planned
 
     try:
         result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
     except (OutOfTime, KeyboardInterrupt) as end:
         # Before the first round, or while a bound plan was being timed.
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
-        return ended_early(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
+        return interrupted_solution(problem, outcome, seed, algorithm, deadline.elapsed(), recorder)
 
     total = deadline.elapsed()
-    return assemble(
+    return build_solution(
         problem,
         result,
         actions,
@@ -112,5 +117,5 @@ def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:
     return make_rng(f"{again} {key}")
 
 
-def _silent(effort: Effort) -> None:
+def _silent(effort: SearchStatistics) -> None:
     pass

@@ -60,7 +60,7 @@ class Trajectory:
         return float(sum(segment.times[-1] for segment in self.segments))
 
 
-Timed = dict[tuple[object, ...], tuple[Path, Segment]]
+TimingCache = dict[tuple[object, ...], tuple[Path, Segment]]
 """Paths that were timed before: by the path, where its robot stands, what it holds, and where the
 bodies are.
 """
@@ -70,7 +70,7 @@ def trajectories(
     context: Context,
     actions: Sequence[PlanAction],
     values: dict[str, object],
-    known: Timed | None = None,
+    cache: TimingCache | None = None,
 ) -> list[Trajectory]:
     """Time the motions among the actions' arguments, in the plan's order.
 
@@ -81,28 +81,28 @@ def trajectories(
         context: Of the problem.
         actions: The plan.
         values: By name.
-        known: What other plans share with this one; added to.
+        cache: What other plans share with this one; added to.
     """
-    replay = _Replay(context, {} if known is None else known)
+    replay = PlanTimer(context, {} if cache is None else cache)
     return [
         Trajectory(
             tuple(
                 segment
                 for name in action.arguments
                 if isinstance(motion := values.get(name), Motion)
-                for segment in replay.timed(motion)
+                for segment in replay.segments(motion)
             )
         )
         for action in actions
     ]
 
 
-class _Replay:
+class PlanTimer:
     """Follows where the robot and the bodies are."""
 
-    def __init__(self, context: Context, known: Timed) -> None:
+    def __init__(self, context: Context, cache: TimingCache) -> None:
         scene = context.scene
-        self._known = known
+        self._cache = cache
         self._context = context
         self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
         self._held: Grasp | None = context.holding
@@ -112,7 +112,8 @@ class _Replay:
         self._base: Array = np.array(scene.robot.base)
         self._arm: Array = context.home
 
-    def timed(self, motion: Motion) -> list[Segment]:
+    def segments(self, motion: Motion) -> list[Segment]:
+        """Time the paths and gripper commands of a motion."""
         return [
             self._grip(item) if isinstance(item, Grip) else self._path(item)
             for item in motion.segments
@@ -143,9 +144,9 @@ class _Replay:
         held = self._held and (self._held.body, self._held.T_tool_body.position, self._load)
         bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
         key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
-        if key not in self._known:
-            self._known[key] = path, self._time(path)
-        segment = self._known[key][1]
+        if key not in self._cache:
+            self._cache[key] = path, self._time(path)
+        segment = self._cache[key][1]
         if path.part == "base":
             self._base = segment.positions[-1]
         else:
@@ -179,5 +180,8 @@ class _Replay:
             points = points.copy()
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
 
-        timed = time_path(points, velocity[joints], acceleration[joints], edge_free)
+        # A rounded corner would slide sideways.
+        sharp = path.part == "base" and context.steering == "differential"
+        limits = velocity[joints], acceleration[joints]
+        timed = time_path(points, *limits, None if sharp else edge_free)
         return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)

@@ -10,6 +10,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.simulation.fingers import Fingers, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import World
 from tamp.simulation.shapes import link_frame
@@ -19,13 +20,8 @@ from tamp.system.scratch import scratch_folder
 RATE = 240
 """Steps a second."""
 
-FORCE = 50.0
-"""With which each finger presses, newtons; the Panda's hand presses with 70 N for long and 140 N
-for a moment.
-"""
-
-TORQUES = (2e4, 2e4, 2e4, 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0)
-"""The most of base and arm, newtons and newton metres: the arm's are the Panda's."""
+BASE_FORCE = 2e4
+"""The most with which the base is driven, newtons and newton metres."""
 
 ROLLING = 0.001
 """Metres: rolling and spinning friction of bodies, without which a can that lies would never come
@@ -40,25 +36,24 @@ costs otherwise."""
 NEAR = 0.004
 """Metres from both fingers within which a body counts as between them."""
 
-FINGER_SPEED = 0.05
-"""Metres a second of each finger."""
-
 
 class Actuated(World):
     """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
     have mass and fall.
 
     Attributes:
-        conf: What base and arm aim at, [x, y, yaw, q1..q7], shape (10,), metres and radians.
+        conf: What base and arm aim at, [x, y, yaw, q1..qn], shape (3 + n,), metres and radians.
         opening: What the fingers aim at, metres between them.
-        squeezing: The fingers close with their whole force instead.
+        squeezing: The fingers close instead, and press with their whole force on what they meet.
         bound: The body that a fixed constraint binds to the hand, or None.
         widest: The fingers' largest opening, metres.
     """
 
-    def __init__(self, scene: Scene, robot: Robot, force: float = FORCE) -> None:
+    def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
         super().__init__(scene, None, dynamic=True)
-        self._force, self._steps = force, 0
+        force = robot.force if force is None else force
+        self._steps = 0
+        self._forces = [*(BASE_FORCE,) * 3, *robot.effort]
         self._T_hand_tool = robot.T_hand_tool.matrix
         bullet, client = self._bullet, self.client
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
@@ -67,7 +62,7 @@ class Actuated(World):
 
         with scratch_folder() as folder:
             urdf = Path(folder) / "mobile.urdf"
-            urdf.write_text(mobile_urdf(robot), encoding="utf-8")
+            urdf.write_text(with_pads(mobile_urdf(robot), robot), encoding="utf-8")
             flags = bullet.URDF_IGNORE_VISUAL_SHAPES
             with silence():  # it remarks on links without mass
                 self._mover = bullet.loadURDF(
@@ -85,21 +80,12 @@ class Actuated(World):
             self._owners[self._mover, number] = info[12].decode()
 
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
-        self._fingers = [joint[finger.name] for finger in robot.fingers]
-        self._hand = link[robot.links[-3].name]
+        self._finger_joints = [joint[finger.name] for finger in robot.fingers]
+        self._fingers = Fingers(bullet, client, self._mover, self._finger_joints, force)
+        self._hand = link[robot.hand]
         self.robot_links = frozenset(link)
-        self.hand_link = robot.links[-3].name
-        self.finger_links = tuple(one.name for one in robot.links[-2:])
-
-        # One motor drives both fingers; without the gear they would wander off to one side, the
-        # body between them.
-        gear = bullet.createConstraint(
-            self._mover, self._fingers[0], self._mover, self._fingers[1], bullet.JOINT_GEAR,
-            [1, 0, 0], [0, 0, 0], [0, 0, 0], physicsClientId=client,
-        )  # fmt: skip
-        bullet.changeConstraint(
-            gear, gearRatio=-1, erp=0.5, maxForce=10 * force, physicsClientId=client
-        )
+        self.hand_link = robot.hand
+        self.finger_links = tuple(one.name for one in robot.finger_links)
 
         self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
         self.opening = self.widest = robot.opening
@@ -109,27 +95,23 @@ class Actuated(World):
 
         for number, value in zip(self._driven, self.conf, strict=True):
             bullet.resetJointState(self._mover, number, float(value), physicsClientId=client)
-        for number in self._fingers:
+        for number in self._finger_joints:
             bullet.resetJointState(self._mover, number, self.opening / 2, physicsClientId=client)
 
     # Time
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (10,) are the
+    def tick(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
         trajectory's speeds there.
         """
         bullet, client = self._bullet, self.client
+        count = len(self._driven)
         bullet.setJointMotorControlArray(
             self._mover, self._driven, bullet.POSITION_CONTROL, targetPositions=self.conf.tolist(),
-            targetVelocities=list(rates), forces=TORQUES, positionGains=[0.3] * 10,
-            velocityGains=[1.0] * 10, physicsClientId=client,
+            targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
+            positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
-        for finger in self._fingers:
-            bullet.setJointMotorControl2(
-                self._mover, finger, bullet.POSITION_CONTROL, force=self._force,
-                targetPosition=0.0 if self.squeezing else self.opening / 2,
-                maxVelocity=FINGER_SPEED, physicsClientId=client,
-            )  # fmt: skip
+        self._fingers.drive(self.opening, self.squeezing, RATE)
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
 
@@ -146,16 +128,13 @@ class Actuated(World):
         return self._steps / RATE
 
     def actual(self) -> Array:
-        """Return the actual configuration (10,)."""
+        """Return the actual configuration (3 + n,)."""
         states = self._bullet.getJointStates(self._mover, self._driven, physicsClientId=self.client)
         return np.array([state[0] for state in states])
 
     def width(self) -> float:
         """Return how far the fingers are apart, metres."""
-        states = self._bullet.getJointStates(
-            self._mover, self._fingers, physicsClientId=self.client
-        )
-        return float(sum(state[0] for state in states))
+        return self._fingers.width()
 
     def tool(self) -> Array:
         """Return the actual T_world_tool (4, 4)."""
@@ -196,7 +175,7 @@ class Actuated(World):
             self._bullet.getClosestPoints(
                 self._mover, handle, reach, finger, -1, physicsClientId=self.client
             )
-            for finger in self._fingers
+            for finger in self._finger_joints
         )
 
     # What happens to bodies

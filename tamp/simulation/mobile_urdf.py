@@ -28,7 +28,7 @@ def mobile_urdf(robot: Robot) -> str:
     Raises:
         InputError: The robot's base is not one box.
     """
-    base = robot.links[0]
+    base = robot.link(robot.base)
     if len(base.parts) != 1 or not isinstance(base.parts[0].shape, Box):
         raise InputError(f"the base of the robot '{robot.name}' must be one box")
 
@@ -49,7 +49,7 @@ def mobile_urdf(robot: Robot) -> str:
     <axis xyz="0 1 0"/>{_LIMIT}</joint>
   <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link="{base.name}"/>
     <axis xyz="0 0 1"/>{_LIMIT}</joint>
-  <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.links[1].name}"/>
+  <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.foot}"/>
     <origin xyz="{foot}"/></joint>
 """
 

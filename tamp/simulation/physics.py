@@ -223,7 +223,7 @@ class World:
 
     def _add_robot(self, robot: Robot) -> None:
         bullet, client = self._bullet, self.client
-        base, foot = robot.links[0], robot.links[1]
+        base, foot = robot.link(robot.base), robot.link(robot.foot)
         self._base_solids = tuple(self._solid(base.name, part) for part in base.parts)
         if len(self._base_solids) != 1:
             raise InputError(f"the base of the robot '{robot.name}' must be one convex part")
@@ -239,20 +239,22 @@ class World:
         self._T_base_com = self._T_base_foot @ self._T_foot_com
 
         index = {foot.name: -1}
+        moving = {joint.name for joint in (*robot.joints, *robot.fingers)}
         joints: dict[str, int] = {}
         for number in range(bullet.getNumJoints(self._arm, physicsClientId=client)):
             info = bullet.getJointInfo(self._arm, number, physicsClientId=client)
             index[info[12].decode()] = number
-            if info[2] != bullet.JOINT_FIXED:
+            if info[1].decode() in moving:
                 joints[info[1].decode()] = number
-        self._joints = list(joints.values())
-        self._names = [link.name for link in robot.links[2:]]
+        self._joints = [joints[one.name] for one in (*robot.joints, *robot.fingers)]
+        others = [link.name for link in robot.links if link not in (base, foot)]
+        self._names = others
         self._indices = [index[name] for name in self._names]
 
         self.links[base.name] = self._base_solids[0]
-        for link in robot.links[1:]:
-            self.links[link.name] = self._link_solid(link.name, index[link.name])
-            self._owners[self._arm, index[link.name]] = link.name
+        for name in (foot.name, *others):
+            self.links[name] = self._link_solid(name, index[name])
+            self._owners[self._arm, index[name]] = name
 
         self._base_at = (math.nan, math.nan, math.nan)
         start = self.scene.robot

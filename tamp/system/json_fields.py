@@ -110,11 +110,15 @@ class Field:
             raise self.wrong(f"{size} numbers are expected, not {len(array)}")
         return array
 
-    def rows(self, width: int) -> Array:
-        """Read the field as rows of finite numbers, shape (n >= 1, width)."""
+    def rows(self, width: int | None = None) -> Array:
+        """Read the field as rows of finite numbers, shape (n >= 1, width); without a width as many
+        as the first row has.
+        """
         items = self.items()
         if not items:
             raise self.wrong("at least one row is expected")
+        if width is None:
+            width = len(items[0].numbers())
         return np.stack([item.numbers(width) for item in items])
 
 

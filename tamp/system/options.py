@@ -7,6 +7,7 @@ import functools
 import inspect
 import io
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -214,6 +215,9 @@ def sentence(box: str) -> str:
         paragraph.append(line)
     text = " ".join(paragraph).removesuffix(" (required)").rstrip(".") or title
     text = text.removeprefix("Error parsing ")
+    missing = re.fullmatch(r"Missing from [^:]+: ([A-Z|]+) (.+)", text)
+    if missing is not None:
+        text = f"expected {missing[1]}: {missing[2][0].lower()}{missing[2][1:]}"
     text = text.replace("invalid literal for int() with base 10:", "no whole number:")
     return text.replace("could not convert string to float:", "no number:")
 

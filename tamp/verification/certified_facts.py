@@ -129,7 +129,8 @@ class Certified:
 
     def _why_loose(self, body: str) -> str | None:
         """Say why the hand as it stands does not touch a body as it should; None when it does."""
-        hand, *fingers = (self._world.links[link.name] for link in self._robot.links[-3:])
+        hand = self._world.links[self._robot.hand]
+        fingers = (self._world.links[link.name] for link in self._robot.finger_links)
         for name, link, loosest in (
             ("palm", hand, math.inf),
             *(("finger", finger, LOOSE) for finger in fingers),
@@ -216,7 +217,7 @@ class Certified:
         return None
 
     def _beyond(self, *paths: Array) -> bool:
-        """Check whether joint angles (n, 7) are out of the limits."""
+        """Check whether joint positions (n, joints) are out of the limits."""
         limits = limits_of(self._robot)
         lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)

@@ -55,7 +55,7 @@ class Natural:
 
 @dataclass(frozen=True, eq=False)
 class _Block:
-    """Samples: rows (n, 11), times (n,), frames of links (n, links, 4, 4) and boxes around them."""
+    """Samples: rows (n, 4 + joints), times (n,), frames of links (n, links, 4, 4), their boxes."""
 
     rows: Array
     times: Array
@@ -102,7 +102,7 @@ class Findings:
 
 
 class Sweeper:
-    """Looks for collisions of a world's robot. A state is [x, y, yaw, q1..q7, opening], m and rad.
+    """Looks for collisions of a world's robot. A state is [x, y, yaw, q1..qn, opening], m and rad.
 
     Attributes:
         together: How deep bodies, sorted by name, lie in each other at the start, metres; they may
@@ -114,7 +114,7 @@ class Sweeper:
         self._sampler = Sampler(world, robot)
         self._names = list(world.links)
         self._solids = list(world.links.values())
-        self.hand = frozenset(self._names[-3:])
+        self.hand = robot.grippers
         self.together: dict[tuple[str, str], float] = {}
         count = len(self._names)
         pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
@@ -138,7 +138,7 @@ class Sweeper:
         """Look for collisions on the polyline through some states.
 
         Args:
-            rows: Shape (n, 11).
+            rows: Shape (n, 4 + joints).
             times: Seconds, shape (n,).
             held: What is in the hand; it follows it.
             findings: Receives what is met.
@@ -289,7 +289,7 @@ class Sweeper:
         return self._boxes(self._held_solids(held), np.stack(at, axis=1))
 
     def _pose(self, row: Array, frames: Array, held: Held | None) -> None:
-        self._world.set_robot(row[:3], row[3:10], row[10])
+        self._world.set_robot(row[:3], row[3:-1], row[-1])
         for one in held.all if held else ():
             self._world.place(one.body, self._sampler.held_frames(frames[None], one)[0])
 

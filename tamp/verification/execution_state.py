@@ -23,7 +23,7 @@ class Held:
 
 @dataclass(eq=False)
 class Course:
-    """The robot's row [x, y, yaw, q1..q7, opening] in m and rad, what it holds, the time in s."""
+    """The robot's row [x, y, yaw, q1..qn, opening] in m and rad, what it holds, the time in s."""
 
     row: Array
     held: Held | None

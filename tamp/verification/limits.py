@@ -21,6 +21,8 @@ SPEED = 1.02
 """Share of a velocity limit that is still kept."""
 HARSH = 1.2
 """Share of an acceleration limit that is still kept: measured between samples it is coarse."""
+SIDEWAYS = 0.02
+"""Share of a differential drive's way that may be sideways: samples are chords."""
 ROUNDING = 2e-6
 """Metres or radians by which a written position may be rounded."""
 
@@ -51,6 +53,8 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     yield from _worst("limit", beyond - SLACK, beyond, times, names, rows, "out of range")
     if len(rows) < 2:
         return
+    if part == "base":
+        yield from _driven(robot, times, rows)
 
     speed = np.abs(np.diff(rows, axis=0)) / steps[:, None]
     allowed = SPEED * velocity + ROUNDING / steps[:, None]
@@ -69,6 +73,26 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     yield from _worst(
         "acceleration", harsh - allowed, harsh - acceleration, times, names, harsh, "too harsh"
     )
+
+
+def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[Excess]:
+    """Yield the worst motion of the base that its drive cannot make."""
+    step = np.diff(rows, axis=0)
+    if robot.drive == "fixed":
+        moved = np.abs(rows - rows[0]).max(axis=1)
+        if moved.max() > SLACK:
+            by = float(moved.max())
+            at = float(times[int(moved.argmax())])
+            yield Excess("limit", at, f"the base moves by {by:.2g}, and it is fixed", by)
+    elif robot.drive == "differential":
+        heading = (rows[:-1, 2] + rows[1:, 2]) / 2
+        sideways = np.abs(step[:, 1] * np.cos(heading) - step[:, 0] * np.sin(heading))
+        excess = sideways - SLACK - SIDEWAYS * np.linalg.norm(step[:, :2], axis=1)
+        if excess.max() > 0:
+            at = int(excess.argmax())
+            by = float(sideways[at])
+            message = f"the base slides sideways by {1000 * by:.2g} mm, and its wheels do not"
+            yield Excess("limit", float(times[at]), message, by)
 
 
 def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:

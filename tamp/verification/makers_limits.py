@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from tamp.geometric.loading.robots import ASSETS
 from tamp.geometric.robot.robot import Robot
 
 
@@ -13,7 +14,7 @@ class MakersLimits:
     """Positions, speeds and accelerations of a robot's parts, in metres, radians and seconds.
 
     Attributes:
-        lower, upper: The arm's joints, seven each.
+        lower, upper: The arm's joints.
         velocity, acceleration: Of base x, y and yaw, then of the arm's joints.
         finger: Speed of each finger.
         opening: The largest distance between the fingers.
@@ -50,7 +51,8 @@ MAKERS_LIMITS: Mapping[str, MakersLimits] = {"panda_mobile": PANDA_MOBILE}
 
 def limits_of(robot: Robot) -> MakersLimits:
     """Return the maker's limits of a robot; of one that has no entry, what it says of itself."""
-    return MAKERS_LIMITS.get(robot.name) or MakersLimits(
+    known = MAKERS_LIMITS.get(robot.name) if robot.folder.parent == ASSETS else None
+    return known or MakersLimits(
         robot.lower, robot.upper, robot.velocity, robot.acceleration,
         min(finger.velocity for finger in robot.fingers), robot.opening, (),
     )  # fmt: skip

@@ -193,22 +193,22 @@ class Replay:
             self._attach(segment.attach)
 
     def _rows(self, segment: Segment) -> Array:
-        """Return the robot's states, shape (n, 11), checked to go on from where the last ended."""
+        """Return the robot's states, shape (n, 4 + joints), checked to go on from the last one."""
         course, held = self.course, self.course.in_hand
         rows = np.repeat(course.row[None], len(segment.times), axis=0)
-        rows[:, 10] = segment.opening
+        rows[:, -1] = segment.opening
 
         jump = 0.0
         if segment.part == "base":
             rows[:, :3] = segment.positions
             jump = base_apart(rows[0, :3], course.row[:3])
         elif segment.part == "arm":
-            rows[:, 3:10] = segment.positions
-            jump = float(np.abs(rows[0, 3:10] - course.row[3:10]).max())
+            rows[:, 3:-1] = segment.positions
+            jump = float(np.abs(rows[0, 3:-1] - course.row[3:-1]).max())
         if jump > JUMP:
             message = f"the {segment.part} jumps by {jump:.3g} (m, rad)"
             self.log.add("continuity", message, depth=jump)
-        jump = abs(float(rows[0, 10] - course.row[10]))
+        jump = abs(float(rows[0, -1] - course.row[-1]))
         if jump > JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
 
@@ -218,7 +218,7 @@ class Replay:
             message = f"the plan says that the hand holds {told}, not {held or 'nothing'}"
             self.log.add("continuity", message)
         keeps = segment.part == "gripper" and segment.detach is None
-        if keeps and held and np.ptp(rows[:, 10]) > JUMP:
+        if keeps and held and np.ptp(rows[:, -1]) > JUMP:
             self.log.add("grasp", f"the fingers move while they hold {held}", held)
         return rows
 
@@ -237,7 +237,7 @@ class Replay:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
             self.log.add("grasp", f"{body} is {off} from where the hand closes", body, depth=moved)
 
-        why = self._certified.why_not_held(body, T_tool_body, float(course.row[10]))
+        why = self._certified.why_not_held(body, T_tool_body, float(course.row[-1]))
         self._world.place(body, T_world_body)
         if why:
             self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
@@ -250,7 +250,7 @@ class Replay:
         if course.held is None or course.held.body.lower() != name:
             self.log.add("grasp", f"the hand does not hold {name}", name)
             return
-        if rows[-1, 10] < min(rows[0, 10] + CLOSE, self._robot.opening) - JUMP:
+        if rows[-1, -1] < min(rows[0, -1] + CLOSE, self._robot.opening) - JUMP:
             self.log.add("grasp", f"the fingers do not open to let go of {name}", name)
         course.held = None
         self._standing.check(None)
@@ -280,6 +280,7 @@ class Replay:
 
 
 def _follow(row: Array, segment: Segment) -> None:
-    columns: dict[str, Sequence[int]] = {"base": range(3), "arm": range(3, 10), "gripper": ()}
+    arm = range(3, len(row) - 1)
+    columns: dict[str, Sequence[int]] = {"base": range(3), "arm": arm, "gripper": ()}
     for column, value in zip(columns[segment.part], segment.positions[-1], strict=True):
         row[column] = value

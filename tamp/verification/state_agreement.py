@@ -115,7 +115,7 @@ class Agreement:
             self._log.add("state", f"{body} is not in the hand by {grasp}", body)
             return
         moved, turned = apart(held.T_tool_body, hold.T_tool_body)
-        wider = abs(float(course.row[10]) - hold.opening)
+        wider = abs(float(course.row[-1]) - hold.opening)
         if moved > CLOSE or turned > ALIKE or wider > CLOSE:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg, "
             off += f"fingers {1000 * wider:.1f} mm"

@@ -31,21 +31,23 @@ STRETCH = 64
 
 
 class Sampler:
-    """Samples motions of a world's robot. A state is [x, y, yaw, q1..q7, opening], m and rad."""
+    """Samples motions of a world's robot. A state is [x, y, yaw, q1..qn, opening], m and rad."""
 
     def __init__(self, world: World, robot: Robot) -> None:
         self._world, self._robot = world, robot
         self._solids: list[Solid] = list(world.links.values())
+        self._hand = list(world.links).index(robot.hand)
         self._T_hand_tool = robot.T_hand_tool.matrix
 
     def tool(self, row: Array) -> Array:
         """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
-        self._world.set_robot(row[:3], row[3:10], row[10])
-        return _matrices(self._world.link_frames()[-3:-2])[0] @ self._T_hand_tool
+        self._world.set_robot(row[:3], row[3:-1], row[-1])
+        hand = self._world.link_frames()[self._hand]
+        return _matrices(hand[None])[0] @ self._T_hand_tool
 
     def held_frames(self, frames: Array, held: Held) -> Array:
         """Compute T_world_body of the held body for frames of the links, shape (n, 4, 4)."""
-        return frames[:, -3] @ (self._T_hand_tool @ held.T_tool_body)
+        return frames[:, self._hand] @ (self._T_hand_tool @ held.T_tool_body)
 
     def clipped(self, rows: Array) -> Array:
         """Clip rows to no farther out of the limits than matters; being out is reported elsewhere.
@@ -74,7 +76,7 @@ class Sampler:
             yield rows, times
             return
         change = np.abs(np.diff(rows, axis=0))
-        ways = np.linalg.norm(change[:, :2], axis=1) + REACH * change[:, 2:10].sum(axis=1)
+        ways = np.linalg.norm(change[:, :2], axis=1) + REACH * change[:, 2:-1].sum(axis=1)
         first, cost = 0, 0.0
         for edge, needs in enumerate((ways / STEP).tolist()):
             if edge > first and (cost + needs > PIECE or edge - first >= STRETCH):
@@ -92,7 +94,7 @@ class Sampler:
     def sampled(self, rows: Array, times: Array, held: Held | None) -> tuple[Array, Array, Array]:
         """Interpolate rows and times; return them and the links' frames, shape (n, links, 4, 4)."""
         if len(rows) > 1:
-            turned = np.abs(np.diff(rows[:, 2:10], axis=0)).sum(axis=1)
+            turned = np.abs(np.diff(rows[:, 2:-1], axis=0)).sum(axis=1)
             rows, times = _divided(rows, times, np.ceil(turned / COARSE))
         frames = self._frames(rows)
         for _ in range(PASSES):
@@ -100,7 +102,7 @@ class Sampler:
             moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(
                 axis=1, initial=0.0
             )
-            parts = np.maximum(moved / STEP, change[:, 2:10].max(axis=1, initial=0.0) / TURN)
+            parts = np.maximum(moved / STEP, change[:, 2:-1].max(axis=1, initial=0.0) / TURN)
             if (parts <= 1 + 1e-6).all():
                 break
             rows, times = _divided(rows, times, np.ceil(parts * SPARE))
@@ -113,7 +115,7 @@ class Sampler:
         first[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
         asked = []
         for row in rows[first]:
-            self._world.set_robot(row[:3], row[3:10], row[10])
+            self._world.set_robot(row[:3], row[3:-1], row[-1])
             asked.append(self._world.link_frames())
         stacked = np.stack(asked)
         frames = _matrices(stacked.reshape(-1, 7)).reshape(*stacked.shape[:2], 4, 4)

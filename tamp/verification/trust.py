@@ -9,7 +9,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem
 from tamp.plan.read import PlanFile
 from tamp.plan.sources import sha256
-from tamp.symbolic.pddl.complement import signed_atoms
+from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.parser import parse_streams
 from tamp.symbolic.pddl.relations import relation_names, relation_of
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, StreamFile

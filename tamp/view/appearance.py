@@ -88,7 +88,7 @@ def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
                     element.mesh, element.scale, None if coloured else ROBOT_COLOUR, CELL
                 )
                 meshes += [mesh.moved(element.pose.matrix) for mesh in read]
-        colour = BASE_COLOUR if link is robot.links[0] else ROBOT_COLOUR
+        colour = BASE_COLOUR if link.name == robot.base else ROBOT_COLOUR
         looks[link.name] = tuple(meshes) or tuple(_part(part, colour) for part in link.parts)
     return looks
 

@@ -9,45 +9,51 @@ from typing import Any
 
 import numpy as np
 
+from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.view.appearance import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh
 from tamp.view.picture import framing
-from tamp.view.samples import Shot
-from tamp.view.story import Story
-from tamp.view.timeline import Film
+from tamp.view.samples import SampleMarker
+from tamp.view.story import PlanningSummary
+from tamp.view.timeline import Timeline
 
 GRID = 65_535
 """Steps on each side of a mesh in which its vertices are told."""
 
 
-def page_document(film: Film, story: Story, shots: tuple[Shot, ...] = ()) -> dict[str, Any]:
-    """Describe the film, the samples and the story as the document that assets/page.js reads."""
+def page_document(
+    timeline: Timeline, story: PlanningSummary, sample_markers: tuple[SampleMarker, ...] = ()
+) -> dict[str, Any]:
+    """Describe timeline, samples and story as the document that assets/page.js reads."""
     return {
-        "title": film.scene.name,
-        "robot": _robot(film),
-        "bodies": _bodies(film),
-        "surfaces": _surfaces(film),
-        "room": {"x": list(film.scene.room.x), "y": list(film.scene.room.y)},
-        "actions": _actions(film),
-        "times": _packed(film.times.astype("<f4")),
-        "rows": _packed(film.rows.astype("<f4")),
-        "samples": _samples(shots),
+        "title": timeline.scene.name,
+        "robot": _robot(timeline),
+        "bodies": _bodies(timeline),
+        "surfaces": _surfaces(timeline),
+        "room": {"x": list(timeline.scene.room.x), "y": list(timeline.scene.room.y)},
+        "actions": _actions(timeline),
+        "times": _packed(timeline.times.astype("<f4")),
+        "rows": _packed(timeline.rows.astype("<f4")),
+        "samples": _samples(sample_markers),
         "story": _story(story),
-        "view": _view(film),
+        "view": _view(timeline),
     }
 
 
-def _robot(film: Film) -> dict[str, Any]:
+def _robot(timeline: Timeline) -> dict[str, Any]:
     """Describe the robot's links, and the frames from one to the next."""
-    robot = film.robot
+    robot = timeline.robot
     looks = robot_meshes(robot)
 
     return {
-        "links": [{"name": link.name, "meshes": _meshes(looks[link.name])} for link in robot.links],
+        "links": [
+            {"name": link.name, "meshes": _meshes(looks[link.name])} for link in _ordered(robot)
+        ],
         "T_base_arm": _matrix(robot.T_base_arm.matrix),
         "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
+        "slides": list(robot.prismatic),
         "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
         "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
         "fingers": [
@@ -61,7 +67,13 @@ def _robot(film: Film) -> dict[str, Any]:
     }
 
 
-def _bodies(film: Film) -> list[dict[str, Any]]:
+def _ordered(robot: Robot) -> tuple[Link, ...]:
+    """Return the links in the page's order: base, foot, the arm's, hand, fingers."""
+    names = (robot.base, robot.foot, *(joint.child for joint in robot.joints), robot.hand)
+    return (*map(robot.link, names), *robot.finger_links)
+
+
+def _bodies(timeline: Timeline) -> list[dict[str, Any]]:
     """Describe the bodies: their meshes, and the poses that they take in turn."""
     return [
         {
@@ -71,18 +83,18 @@ def _bodies(film: Film) -> list[dict[str, Any]]:
             "meshes": _meshes(body_meshes(body)),
             "stays": [
                 {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)}
-                for stay in film.stays[name]
+                for stay in timeline.stays[name]
             ]
-            if name in film.stays
+            if name in timeline.stays
             else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix)}],
         }
-        for name, body in film.scene.bodies.items()
+        for name, body in timeline.scene.bodies.items()
     ]
 
 
-def _surfaces(film: Film) -> list[dict[str, Any]]:
+def _surfaces(timeline: Timeline) -> list[dict[str, Any]]:
     """Describe the surfaces, and the floors of the cavities, as rectangles."""
-    scene = film.scene
+    scene = timeline.scene
     return [
         {
             "name": place.name,
@@ -93,7 +105,7 @@ def _surfaces(film: Film) -> list[dict[str, Any]]:
     ]
 
 
-def _actions(film: Film) -> list[dict[str, Any]]:
+def _actions(timeline: Timeline) -> list[dict[str, Any]]:
     """Describe the plan's actions, and when each begins and ends, seconds."""
     return [
         {
@@ -103,11 +115,11 @@ def _actions(film: Film) -> list[dict[str, Any]]:
             "start": action.start,
             "end": action.end,
         }
-        for action in film.actions
+        for action in timeline.actions
     ]
 
 
-def _samples(shots: Sequence[Shot]) -> list[dict[str, Any]]:
+def _samples(sample_markers: Sequence[SampleMarker]) -> list[dict[str, Any]]:
     """Describe the samples that were tried."""
     return [
         {
@@ -120,11 +132,11 @@ def _samples(shots: Sequence[Shot]) -> list[dict[str, Any]]:
             "others": list(shot.others),
             "text": shot.text,
         }
-        for shot in shots
+        for shot in sample_markers
     ]
 
 
-def _story(story: Story) -> dict[str, Any]:
+def _story(story: PlanningSummary) -> dict[str, Any]:
     """Describe how the plan was found, for the page's panel."""
     return {
         "head": story.head,
@@ -136,12 +148,12 @@ def _story(story: Story) -> dict[str, Any]:
     }
 
 
-def _view(film: Film) -> dict[str, Any]:
+def _view(timeline: Timeline) -> dict[str, Any]:
     """Describe the first camera, and the ball in which shadows are drawn."""
-    camera = framing(film, (1000, 800))
+    camera = framing(timeline, (1000, 800))
     target, out = np.array(camera.target), np.array(camera.eye) - np.array(camera.target)
     distance = float(np.linalg.norm(out))
-    room = film.scene.room
+    room = timeline.scene.room
     middle = [sum(room.x) / 2, sum(room.y) / 2, 0.5]
     return {
         "target": target.tolist(),

@@ -13,16 +13,16 @@ from tamp.system.outputs import check_outputs, check_writable
 from tamp.view.video_formats import check_suffix
 
 if TYPE_CHECKING:
-    from tamp.view.story import Story
-    from tamp.view.timeline import Film
+    from tamp.view.story import PlanningSummary
+    from tamp.view.timeline import Timeline
 
 MOST_PIXELS = 4096
 """Columns or rows of a picture."""
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """A request for outputs: where a film is to be shown.
+class OutputRequest:
+    """A request for outputs: where a timeline is to be shown.
 
     Attributes:
         html: A page to write.
@@ -92,19 +92,19 @@ class Wishes:
             check_browser()
 
 
-def fulfil(
-    wishes: Wishes,
-    film: Film,
-    story: Story,
+def write_outputs(
+    request: OutputRequest,
+    timeline: Timeline,
+    story: PlanningSummary,
     document: Mapping[str, Any],
     file: Path | None,
     say: Callable[[str], None],
 ) -> None:
-    """Show a film.
+    """Show a timeline.
 
     Args:
-        wishes: Where.
-        film: What happens.
+        request: Where.
+        timeline: What happens.
         story: How it was found.
         document: The plan file's content, for the samples.
         file: The plan file, for errors.
@@ -117,21 +117,21 @@ def fulfil(
     from tamp.view.document import page_document
     from tamp.view.page import page, write_page
     from tamp.view.picture import write_png, write_video
-    from tamp.view.samples import shots
+    from tamp.view.samples import sample_markers
     from tamp.view.server import serve
 
-    for sentence in undrawable(film.scene.bodies.values()):
+    for sentence in undrawable(timeline.scene.bodies.values()):
         say(f"warning: {sentence}.")
-    if wishes.png is not None:
-        write_png(film, wishes.png, wishes.at, wishes.size or (800, 600))
-        say(f"{wishes.png} written.")
-    if wishes.video is not None:
-        cut = write_video(film, wishes.video, wishes.speed, wishes.size or (480, 360))
-        say(f"{wishes.video} written{f', without {cut:,.0f} s of pauses' if cut else ''}.")
-    if wishes.page:
-        content = page_document(film, story, shots(document, film.scene, file))
-        if wishes.html is not None:
-            write_page(content, wishes.html)
-            say(f"{wishes.html} written: open it in any browser.")
-        if wishes.view:
-            serve(page(content).encode(), say, port=wishes.port, browser=wishes.browser)
+    if request.png is not None:
+        write_png(timeline, request.png, request.at, request.size or (800, 600))
+        say(f"{request.png} written.")
+    if request.video is not None:
+        cut = write_video(timeline, request.video, request.speed, request.size or (480, 360))
+        say(f"{request.video} written{f', without {cut:,.0f} s of pauses' if cut else ''}.")
+    if request.page:
+        content = page_document(timeline, story, sample_markers(document, timeline.scene, file))
+        if request.html is not None:
+            write_page(content, request.html)
+            say(f"{request.html} written: open it in any browser.")
+        if request.view:
+            serve(page(content).encode(), say, port=request.port, browser=request.browser)

@@ -1,4 +1,4 @@
-"""Pictures of a film: PNG, and moving ones."""
+"""Pictures of a timeline: PNG, and moving ones."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from tamp.system.outputs import write_whole
 from tamp.view.appearance import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh, simplified
 from tamp.view.rasterizer import Camera, Triangles, render, triangles
-from tamp.view.timeline import Film
+from tamp.view.timeline import Timeline
 from tamp.view.trails import trails
-from tamp.view.video_formats import MOVING, check_suffix
+from tamp.view.video_formats import VIDEO_FORMATS, check_suffix
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -53,53 +53,55 @@ TILES = 100
 """Of the floor, on each side at most."""
 
 
-class Studio:
-    """The renderer of a film: what is drawn of it, prepared once for all its pictures.
+class Renderer:
+    """The renderer of a timeline: what is drawn of it, prepared once for all its pictures.
 
     Args:
-        film: What happens.
+        timeline: What happens.
         size: Columns and rows of a picture.
         camera: Who looks; by default somebody who has everything in view.
     """
 
-    def __init__(self, film: Film, size: tuple[int, int], camera: Camera | None = None) -> None:
-        self.film, self.size = film, size
-        self.camera = camera or framing(film, size)
-        self._kinematics = Kinematics(film.robot)
-        looks = robot_meshes(film.robot)
+    def __init__(
+        self, timeline: Timeline, size: tuple[int, int], camera: Camera | None = None
+    ) -> None:
+        self.timeline, self.size = timeline, size
+        self.camera = camera or framing(timeline, size)
+        self._kinematics = Kinematics(timeline.robot)
+        looks = robot_meshes(timeline.robot)
         self._robot = {
             name: [triangles(mesh) for mesh in meshes if len(mesh.faces)]
             for name, meshes in looks.items()
         }
-        bodies = film.scene.bodies
+        bodies = timeline.scene.bodies
         meshes = {name: body_meshes(body) for name, body in bodies.items()}
         crowd = sum(len(mesh.faces) for some in meshes.values() for mesh in some) > MOST_TRIANGLES
         self._bodies = {
             name: [triangles(_coarse(mesh) if crowd else mesh) for mesh in some]
             for name, some in meshes.items()
         }
-        self._floor = _floor(film)
-        self._trails = trails(film, self._kinematics)
+        self._floor = _floor(timeline)
+        self._trails = trails(timeline, self._kinematics)
 
     def frame(self, time: float) -> NDArray[np.uint8]:
         """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
-        row = self.film.row(time)
-        links = self._kinematics.link_poses(row[:10], float(row[10]))
+        row = self.timeline.row(time)
+        links = self._kinematics.link_poses(row[:-1], float(row[-1]))
         parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
         parts += [part.moved(links[name]) for name, some in self._robot.items() for part in some]
-        for name, pose in self.film.poses(time, self._kinematics).items():
+        for name, pose in self.timeline.poses(time, self._kinematics).items():
             parts += [part.moved(pose) for part in self._bodies[name]]
         return render(parts, self.camera, self.size)
 
 
-def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
+def framing(timeline: Timeline, size: tuple[int, int], angle: float = 30.0) -> Camera:
     """Place a camera that has all bodies, and the robot wherever it goes, in view."""
-    boxes = [bounds(body.parts, body.pose) for body in film.scene.bodies.values()]
+    boxes = [bounds(body.parts, body.pose) for body in timeline.scene.bodies.values()]
     boxes += [
         (np.array([x - 0.3, y - 0.3, 0.0]), np.array([x + 0.3, y + 0.3, 0.4]))
-        for x, y in film.rows[::20, :2]
+        for x, y in timeline.rows[::20, :2]
     ]
-    boxes += [(np.array([*film.rows[0, :2], 0.4]), np.array([*film.rows[0, :2], 1.1]))]
+    boxes += [(np.array([*timeline.rows[0, :2], 0.4]), np.array([*timeline.rows[0, :2], 1.1]))]
     corners = np.array(
         [
             corner
@@ -124,7 +126,7 @@ def framing(film: Film, size: tuple[int, int], angle: float = 30.0) -> Camera:
 
 
 def write_png(
-    film: Film, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)
+    timeline: Timeline, file: Path, times: Sequence[float] = (), size: tuple[int, int] = (800, 600)
 ) -> None:
     """Write one picture, or one beside the other for several times; by default a plan's start,
     middle and end.
@@ -134,17 +136,17 @@ def write_png(
     """
     from PIL import Image
 
-    ends = [action.end for action in film.actions[:-1]] or [film.duration]
-    middle = min(ends, key=lambda end: abs(end - film.duration / 2))
-    chosen = times or ((0.0, middle, film.duration) if film.actions else (0.0,))
-    studio = Studio(film, size)
-    frames = [studio.frame(min(max(time, 0.0), film.duration)) for time in chosen]
+    ends = [action.end for action in timeline.actions[:-1]] or [timeline.duration]
+    middle = min(ends, key=lambda end: abs(end - timeline.duration / 2))
+    chosen = times or ((0.0, middle, timeline.duration) if timeline.actions else (0.0,))
+    renderer = Renderer(timeline, size)
+    frames = [renderer.frame(min(max(time, 0.0), timeline.duration)) for time in chosen]
     image = Image.fromarray(np.concatenate(frames, axis=1))
     _save(file, image, "PNG", {"optimize": True})
 
 
 def write_video(
-    film: Film, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)
+    timeline: Timeline, file: Path, speed: float = 6.0, size: tuple[int, int] = (480, 360)
 ) -> float:
     """Write a video of the plan, `speed` times as fast as the robot; return the seconds of long
     pauses that were cut.
@@ -157,48 +159,48 @@ def write_video(
 
     check_suffix(file)
     suffix = file.suffix.lower()
-    if not film.actions:
+    if not timeline.actions:
         raise InputError(
             "nothing moves without a plan", file=file, remedy="A picture is made by --png"
         )
-    moments, cut = moments_of(film, speed)
+    moments, cut = moments_of(timeline, speed)
     deep = 1 if suffix == ".gif" else 3
     most = MOST_BYTES // (size[0] * size[1] * deep)
     if len(moments) > most:
         what = (
-            f"the plan moves for {film.duration - cut:,.0f} s: {len(moments):,} frames, "
+            f"the plan moves for {timeline.duration - cut:,.0f} s: {len(moments):,} frames, "
             f"and {most:,} are the most"
         )
         faster = math.ceil(speed * len(moments) / most)
         raise InputError(
             what, file=file, remedy=f"With --speed {faster} or a smaller --size it has room"
         )
-    studio = Studio(film, size)
-    images = [Image.fromarray(studio.frame(float(moments[len(moments) // 2])))]
+    renderer = Renderer(timeline, size)
+    images = [Image.fromarray(renderer.frame(float(moments[len(moments) // 2])))]
     palette = images[0].quantize(128, dither=Image.Dither.NONE) if suffix == ".gif" else None
     images = [
-        _coloured(Image.fromarray(studio.frame(float(moment))), palette) for moment in moments
+        _coloured(Image.fromarray(renderer.frame(float(moment))), palette) for moment in moments
     ]
     options = {"save_all": True, "append_images": images[1:], "duration": 1000 // FRAMES, "loop": 0}
-    _save(file, images[0], MOVING[suffix], options)
+    _save(file, images[0], VIDEO_FORMATS[suffix], options)
     return cut
 
 
-def moments_of(film: Film, speed: float) -> tuple[Array, float]:
+def moments_of(timeline: Timeline, speed: float) -> tuple[Array, float]:
     """Choose the times of a video's frames, and return how many seconds of pauses they leave out.
 
     Raises:
         InputError: There would be more than anybody has memory for.
     """
-    spans = np.diff(film.times)
-    still = (np.diff(film.rows, axis=0) == 0.0).all(axis=1)
+    spans = np.diff(timeline.times)
+    still = (np.diff(timeline.rows, axis=0) == 0.0).all(axis=1)
     cuts = np.where(still & (spans > PAUSE), spans - PAUSE, 0.0)
-    shown = film.times - np.concatenate([[0.0], np.cumsum(cuts)])
+    shown = timeline.times - np.concatenate([[0.0], np.cumsum(cuts)])
     length = float(shown[-1] - shown[0])
     if length * FRAMES / speed > MOST_BYTES:
         raise InputError(f"the plan moves for {length:,.0f} s, which no moving picture can show")
     at = np.append(np.arange(float(shown[0]), float(shown[-1]), speed / FRAMES), shown[-1])
-    return np.interp(at, shown, film.times), float(cuts.sum())
+    return np.interp(at, shown, timeline.times), float(cuts.sum())
 
 
 def _coloured(image: Image.Image, palette: Image.Image | None) -> Image.Image:
@@ -223,11 +225,11 @@ def _save(file: Path, image: object, kind: str, options: dict[str, object]) -> N
         raise InputError(f"cannot write the picture: {error.strerror}", file=file) from error
 
 
-def _floor(film: Film) -> list[Triangles]:
+def _floor(timeline: Timeline) -> list[Triangles]:
     """Make tiles of two shades, a metre wide (larger ones in a hall), under the room and around
     it.
     """
-    room = film.scene.room
+    room = timeline.scene.room
     side = max(1, math.ceil(max(room.x[1] - room.x[0], room.y[1] - room.y[0]) / TILES))
     xs, ys = (
         range(math.floor(low / side) - AROUND, math.ceil(high / side) + AROUND)

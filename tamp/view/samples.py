@@ -15,7 +15,7 @@ from tamp.system.json_fields import Field
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class SampleMarker:
     """A sample as it is shown.
 
     Attributes:
@@ -39,7 +39,9 @@ class Shot:
     text: str
 
 
-def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -> tuple[Shot, ...]:
+def sample_markers(
+    document: Mapping[str, Any], scene: Scene, file: Path | None = None
+) -> tuple[SampleMarker, ...]:
     """Collect the samples of a plan file's record, and the poses and grasps that the plan itself
     has.
 
@@ -62,7 +64,9 @@ def shots(document: Mapping[str, Any], scene: Scene, file: Path | None = None) -
         body = names.get(field["body"].text(), "")
         if body in scene.bodies:
             T = read_pose(field["T_tool_body"])
-            made.append(Shot("grasp", body, T, True, None, "", (), f"grasp of {body}: in the plan"))
+            made.append(
+                SampleMarker("grasp", body, T, True, None, "", (), f"grasp of {body}: in the plan")
+            )
     return tuple(made)
 
 
@@ -70,7 +74,7 @@ def _is_grasp(field: Field) -> bool:
     return "type" in field and field["type"].value == "grasp"
 
 
-def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
+def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> SampleMarker | None:
     arguments = [names.get(item.text(), item.text()) for item in field["arguments"].items()]
     if not arguments or arguments[0] not in scene.bodies:
         return None
@@ -89,7 +93,7 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> Shot | None:
     verdict = "in the plan" if used else "rejected" if refusals else "accepted"
     words = {word.lower() for _, why, _ in refusals for word in re.findall(r"[\w-]+", why)}
 
-    return Shot(
+    return SampleMarker(
         kind="grasp" if grasp else "placement",
         body=body,
         T=T,

@@ -24,7 +24,7 @@ COUNTS = {
 
 
 @dataclass(frozen=True)
-class Story:
+class PlanningSummary:
     """Texts, ready to be shown.
 
     Attributes:
@@ -44,7 +44,7 @@ class Story:
     time: tuple[tuple[str, str, str], ...] = ()
 
 
-def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
+def planning_summary(document: Mapping[str, Any], file: Path | None = None) -> PlanningSummary:
     """Summarize what a plan file, or the summary of a run that found no plan, tells of the run.
 
     Args:
@@ -60,7 +60,7 @@ def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
         {} if timing is None else {name: part.number(0.0) for name, part in timing.fields().items()}
     )
     if statistics is None:
-        return Story(_head(root, seconds))
+        return PlanningSummary(_head(root, seconds))
     numbers = statistics.fields()
     streams = numbers["streams"].fields() if "streams" in numbers else {}
     counts = [
@@ -68,7 +68,7 @@ def story_of(document: Mapping[str, Any], file: Path | None = None) -> Story:
     ]
     texts = [f"{count:,.0f} {words[0] if count == 1 else words[1]}" for words, count in counts]
 
-    return Story(
+    return PlanningSummary(
         head=_head(root, seconds),
         why=tuple(
             line.text() for line in (root["explanation"].items() if "explanation" in root else ())

@@ -17,7 +17,7 @@ from tamp.symbolic.pddl.structs import Fact
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownAction:
     """An action: its name, the scene's objects among its arguments, when it starts and ends
     (seconds).
 
@@ -37,7 +37,7 @@ class Shown:
 
 
 @dataclass(frozen=True, eq=False)
-class Stay:
+class PoseInterval:
     """The pose of a body from `since` on: T_world_body, or, while it is held, T_tool_body; shape
     (4, 4).
     """
@@ -48,7 +48,7 @@ class Stay:
 
 
 @dataclass(frozen=True, eq=False)
-class Film:
+class Timeline:
     """A plan as motion, or a scene that stands still.
 
     Attributes:
@@ -56,17 +56,17 @@ class Film:
         robot: Of the scene.
         actions: In order; none without a plan.
         times: Seconds, shape (n,), not decreasing.
-        rows: The robot [x, y, yaw, q1..q7, opening] at these times, shape (n, 11), linear in
-            between.
+        rows: The robot [x, y, yaw, q1..qn, opening] at these times, shape (n, 4 + joints), linear
+            in between.
         stays: Where each movable body is, one after the other.
     """
 
     scene: Scene
     robot: Robot
-    actions: tuple[Shown, ...]
+    actions: tuple[ShownAction, ...]
     times: Array
     rows: Array
-    stays: Mapping[str, tuple[Stay, ...]]
+    stays: Mapping[str, tuple[PoseInterval, ...]]
 
     @property
     def duration(self) -> float:
@@ -74,8 +74,8 @@ class Film:
         return float(self.times[-1])
 
     def row(self, time: float) -> Array:
-        """Interpolate the robot at a time, shape (11,); before the start and after the end it
-        stands.
+        """Interpolate the robot at a time, shape (4 + joints,); before the start and after the end
+        it stands.
         """
         return np.array([np.interp(time, self.times, column) for column in self.rows.T])
 
@@ -84,22 +84,24 @@ class Film:
         poses = {name: np.array(body.pose.matrix) for name, body in self.scene.bodies.items()}
         for name, stays in self.stays.items():
             stay = [stay for stay in stays if stay.since <= time or stay is stays[0]][-1]
-            poses[name] = kinematics.tool(self.row(time)[:10]) @ stay.T if stay.held else stay.T
+            poses[name] = kinematics.tool(self.row(time)[:-1]) @ stay.T if stay.held else stay.T
         return poses
 
 
-def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
+def timeline_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Timeline:
     """Follow a plan from the scene's start; without one nothing moves."""
     arm = robot.home if scene.robot.arm is None else scene.robot.arm
     maker = _Maker(scene, robot, np.array([*scene.robot.base, *arm, robot.opening]))
     places = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
     facts = () if plan is None else (*plan.initial, *plan.certified)
-    actions: list[Shown] = []
+    actions: list[ShownAction] = []
     for action in () if plan is None else plan.actions:
         objects = tuple(places[name] for name in action.arguments if name in places)
         end = action.start + action.duration
         actions.append(
-            Shown(action.name, objects, action.start, end, _where(action, facts, places, scene))
+            ShownAction(
+                action.name, objects, action.start, end, _where(action, facts, places, scene)
+            )
         )
         clock = action.start
         for segment in action.segments:
@@ -107,7 +109,7 @@ def film_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Film:
             clock += float(segment.times[-1])
     times = np.maximum.accumulate(np.array(maker.times))
     stays = {name: tuple(stays) for name, stays in maker.stays.items()}
-    return Film(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
+    return Timeline(scene, robot, tuple(actions), times, np.array(maker.rows), stays)
 
 
 def _where(
@@ -132,12 +134,16 @@ def _where(
     return f"in {place}" if place in scene.cavities else f"on {place}"
 
 
+PARTS = {"base": slice(0, 3), "arm": slice(3, -1), "gripper": slice(-1, None)}
+"""Columns of a row that each part of the robot has."""
+
+
 class _Maker:
     def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
         self.times: list[float] = [0.0]
         self.rows: list[Array] = [row]
         self.stays = {
-            name: [Stay(0.0, False, np.array(scene.bodies[name].pose.matrix))]
+            name: [PoseInterval(0.0, False, np.array(scene.bodies[name].pose.matrix))]
             for name in scene.movable
         }
         self._names = {name.lower(): name for name in scene.movable}
@@ -148,38 +154,40 @@ class _Maker:
         """Move one part along a segment."""
         if segment.detach in self._names:
             body = self._names[segment.detach]
-            tool = self._kinematics.tool(self.rows[-1][:10])
+            tool = self._kinematics.tool(self.rows[-1][:-1])
             for name in (body, *self._load):
-                self.stays[name].append(Stay(clock, False, tool @ self.stays[name][-1].T))
+                self.stays[name].append(PoseInterval(clock, False, tool @ self.stays[name][-1].T))
             self._load = ()
-        columns = {"base": slice(0, 3), "arm": slice(3, 10), "gripper": slice(10, 11)}[segment.part]
+        columns = PARTS[segment.part]
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
             row = self.rows[-1].copy()
             row[columns] = values
-            row[10] = opening
+            row[-1] = opening
             self.times.append(clock + float(time))
             self.rows.append(row)
         if segment.attach is not None and segment.attach.body in self._names:
             hold, now = segment.attach, self.times[-1]
-            self.stays[self._names[hold.body]].append(Stay(now, True, hold.T_tool_body))
+            self.stays[self._names[hold.body]].append(PoseInterval(now, True, hold.T_tool_body))
             load = {self._names[name]: T for name, T in hold.load if name in self._names}
             for name, T_body_rider in load.items():
-                self.stays[name].append(Stay(now, True, hold.T_tool_body @ T_body_rider))
+                self.stays[name].append(PoseInterval(now, True, hold.T_tool_body @ T_body_rider))
             self._load = tuple(load)
 
 
-def tool_path(film: Film, kinematics: Kinematics) -> Array:
-    """Return the tool's positions at the film's times, shape (n, 3), metres in the world."""
-    return np.array([kinematics.tool(row[:10])[:3, 3] for row in film.rows])
+def tool_path(timeline: Timeline, kinematics: Kinematics) -> Array:
+    """Return the tool's positions at the timeline's times, shape (n, 3), metres in the world."""
+    return np.array([kinematics.tool(row[:-1])[:3, 3] for row in timeline.rows])
 
 
-def holding(film: Film) -> list[bool]:
-    """Check whether something is in the hand between each of the film's times and the next."""
+def holding(timeline: Timeline) -> list[bool]:
+    """Check whether something is in the hand between each of the timeline's times and the next."""
     spans = [
-        (stay.since, after.since if after else film.duration)
-        for stays in film.stays.values()
+        (stay.since, after.since if after else timeline.duration)
+        for stays in timeline.stays.values()
         for stay, after in pairwise([*stays, None])
         if stay is not None and stay.held
     ]
-    return [any(start <= a and b <= end for start, end in spans) for a, b in pairwise(film.times)]
+    return [
+        any(start <= a and b <= end for start, end in spans) for a, b in pairwise(timeline.times)
+    ]

@@ -12,7 +12,7 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.pose import Array
 from tamp.view.mesh import Mesh, unit
 from tamp.view.rasterizer import Triangles, triangles
-from tamp.view.timeline import Film, holding, tool_path
+from tamp.view.timeline import Timeline, holding, tool_path
 
 EMPTY_COLOUR, FULL_COLOUR, DRIVE_COLOUR = (
     (0.2, 0.45, 0.85, 1.0),
@@ -43,17 +43,17 @@ class Trail:
         )
 
 
-def trails(film: Film, kinematics: Kinematics) -> list[Trail]:
+def trails(timeline: Timeline, kinematics: Kinematics) -> list[Trail]:
     """Make the trails of the hand, empty and with a body in it, and of the base."""
-    full = np.array([*holding(film), False])
-    tool = tool_path(film, kinematics)
-    base = np.column_stack([film.rows[:, :2], np.full(len(film.rows), 0.01)])
+    full = np.array([*holding(timeline), False])
+    tool = tool_path(timeline, kinematics)
+    base = np.column_stack([timeline.rows[:, :2], np.full(len(timeline.rows), 0.01)])
     lines = [
         (tool, ~full, EMPTY_COLOUR),
         (tool, full, FULL_COLOUR),
         (base, np.full(len(full), True), DRIVE_COLOUR),
     ]
-    drawn = [_trail(points, film.times, shown, colour) for points, shown, colour in lines]
+    drawn = [_trail(points, timeline.times, shown, colour) for points, shown, colour in lines]
     return [trail for trail in drawn if len(trail.passed)]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tamp.errors import InputError
 
-MOVING = {".gif": "GIF", ".webp": "WEBP"}
+VIDEO_FORMATS = {".gif": "GIF", ".webp": "WEBP"}
 """What they are called, by the file's ending. No mp4: its encoders are GPL or large."""
 
 
@@ -17,6 +17,6 @@ def check_suffix(file: Path) -> None:
         InputError: The file's ending is none of MOVING.
     """
     suffix = file.suffix.lower()
-    if suffix not in MOVING:
+    if suffix not in VIDEO_FORMATS:
         what = f"no moving picture is written as '{suffix or file.name}'"
-        raise InputError(what, file=file, found=suffix, choices=tuple(MOVING))
+        raise InputError(what, file=file, found=suffix, choices=tuple(VIDEO_FORMATS))

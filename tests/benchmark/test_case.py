@@ -13,7 +13,7 @@ import pytest
 from tamp.benchmark.case import cases, labelled, named, relations
 from tamp.benchmark.fig8 import FIG8, chosen
 from tamp.benchmark.line import read_line
-from tamp.benchmark.run_case import do
+from tamp.benchmark.run_case import run_case
 from tamp.benchmark.table import report
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import SurfacePlacements
@@ -131,7 +131,7 @@ def test_a_run_with_a_python_file_needs_no_file(tmp_path: Path) -> None:
     label, sources = labelled(f"on={file}", served)
     (case,) = cases(["one_object"], {label: served}, [0], 30.0, sources=sources)
     file.unlink()
-    line = do(pickle.loads(pickle.dumps(case)), dict)
+    line = run_case(pickle.loads(pickle.dumps(case)), dict)
     assert line["outcome"] == "SOLVED" and line["verified"]
     assert line["config"]["sampler"] == label
     assert line["config"]["samplers"] == {"on": str(file)}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tamp.benchmark.case import Case
-from tamp.benchmark.run_case import ERROR, do
+from tamp.benchmark.run_case import ERROR, run_case
 from tamp.commands.bench import BAD_INPUT, DONE, run
 from tests.benchmark.toys import line, some
 
@@ -57,7 +57,7 @@ def test_tables_and_pictures_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_an_error_of_the_planner_is_an_outcome() -> None:
-    told = do(Case("swap", "default", 0, 1.0, samplers=(("on", "nobody"),)), dict)
+    told = run_case(Case("swap", "default", 0, 1.0, samplers=(("on", "nobody"),)), dict)
     assert told["outcome"] == ERROR and not told["solved"]
     assert "nobody" in told["explanation"][-1]
 

@@ -12,33 +12,33 @@ from typing import Any
 import pytest
 
 from tamp.benchmark.log import Log, read_log
-from tamp.benchmark.process_pool import Processes
-from tamp.benchmark.ray_pool import LOCAL, RayCrew
-from tamp.benchmark.scheduler import ATTEMPTS, LOST, lead
-from tamp.benchmark.worker_pool import Crew
+from tamp.benchmark.process_pool import ProcessPool
+from tamp.benchmark.ray_pool import LOCAL, RayPool
+from tamp.benchmark.scheduler import ATTEMPTS, LOST, run_all
+from tamp.benchmark.worker_pool import WorkerPool
 from tamp.errors import InputError
 from tests.benchmark.toys import die, note, nothing, refuse, some
 
 RUNS = 6
 
 
-def ray(work: Callable[..., Any]) -> Crew:
-    return RayCrew(LOCAL, work, nothing, 2)
+def ray(work: Callable[..., Any]) -> WorkerPool:
+    return RayPool(LOCAL, work, nothing, 2)
 
 
-def processes(work: Callable[..., Any]) -> Crew:
-    return Processes(2, work, nothing)
+def processes(work: Callable[..., Any]) -> WorkerPool:
+    return ProcessPool(2, work, nothing)
 
 
-@pytest.mark.parametrize("crew", [processes, pytest.param(ray, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("pool", [processes, pytest.param(ray, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("default")  # Ray's own
-def test_a_killed_worker_loses_no_run_and_doubles_none(crew: Callable[..., Crew], tmp_path: Path) -> None:
+def test_a_killed_worker_loses_no_run_and_doubles_none(pool: Callable[..., WorkerPool], tmp_path: Path) -> None:
     traces = tmp_path / "traces"
     traces.mkdir()
     left: list[int] = []
-    with Log(tmp_path / "log.jsonl") as log, closing(crew(partial(note, folder=traces))) as workers:
-        lead(some(2)[:1], workers, log, lambda line, _: None)
-        lead(some(RUNS), workers, log, lambda line, count: left.append(count))
+    with Log(tmp_path / "log.jsonl") as log, closing(pool(partial(note, folder=traces))) as workers:
+        run_all(some(2)[:1], workers, log, lambda line, _: None)
+        run_all(some(RUNS), workers, log, lambda line, count: left.append(count))
     lines = read_log(tmp_path / "log.jsonl")
     assert sorted(line["seed"] for line in lines) == list(range(RUNS))
     assert all(line["solved"] for line in lines)
@@ -51,7 +51,7 @@ def test_a_killed_worker_loses_no_run_and_doubles_none(crew: Callable[..., Crew]
 
 def test_a_run_that_kills_every_worker_is_written_down_as_lost(tmp_path: Path) -> None:
     with Log(tmp_path / "log.jsonl") as log, closing(processes(die)) as workers:
-        lead(some(2), workers, log, lambda line, _: None)
+        run_all(some(2), workers, log, lambda line, _: None)
     by_seed = {line["seed"]: line for line in read_log(tmp_path / "log.jsonl")}
     assert by_seed[0]["outcome"] == LOST and not by_seed[0]["solved"]
     assert str(ATTEMPTS) in by_seed[0]["explanation"][0]
@@ -59,16 +59,16 @@ def test_a_run_that_kills_every_worker_is_written_down_as_lost(tmp_path: Path) -
 
 
 def test_workers_that_cannot_start_are_an_error_and_no_results(tmp_path: Path) -> None:
-    with Log(tmp_path / "log.jsonl") as log, closing(Processes(1, die, refuse)) as workers:
+    with Log(tmp_path / "log.jsonl") as log, closing(ProcessPool(1, die, refuse)) as workers:
         with pytest.raises(InputError, match="before its first run"):
-            lead(some(2), workers, log, lambda line, _: None)
+            run_all(some(2), workers, log, lambda line, _: None)
         assert log.lines == []
 
 
 def test_without_ray_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(InputError, match=r"pip install 'tamp-planner\[ray\]'"):
-        RayCrew("auto", note, nothing)
+        RayPool("auto", note, nothing)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_without_ray_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch
 )
 def test_nobody_at_an_address_is_an_error_at_once(address: str) -> None:
     with pytest.raises(InputError, match=f"no Ray cluster at '{address}'"):
-        RayCrew(address, note, nothing)
+        RayPool(address, note, nothing)
 
 
 @pytest.mark.slow
@@ -84,4 +84,4 @@ def test_nobody_at_an_address_is_an_error_at_once(address: str) -> None:
 def test_no_cluster_at_an_address_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RAY_TMPDIR", str(tmp_path))
     with pytest.raises(InputError, match="no Ray cluster at 'nonsense'"):
-        RayCrew("nonsense", note, nothing)
+        RayPool("nonsense", note, nothing)

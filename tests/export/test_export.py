@@ -12,10 +12,10 @@ import pytest
 
 from tamp.commands.export import main
 from tamp.export.trajectory import rates
-from tamp.geometric.robot.robot import panda_mobile
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.plan.open import open_plan, read_motions, robot_of
 
-PANDA = panda_mobile()
+PANDA = ROBOTS["panda_mobile"]()
 ARM = [joint.name for joint in PANDA.joints]
 FINGERS = [joint.name for joint in PANDA.fingers]
 BASE = ["base_x", "base_y", "base_yaw"]

@@ -256,7 +256,7 @@ def test_an_archive_that_is_none_costs_nothing(case: str) -> None:
     with pytest.raises(InputError) as caught:
         read_npz(content)
     assert message in str(caught.value)
-    assert time.process_time() - began < 2.0
+    assert time.process_time() - began < 10.0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 500_000
 
 

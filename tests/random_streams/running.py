@@ -14,7 +14,7 @@ from tamp.symbolic.algorithms.anytime import solve_anytime
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.algorithms.registry import ALGORITHMS
-from tamp.symbolic.algorithms.result import Effort, Outcome, Result, StreamTask
+from tamp.symbolic.algorithms.result import Outcome, Result, SearchStatistics, StreamTask
 from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
@@ -129,7 +129,7 @@ def run_anytime(problem: Problem, seconds: float, rounds: int, seed: int = 0) ->
         costs.append(sum(action.cost for action in result.actions))
         return len(costs) == 1 or costs[-1] <= min(costs)
 
-    def progress(effort: Effort) -> None:
+    def progress(effort: SearchStatistics) -> None:
         nonlocal left
         left -= bool(costs)
         if left <= 0:

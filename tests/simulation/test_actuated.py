@@ -9,11 +9,12 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.actuated import RATE, Actuated
+from tamp.verification.initial_state import apart
 
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
@@ -74,3 +75,51 @@ def test_what_lies_still_wakes_when_it_is_pushed(world: Actuated) -> None:
     world.put("held", Pose((2.0, 2.0, 0.4)).matrix)
     world.wait(1.0)
     assert ("away", "held") in world.touches()
+
+
+def held_off_centre(world: Actuated) -> np.ndarray:
+    """The hand presses on the bar 6 cm beside its middle; T_tool_body."""
+    world.squeezing = True
+    off = np.eye(4)
+    off[:3, 3] = [0.06, 0.0, 0.01]
+    for _ in range(RATE // 2):
+        world.put("bar", world.tool() @ off)
+        world.tick()
+    world.wait(0.2)
+    return np.linalg.inv(world.tool()) @ world.pose("bar")
+
+
+def turned(world: Actuated, angle: float, seconds: float) -> None:
+    """The base turns by this in this time, slowly at first and at last."""
+    count, rate = round(seconds * RATE), 0.0
+    for step in range(count):
+        rate = angle / seconds * (1 - np.cos(2 * np.pi * (step + 1) / count))
+        world.conf[2] += rate / RATE
+        world.tick([0.0, 0.0, rate, *[0.0] * 7])
+
+
+@pytest.fixture
+def off_centre() -> Iterator[Actuated]:
+    bar = Body("bar", (Part(Box((0.2, 0.07, 0.04))),), Pose((0.0, 2.0, 0.5)), True, mass=0.3)
+    with Actuated(replace(SCENE, bodies={"bar": bar}), ROBOT) as made:
+        yield made
+
+
+def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(off_centre: Actuated) -> None:
+    T = held_off_centre(off_centre)
+    for angle in (2.0, -2.0, 2.0):
+        turned(off_centre, angle, 3.0)
+        moved, angle = apart(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
+        assert moved < 0.002
+        assert angle < np.radians(2)
+
+
+def test_a_hand_that_has_turned_lets_go_at_once(off_centre: Actuated) -> None:
+    held_off_centre(off_centre)
+    turned(off_centre, 2.0, 3.0)
+    before = off_centre.pose("bar")[:3, 3]
+    off_centre.squeezing = False
+    off_centre.wait(0.2)
+    moved = off_centre.pose("bar")[:3, 3] - before
+    assert np.linalg.norm(moved[:2]) < 5e-4  # no finger draws it along
+    assert moved[2] < -0.15

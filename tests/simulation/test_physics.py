@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Sphere
 from tamp.simulation.physics import World, load_bullet

@@ -90,7 +90,7 @@ def test_a_mistyped_option_is_told_what_was_meant(kind: type, words: str, meant:
 
 @pytest.mark.parametrize("kind", [Verify, Export, View, Execute])
 def test_what_is_missing_is_one_line(kind: type) -> None:
-    with pytest.raises(InputError, match=r"Missing from try: PLAN.*See try --help") as error:
+    with pytest.raises(InputError, match=r"^expected PLAN(\|PROBLEM)?: .*See try --help") as error:
         read_options(kind, "try", [])
     assert "\n" not in str(error.value)
 

@@ -11,7 +11,7 @@ import pytest
 
 from tamp.commands.solve import NO_PLAN, run
 from tamp.planner.report import time_shares
-from tamp.symbolic.algorithms.result import Effort, Outcome
+from tamp.symbolic.algorithms.result import Outcome, SearchStatistics
 from tamp.system.progress import SILENCE, Progress
 
 
@@ -32,10 +32,10 @@ def test_counters_never_shrink_whoever_reports(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("tamp.system.progress.OFTEN", 0.0)
     progress = Progress(quiet=False)
     for skeletons, draws in ((1, 10), (3, 500), (0, 7), (2, 90)):  # the third has counters of its own
-        progress.update(Effort(skeletons=skeletons, draws=draws))
+        progress.update(SearchStatistics(skeletons=skeletons, draws=draws))
     progress.begin("trying without lamp")
     for skeletons, draws in ((0, 5), (1, 20), (0, 3)):
-        progress.update(Effort(skeletons=skeletons, draws=draws))
+        progress.update(SearchStatistics(skeletons=skeletons, draws=draws))
     progress.end()
     shown = numbers(terminal.getvalue())
     assert len(shown) >= 6 and shown == sorted(shown)
@@ -58,7 +58,7 @@ def test_a_long_silence_has_its_line(capsys: pytest.CaptureFixture[str]) -> None
 def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     progress = Progress(quiet=True)
     progress.begin("searching")
-    progress.update(Effort(skeletons=1, draws=5))
+    progress.update(SearchStatistics(skeletons=1, draws=5))
     progress.line("news")
     progress.end()
     assert capsys.readouterr() == ("", "")

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.loading.load import load_scene
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.physics import World
 from tamp.system.files import find_domain

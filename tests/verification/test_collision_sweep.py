@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from tamp.geometric.robot.robot import ROBOTS
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.physics import World

@@ -12,6 +12,8 @@ import pytest
 from tamp.commands.verify import main
 from tamp.errors import InputError
 from tamp.plan.read import read_plan
+from tamp.plan.sources import source_file
+from tamp.system.files import shipped
 
 Plan = dict[str, Any]
 Write = Callable[[Any], Path]
@@ -117,6 +119,14 @@ def test_exit_codes(plan: Plan, written: Write, tmp_path: Path, capfd: pytest.Ca
     message = capfd.readouterr().err
     assert "no such file" in message
     assert message.count("\n") == 1
+
+
+def test_a_shipped_problem_and_domain_are_found_by_name(plan: Plan, written: Write) -> None:
+    read = read_plan(written(plan))
+    assert source_file(read, "problem", Path("four_objects")) == shipped("problems") / "four_objects.yaml"
+    assert source_file(read, "domain", Path("cupboard")) == shipped("domains") / "cupboard.pddl"
+    with pytest.raises(InputError, match=r"unknown problem 'four_object'.*four_objects"):
+        source_file(read, "problem", Path("four_object"))
 
 
 def test_files_are_looked_for_beside_the_plan(plan: Plan, written: Write, tmp_path: Path) -> None:

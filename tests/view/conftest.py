@@ -7,9 +7,9 @@ import pytest
 
 from tamp.plan.open import Stored, open_plan
 from tamp.view.document import page_document
-from tamp.view.samples import shots
-from tamp.view.story import story_of
-from tamp.view.timeline import Film, film_of
+from tamp.view.samples import sample_markers
+from tamp.view.story import planning_summary
+from tamp.view.timeline import Timeline, timeline_of
 from tests.view.browser import program
 
 # Where no browser is installed, what needs one is left out; the other files test what goes into the page.
@@ -22,10 +22,10 @@ def stored(stored_plan: Path) -> Stored:
 
 
 @pytest.fixture(scope="session")
-def film(stored: Stored) -> Film:
-    return film_of(stored.loaded.scene, stored.robot, stored.plan)
+def timeline(stored: Stored) -> Timeline:
+    return timeline_of(stored.loaded.scene, stored.robot, stored.plan)
 
 
 @pytest.fixture(scope="session")
-def document(stored: Stored, film: Film) -> dict[str, Any]:
-    return page_document(film, story_of(stored.document), shots(stored.document, film.scene))
+def document(stored: Stored, timeline: Timeline) -> dict[str, Any]:
+    return page_document(timeline, planning_summary(stored.document), sample_markers(stored.document, timeline.scene))

@@ -14,10 +14,10 @@ import pytest
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.view.document import page_document
 from tamp.view.page import page, write_page
-from tamp.view.samples import Shot
+from tamp.view.samples import SampleMarker
 from tamp.view.server import PageServer
-from tamp.view.story import Story
-from tamp.view.timeline import Film, film_of
+from tamp.view.story import PlanningSummary
+from tamp.view.timeline import Timeline, timeline_of
 from tests.view.browser import Browser
 from tests.view.images import pixels
 
@@ -69,35 +69,37 @@ def test_the_picture_is_not_blank(opened: Browser, tmp_path: Path) -> None:
     assert len(colours) > 50 and counts.max() < 0.6 * counts.sum()
 
 
-def test_the_slider_moves_robot_and_bodies_as_the_film_does(opened: Browser, film: Film, tmp_path: Path) -> None:
-    kinematics = Kinematics(film.robot)
+def test_the_slider_moves_robot_and_bodies_as_the_film_does(
+    opened: Browser, timeline: Timeline, tmp_path: Path
+) -> None:
+    kinematics = Kinematics(timeline.robot)
     before = picture(opened, tmp_path)
-    for time in np.linspace(0.0, film.duration, 7).round(2):
+    for time in np.linspace(0.0, timeline.duration, 7).round(2):
         opened.run(SLIDE.format(time=time))
         now = float(opened.run("tamp.state.time"))
-        row = film.row(now)
+        row = timeline.row(now)
         assert now == pytest.approx(time, abs=0.011)
         assert matrix(opened.run("tamp.tool()")) == pytest.approx(kinematics.tool(row[:10]), abs=1e-4)
         links = opened.run("tamp.links()")
         for name, pose in kinematics.link_poses(row[:10], float(row[10])).items():
             assert matrix(links[name]) == pytest.approx(pose, abs=1e-4), name
         bodies = opened.run("tamp.bodies()")
-        for name, pose in film.poses(now, kinematics).items():
+        for name, pose in timeline.poses(now, kinematics).items():
             assert matrix(bodies[name]) == pytest.approx(pose, abs=1e-4), name
     assert np.abs(picture(opened, tmp_path) - before).mean() > 1.0
 
 
-def test_actions_are_named_and_lead_to_their_start(opened: Browser, film: Film) -> None:
+def test_actions_are_named_and_lead_to_their_start(opened: Browser, timeline: Timeline) -> None:
     texts = opened.run("[...document.querySelectorAll('#actions li')].map((item) => item.textContent)")
     assert [text.split(" s", 1)[1].split()[0] for text in texts] == ["move", "pick", "move", "place"]
     opened.run("document.querySelectorAll('#actions li')[3].click()")
     opened.frames()
-    assert opened.run("tamp.state.time") == pytest.approx(film.actions[3].start)
+    assert opened.run("tamp.state.time") == pytest.approx(timeline.actions[3].start)
     assert opened.run("document.querySelector('#actions li.now').dataset.number") == "4"
     now = opened.run("document.getElementById('now').textContent").split()
     assert " ".join(now) == "4 place soup_can on cupboard_top"
     opened.run("document.getElementById('back').click()")
-    assert opened.run("tamp.state.time") == pytest.approx(film.actions[2].start)
+    assert opened.run("tamp.state.time") == pytest.approx(timeline.actions[2].start)
 
 
 def test_it_plays_and_pauses(opened: Browser) -> None:
@@ -127,19 +129,21 @@ def test_the_story_is_there(opened: Browser) -> None:
         assert word in text
 
 
-def test_samples_are_shown_by_their_test_and_say_what_they_hit(browser: Browser, film: Film, tmp_path: Path) -> None:
+def test_samples_are_shown_by_their_test_and_say_what_they_hit(
+    browser: Browser, timeline: Timeline, tmp_path: Path
+) -> None:
     T = np.eye(4)
     T[:3, 3] = [0.0, 0.6, 1.4]
     up = T.copy()
     up[2, 3] = 1.9
     text = "soup_can by sample-on: rejected (test-pose-clear: hits table)"
     samples = (
-        Shot("placement", "soup_can", T, False, "test-pose-clear", "hits table", ("table",), text),
-        Shot("placement", "soup_can", up, True, None, "", (), "soup_can by sample-on: in the plan"),
+        SampleMarker("placement", "soup_can", T, False, "test-pose-clear", "hits table", ("table",), text),
+        SampleMarker("placement", "soup_can", up, True, None, "", (), "soup_can by sample-on: in the plan"),
     )
-    alone = film_of(dataclasses.replace(film.scene), film.robot)
+    alone = timeline_of(dataclasses.replace(timeline.scene), timeline.robot)
     file = tmp_path / "samples.html"
-    write_page(page_document(alone, Story("a scene"), samples), file)
+    write_page(page_document(alone, PlanningSummary("a scene"), samples), file)
     browser.logged.clear()
     browser.open(file.as_uri())
     browser.wait("window.tamp !== undefined && document.title === 'one_object'")
@@ -172,7 +176,7 @@ def test_the_served_page_works_too(browser: Browser, document: dict[str, Any]) -
         browser.logged.clear()
         browser.requests.clear()
         browser.open(server.address)
-        browser.wait("window.tamp !== undefined && tamp.system.files.actions.length === 4")
+        browser.wait("window.tamp !== undefined && tamp.data.actions.length === 4")
         assert browser.logged == []
         assert [address for address in browser.requests if not address.startswith("data:")] == [server.address]
         server.shutdown()

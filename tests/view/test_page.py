@@ -21,8 +21,8 @@ from tamp.errors import InputError
 from tamp.view.document import page_document
 from tamp.view.page import page, write_page
 from tamp.view.server import PageServer
-from tamp.view.story import Story, story_of
-from tamp.view.timeline import Film
+from tamp.view.story import PlanningSummary, planning_summary
+from tamp.view.timeline import Timeline
 
 VOID = {"meta", "link", "input", "br"}
 
@@ -75,10 +75,10 @@ def test_the_page_is_small(document: dict[str, Any]) -> None:
     assert len(page(document)) < 1_500_000  # four_objects takes 0.9 MB of the 5 that it may
 
 
-def test_names_cannot_leave_their_place(film: Film) -> None:
+def test_names_cannot_leave_their_place(timeline: Timeline) -> None:
     evil = '</script><script>alert("1")</script><!--'
-    scene = replace(film.scene, name=evil)
-    text = page(page_document(replace(film, scene=scene), Story(evil)))
+    scene = replace(timeline.scene, name=evil)
+    text = page(page_document(replace(timeline, scene=scene), PlanningSummary(evil)))
     reader = read(text)
     assert len(reader.scripts) == 2
     assert json.loads(reader.scripts[0])["title"] == evil
@@ -88,14 +88,14 @@ def unpacked(text: str, kind: str) -> np.ndarray:
     return np.frombuffer(base64.b64decode(text), dtype=kind)
 
 
-def test_motion_and_shapes_survive_the_packing(document: dict[str, Any], film: Film) -> None:
-    assert unpacked(document["times"], "<f4") == pytest.approx(film.times, abs=1e-5)
-    assert unpacked(document["rows"], "<f4").reshape(-1, 11) == pytest.approx(film.rows, abs=1e-5)
+def test_motion_and_shapes_survive_the_packing(document: dict[str, Any], timeline: Timeline) -> None:
+    assert unpacked(document["times"], "<f4") == pytest.approx(timeline.times, abs=1e-5)
+    assert unpacked(document["rows"], "<f4").reshape(-1, 11) == pytest.approx(timeline.rows, abs=1e-5)
     can = next(body for body in document["bodies"] if body["name"] == "soup_can")
     (mesh,) = can["meshes"]
     grid = unpacked(mesh["vertices"], "<u2").reshape(-1, 3)
     vertices = np.array(mesh["low"]) + grid * np.array(mesh["step"])
-    shape = film.scene.bodies["soup_can"].parts[0].shape
+    shape = timeline.scene.bodies["soup_can"].parts[0].shape
     height = vertices[:, 2].max() - vertices[:, 2].min()
     assert height == pytest.approx(getattr(shape, "height"), abs=1e-5)  # noqa: B009
     assert unpacked(mesh["faces"], "<u4").max() == len(vertices) - 1
@@ -127,7 +127,7 @@ def test_a_spoilt_story_is_an_input_error(stored_plan: Path, spoil: Any) -> None
     plan = json.loads(stored_plan.read_text(encoding="utf-8"))
     spoil(plan)
     with pytest.raises(InputError, match=r"plan\.json"):
-        story_of(plan, stored_plan)
+        planning_summary(plan, stored_plan)
 
 
 def test_the_server_answers_with_the_page_and_nothing_else() -> None:

@@ -12,9 +12,9 @@ from PIL import Image
 from tamp.errors import InputError
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Sphere
 from tamp.view.mesh import Mesh, read_mesh, shape_mesh, simplified
-from tamp.view.picture import Studio, framing, write_png, write_video
+from tamp.view.picture import Renderer, framing, write_png, write_video
 from tamp.view.rasterizer import BACKGROUND, Camera, render, triangles
-from tamp.view.timeline import Film, film_of
+from tamp.view.timeline import Timeline, timeline_of
 from tests.view.images import pixels
 
 RED, GREEN = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0)
@@ -101,52 +101,52 @@ def test_bodies_throw_shadows() -> None:
     assert dark < 0.9 * np.median(grey)
 
 
-def test_everything_is_in_view(film: Film) -> None:
+def test_everything_is_in_view(timeline: Timeline) -> None:
     for size in ((800, 600), (400, 900)):
-        camera = framing(film, size)
+        camera = framing(timeline, size)
         ahead = np.array(camera.target) - np.array(camera.eye)
         ahead /= np.linalg.norm(ahead)
         right = np.cross(ahead, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
         up = np.cross(right, ahead)
         half = math.tan(math.radians(camera.angle) / 2)
-        for body in film.scene.bodies.values():
+        for body in timeline.scene.bodies.values():
             offset = np.array(body.pose.position) - camera.eye
             depth = offset @ ahead
             assert abs(offset @ up) < half * depth
             assert abs(offset @ right) < half * depth * size[0] / size[1]
 
 
-def test_a_picture_shows_start_middle_and_end(film: Film, tmp_path: Path) -> None:
+def test_a_picture_shows_start_middle_and_end(timeline: Timeline, tmp_path: Path) -> None:
     file = tmp_path / "new" / "plan.png"
-    write_png(film, file, size=(200, 150))
+    write_png(timeline, file, size=(200, 150))
     image = pixels(file)
     assert image.shape == (150, 600, 3)
     first, middle, last = np.split(image, 3, axis=1)
     assert min(part.std() for part in (first, middle, last)) > 20.0
     assert min(np.abs(first - middle).mean(), np.abs(middle - last).mean()) > 1.0
-    write_png(film, file, times=(0.0,), size=(200, 150))
+    write_png(timeline, file, times=(0.0,), size=(200, 150))
     assert pixels(file) == pytest.approx(first)
-    write_png(film_of(film.scene, film.robot), file, size=(200, 150))
+    write_png(timeline_of(timeline.scene, timeline.robot), file, size=(200, 150))
     assert pixels(file).shape == (150, 200, 3)
 
 
-def test_the_hand_leaves_its_path_behind(film: Film) -> None:
+def test_the_hand_leaves_its_path_behind(timeline: Timeline) -> None:
     """Against the same pictures without paths: what else is orange, and where the plan leads, do not count."""
-    studio, bare = Studio(film, (400, 300)), Studio(film, (400, 300))
+    renderer, bare = Renderer(timeline, (400, 300)), Renderer(timeline, (400, 300))
     bare._trails = []
     seen: list[int] = []
     for share in (0.0, 0.5, 1.0):
-        with_path, without = (one.frame(share * film.duration).astype(int) for one in (studio, bare))
+        with_path, without = (one.frame(share * timeline.duration).astype(int) for one in (renderer, bare))
         orange = (with_path[:, :, 0] - with_path[:, :, 2] > 110) & (with_path[:, :, 1] < 160)
         seen.append(int((orange & (with_path != without).any(axis=2)).sum()))
     assert seen[0] == 0 and 0 < seen[1] <= seen[2] and seen[2] > 40
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_a_moving_picture_moves(film: Film, tmp_path: Path, suffix: str) -> None:
+def test_a_moving_picture_moves(timeline: Timeline, tmp_path: Path, suffix: str) -> None:
     file = tmp_path / f"plan{suffix}"
-    write_video(film, file, speed=film.duration / 0.5, size=(96, 72))
+    write_video(timeline, file, speed=timeline.duration / 0.5, size=(96, 72))
     with Image.open(file) as image:
         assert getattr(image, "n_frames") == 5  # noqa: B009
         assert image.size == (96, 72)
@@ -155,11 +155,11 @@ def test_a_moving_picture_moves(film: Film, tmp_path: Path, suffix: str) -> None
         assert np.abs(np.asarray(image.convert("RGB"), dtype=float) - first).mean() > 1.0
 
 
-def test_what_cannot_be_written_is_an_input_error(film: Film, tmp_path: Path) -> None:
+def test_what_cannot_be_written_is_an_input_error(timeline: Timeline, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError, match="cannot write the picture"):
-        write_png(film, tmp_path / "file" / "out.png", times=(0.0,), size=(32, 32))
+        write_png(timeline, tmp_path / "file" / "out.png", times=(0.0,), size=(32, 32))
     with pytest.raises(InputError, match=r"no moving picture is written as '\.mp4'. Choices: \.gif, \.webp"):
-        write_video(film, tmp_path / "out.mp4")
+        write_video(timeline, tmp_path / "out.mp4")
     with pytest.raises(InputError, match="nothing moves without a plan"):
-        write_video(film_of(film.scene, film.robot), tmp_path / "out.gif")
+        write_video(timeline_of(timeline.scene, timeline.robot), tmp_path / "out.gif")

@@ -21,8 +21,8 @@ from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.structs import And, Domain, Stream, Task
 from tamp.system.deadline import Deadline
 from tamp.verification.verify import verify
-from tamp.view.open import film_of_solution
-from tamp.view.samples import shots
+from tamp.view.open import timeline_of_solution
+from tamp.view.samples import sample_markers
 
 
 def planned(name: str, record: bool) -> Solution:
@@ -47,7 +47,7 @@ def test_the_plan_is_the_same_and_holds(recorded: Solution, root: Path) -> None:
 
 def test_refused_samples_say_by_which_test_and_what_they_hit(recorded: Solution) -> None:
     assert recorded.record is not None and recorded.record.dropped == 0
-    found = shots(plan_document(recorded), recorded.problem.scene)
+    found = sample_markers(plan_document(recorded), recorded.problem.scene)
     placements = [shot for shot in found if shot.kind == "placement"]
     refused = [shot for shot in placements if shot.test is not None and not shot.used]
     hits = [shot for shot in refused if "hits " in shot.text]
@@ -74,8 +74,8 @@ def test_skeletons_are_told_with_what_failed(recorded: Solution) -> None:
 def test_without_a_plan_the_scene_shows_what_was_tried() -> None:
     impossible = solve(load_problem("impossible_size"), max_time=60.0, seed=0, record=True)
     assert not impossible.solved
-    film, story, document = film_of_solution(impossible)
-    assert film.actions == () and story.why and story.head.startswith("No plan")
+    timeline, story, document = timeline_of_solution(impossible)
+    assert timeline.actions == () and story.why and story.head.startswith("No plan")
     assert story.why == impossible.explanation
     assert document["record"] is not None
 

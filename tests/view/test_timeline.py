@@ -1,4 +1,4 @@
-"""Where the film has things is where the plan has them."""
+"""Where the timeline has things is where the plan has them."""
 
 from __future__ import annotations
 
@@ -12,68 +12,70 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.plan.open import Stored, open_plan
 from tamp.plan.write import write_plan
 from tamp.simulation.physics import World
-from tamp.view.timeline import Film, Stay, film_of, holding, tool_path
+from tamp.view.timeline import PoseInterval, Timeline, holding, timeline_of, tool_path
 
 
-def test_actions_and_objects_are_the_plans(film: Film, stored: Stored) -> None:
-    assert [action.name for action in film.actions] == ["move", "pick", "move", "place"]
-    assert film.actions[1].objects == ("soup_can",)
-    assert film.actions[-1].end == pytest.approx(film.duration) == pytest.approx(stored.plan.duration)
-    assert [action.text for action in film.actions[:2]] == ["move", "pick soup_can from table"]
-    assert film.actions[3].text == "place soup_can on cupboard_top"
-    starts = [action.start for action in film.actions]
+def test_actions_and_objects_are_the_plans(timeline: Timeline, stored: Stored) -> None:
+    assert [action.name for action in timeline.actions] == ["move", "pick", "move", "place"]
+    assert timeline.actions[1].objects == ("soup_can",)
+    assert timeline.actions[-1].end == pytest.approx(timeline.duration) == pytest.approx(stored.plan.duration)
+    assert [action.text for action in timeline.actions[:2]] == ["move", "pick soup_can from table"]
+    assert timeline.actions[3].text == "place soup_can on cupboard_top"
+    starts = [action.start for action in timeline.actions]
     assert starts[0] == 0.0 and starts == sorted(starts)
 
 
-def test_the_robot_moves_without_jumps_and_stands_before_and_after(film: Film) -> None:
-    assert film.row(-1.0) == pytest.approx(film.rows[0])
-    assert film.row(film.duration + 1.0) == pytest.approx(film.rows[-1])
-    times = np.arange(0.0, film.duration, 0.02)
-    rows = np.array([film.row(time) for time in times])
+def test_the_robot_moves_without_jumps_and_stands_before_and_after(timeline: Timeline) -> None:
+    assert timeline.row(-1.0) == pytest.approx(timeline.rows[0])
+    assert timeline.row(timeline.duration + 1.0) == pytest.approx(timeline.rows[-1])
+    times = np.arange(0.0, timeline.duration, 0.02)
+    rows = np.array([timeline.row(time) for time in times])
     assert np.abs(np.diff(rows, axis=0)).max() < 0.02 * 2.7  # rad/s, the fastest joint
 
 
-def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(film: Film, stored: Stored) -> None:
-    kinematics = Kinematics(film.robot)
-    kept, held, left = film.stays["soup_can"]
+def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(timeline: Timeline, stored: Stored) -> None:
+    kinematics = Kinematics(timeline.robot)
+    kept, held, left = timeline.stays["soup_can"]
     assert (kept.held, held.held, left.held) == (False, True, False)
     for time in np.linspace(held.since, left.since - 1e-6, 7):
-        T_tool_world = np.linalg.inv(kinematics.tool(film.row(time)[:10]))
-        assert T_tool_world @ film.poses(time, kinematics)["soup_can"] == pytest.approx(held.T)
+        T_tool_world = np.linalg.inv(kinematics.tool(timeline.row(time)[:10]))
+        assert T_tool_world @ timeline.poses(time, kinematics)["soup_can"] == pytest.approx(held.T)
     for time in (held.since, left.since):  # nothing jumps when it is grasped or let go
-        before, after = (film.poses(time + step, kinematics)["soup_can"] for step in (-1e-6, 1e-6))
+        before, after = (timeline.poses(time + step, kinematics)["soup_can"] for step in (-1e-6, 1e-6))
         assert before == pytest.approx(after, abs=1e-4)
     goal = next(action.arguments[1] for action in stored.plan.actions if action.name == "place")
-    assert film.poses(film.duration, kinematics)["soup_can"] == pytest.approx(stored.plan.values[goal].data, abs=1e-4)
+    assert timeline.poses(timeline.duration, kinematics)["soup_can"] == pytest.approx(
+        stored.plan.values[goal].data, abs=1e-4
+    )
 
 
-def test_links_stand_where_another_engine_has_them(film: Film) -> None:
-    kinematics = Kinematics(film.robot)
-    with World(film.scene, film.robot) as world:
-        for time in np.linspace(0.0, film.duration, 9):
-            row = film.row(time)
+def test_links_stand_where_another_engine_has_them(timeline: Timeline) -> None:
+    kinematics = Kinematics(timeline.robot)
+    with World(timeline.scene, timeline.robot) as world:
+        for time in np.linspace(0.0, timeline.duration, 9):
+            row = timeline.row(time)
             world.set_robot(row[:3], row[3:10], float(row[10]))
             ours = kinematics.link_poses(row[:10], float(row[10]))
             for name, pose in world.link_poses().items():
                 assert ours[name] == pytest.approx(pose, abs=1e-5), name
 
 
-def test_the_hand_is_full_between_pick_and_place(film: Film) -> None:
-    full = holding(film)
-    assert len(full) == len(film.times) - 1
-    middle = [full[int(np.searchsorted(film.times, action.end - 0.3)) - 1] for action in film.actions]
+def test_the_hand_is_full_between_pick_and_place(timeline: Timeline) -> None:
+    full = holding(timeline)
+    assert len(full) == len(timeline.times) - 1
+    middle = [full[int(np.searchsorted(timeline.times, action.end - 0.3)) - 1] for action in timeline.actions]
     assert middle == [False, True, True, False]
-    assert tool_path(film, Kinematics(film.robot)).shape == (len(film.times), 3)
+    assert tool_path(timeline, Kinematics(timeline.robot)).shape == (len(timeline.times), 3)
 
 
-def test_a_scene_alone_stands_still(film: Film) -> None:
-    still = film_of(film.scene, film.robot)
+def test_a_scene_alone_stands_still(timeline: Timeline) -> None:
+    still = timeline_of(timeline.scene, timeline.robot)
     assert still.duration == 0.0 and still.actions == ()
     assert holding(still) == []
-    for name in film.scene.movable:
+    for name in timeline.scene.movable:
         (stay,) = still.stays[name]
-        assert isinstance(stay, Stay)
-        assert film.scene.bodies[name].pose.matrix == pytest.approx(stay.T)
+        assert isinstance(stay, PoseInterval)
+        assert timeline.scene.bodies[name].pose.matrix == pytest.approx(stay.T)
 
 
 def test_names_keep_the_scenes_case(tmp_path: Path) -> None:
@@ -82,6 +84,6 @@ def test_names_keep_the_scenes_case(tmp_path: Path) -> None:
     problem.write_text(text.replace("soup_can", "Soup_Can"), encoding="utf-8")
     plan = write_plan(solve(load_problem(problem), max_time=60.0), tmp_path / "plan.json")
     opened = open_plan(plan)
-    film = film_of(opened.loaded.scene, opened.robot, opened.plan)
-    assert film.actions[1].objects == ("Soup_Can",)
-    assert len(film.stays["Soup_Can"]) == 3
+    timeline = timeline_of(opened.loaded.scene, opened.robot, opened.plan)
+    assert timeline.actions[1].objects == ("Soup_Can",)
+    assert len(timeline.stays["Soup_Can"]) == 3

@@ -65,7 +65,7 @@ class Arrangement:
 
     Checked are the robot against itself and the bodies, the attached body against both, all but the
     base and the arm's foot against the floor, and the base's centre against the room.
-    Configurations are float arrays (10,).
+    Configurations are float arrays (3 + n,).
 
     Args:
         tables: What the kernels read.
@@ -78,7 +78,7 @@ class Arrangement:
         self.stats = Statistics()
         self._exact = exact
 
-    def free(self, conf: Float[Array, " 10"]) -> bool:
+    def free(self, conf: Float[Array, " conf"]) -> bool:
         """Check whether everything is at least PADDING apart at `conf`."""
         self.stats.states += 1
         try:
@@ -92,7 +92,7 @@ class Arrangement:
         self.stats.states_undecided += 1
         return self._scan(conf, PADDING) is None
 
-    def edge_free(self, start: Float[Array, " 10"], end: Float[Array, " 10"]) -> bool:
+    def edge_free(self, start: Float[Array, " conf"], end: Float[Array, " conf"]) -> bool:
         """Check whether the straight line between two configurations is free of collision. Yaw
         turns the way that the numbers go.
 
@@ -118,7 +118,7 @@ class Arrangement:
                 return False
         return True
 
-    def hits(self, conf: Float[Array, " 10"], padding: float = 0.0) -> tuple[str, str] | None:
+    def hits(self, conf: Float[Array, " conf"], padding: float = 0.0) -> tuple[str, str] | None:
         """Return the names of a colliding pair, nearer than `padding` metres (with 0: that
         intersects or touches); None when free.
 
@@ -133,10 +133,11 @@ class Arrangement:
         return None if code == FREE else self._exact.names(*pair_of(answer))
 
     def path_hits(
-        self, path: Float[Array, "n 10"], step: float = 0.002, padding: float = 0.0
+        self, path: Float[Array, "n conf"], step: float = 0.002, padding: float = 0.0
     ) -> tuple[str, str] | None:
-        """Return the `hits` along the polyline `path` (n, 10), in states between which no point of
-        the robot moves more than `step` metres; pieces that the kernel proves free are not sampled.
+        """Return the `hits` along the polyline `path` (m, 3 + n), in states between which no
+        point of the robot moves more than `step` metres; pieces that the kernel proves free are not
+        sampled.
         """
         path = np.ascontiguousarray(path, dtype=np.float64)
         if len(path) == 1:

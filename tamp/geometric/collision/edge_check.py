@@ -22,10 +22,9 @@ from tamp.geometric.collision.kernels import (
     UNDECIDED,
     check,
     demand,
-    place_frames,
-    place_part,
     spheres_apart,
 )
+from tamp.geometric.collision.placing import place_frames, place_part
 from tamp.geometric.collision.tables import HIGH, LOW, ON_FLOOR, SIZE
 from tamp.geometric.scene.pose import Array
 from tamp.system.compilation import njit
@@ -112,6 +111,143 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
     return count
 
 
+@njit(**INLINE)
+def _leaves_the_room(start, end, room):
+    """Check whether the base is outside of the room at one of the ends."""
+    for conf in (start, end):
+        if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
+            return True
+    return False
+
+
+@njit(**INLINE)
+def _changes(start, end, change):
+    """Compute how far each joint goes along the edge, the base as a whole; say if any moves."""
+    moves = False
+    for k in range(len(start)):
+        change[k] = abs(end[k] - start[k])
+        moves = moves or change[k] > 0.0
+    change[0] = math.hypot(change[0], change[1])
+    return moves
+
+
+@njit(**INLINE)
+def _halve(head, tail, first, last, intervals, lists):
+    """Append the halves of an interval; each has the tasks first..last-1 to decide."""
+    for side in (-0.5, 0.5):
+        intervals[tail, 0] = intervals[head, 0] + side * intervals[head, 1]
+        intervals[tail, 1] = 0.5 * intervals[head, 1]
+        lists[tail, 0], lists[tail, 1] = first, last
+        tail += 1
+
+
+@njit(**INLINE)
+def _decide_pairs(
+    head, first, last, count, half, padding, frames, change, joints, parts, part_poses, placed,
+    reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s,
+    weights,
+):  # fmt: skip
+    """Decide the pairs first..last-1 of interval `head` at its middle, where the frames are.
+
+    Those that remain open are appended to `tasks`. Returns FREE and the number of tasks then, or
+    how the edge ends and the number so far.
+    """
+    fresh = head < 3
+    for t in range(first, last):
+        if fresh:
+            i, other = found[t, 0], found[t, 1]
+            guess[0] = guess[1] = guess[2] = 0.0
+        else:
+            i, other = tasks[t, 0], tasks[t, 1]
+            guess[0], guess[1], guess[2] = guesses[t, 0], guesses[t, 1], guesses[t, 2]
+            for p in (i, SELF - other):
+                if p >= 0 and ready[p] != head:
+                    place_part(p, frames, change, joints, parts, part_poses, placed, reach)
+                    ready[p] = head
+
+        far = demand(i, other, half, padding, parts, reach)
+        answer = check(
+            i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
+            vertices, leaves, guess, s, weights,
+        )  # fmt: skip
+        if answer == APART:
+            continue
+        if answer == CLOSE:
+            return verdict(np.int64(HIT), i, other), count
+        if far <= padding or count == TASKS:
+            return verdict(np.int64(UNDECIDED), i, other), count
+
+        tasks[count, 0], tasks[count, 1] = i, other
+        guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
+        count += 1
+    return np.int64(FREE), count
+
+
+@njit(**{**INLINE, "_nrt": True})
+def _decided(start, end, padding, tables):
+    """Decide an edge, interval by interval; see kernels.py."""
+    if _leaves_the_room(start, end, unpack(tables, np.int64(0))[0]):
+        return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
+    joints, vertices = unpack(tables, np.int64(1)), unpack(tables, np.int64(2))
+    leaves, parts = unpack(tables, np.int64(3)), unpack(tables, np.int64(4))
+    part_poses, pairs = unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
+    obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
+    n = parts.shape[0]
+
+    # A few allocations, cut into pieces: each costs as much as a pair.
+    size, moved = len(start), joints.shape[0] + 1
+    numbers, rows = np.empty(2 * size + 7), np.empty((moved + 5 + 2 * n, 12))
+    conf, change = numbers[:size], numbers[size : 2 * size]
+    guess, weights = numbers[2 * size : 2 * size + 3], numbers[2 * size + 3 :]
+    frames, s = rows[:moved], rows[moved : moved + 4]
+    placed, box = rows[moved + 4 : moved + 4 + n], rows[moved + 4 + n :]
+    reach = np.empty((n, moved + 4))
+    ready = np.zeros(n, dtype=np.int64)
+    found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
+
+    # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
+    # first three, the ends (of no length) and the whole, find theirs themselves.
+    moves = _changes(start, end, change)
+    intervals = np.empty((INTERVALS if moves else 1, 2))
+    lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
+    tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
+    guesses = np.empty((TASKS if moves else 0, 3))
+    intervals[0, 0], intervals[0, 1] = 1.0, 0.0
+    if moves:
+        intervals[1, 0], intervals[1, 1] = 0.0, 0.0
+        intervals[2, 0], intervals[2, 1] = 0.5, 0.5
+
+    count, head, tail = 0, 0, 3 if moves else 1
+    while head < tail:
+        middle, half = intervals[head, 0], intervals[head, 1]
+        for k in range(size):
+            conf[k] = start[k] + middle * (end[k] - start[k])
+        place_frames(conf, joints, frames)
+        if head < 3:
+            for k in range(n):
+                place_part(k, frames, change, joints, parts, part_poses, placed, reach)
+            first = 0
+            last = _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
+        else:
+            first, last = lists[head, 0], lists[head, 1]
+
+        before = count
+        answer, count = _decide_pairs(
+            head, first, last, count, half, padding, frames, change, joints, parts, part_poses,
+            placed, reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks,
+            guesses, guess, s, weights,
+        )  # fmt: skip
+        if answer != FREE:
+            return answer
+        if count > before:
+            if tail + 2 > INTERVALS:
+                return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
+            _halve(head, tail, before, count, intervals, lists)
+            tail += 2
+        head += 1
+    return np.int64(FREE)
+
+
 def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
     """Compile the kernel, or load it. `sources` makes the cached one stale when any of its files
     has changed.
@@ -126,120 +262,7 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
     def decide(start, end, padding, tables):
         if sources < 0:  # never: so that the number is a part of what is compiled
             return np.int64(UNDECIDED)
-        room = unpack(tables, np.int64(0))[0]
-        for conf in (start, end):
-            if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
-                return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
-
-        joints, vertices, leaves = (
-            unpack(tables, np.int64(1)),
-            unpack(tables, np.int64(2)),
-            unpack(tables, np.int64(3)),
-        )
-        parts, part_poses, pairs = (
-            unpack(tables, np.int64(4)),
-            unpack(tables, np.int64(5)),
-            unpack(tables, np.int64(6)),
-        )
-        obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
-        n = parts.shape[0]
-
-        # A few allocations, cut into pieces: each costs as much as a pair.
-        numbers, rows = np.empty(27), np.empty((13 + 3 * n, 12))
-        conf, change, guess, weights = numbers[:10], numbers[10:20], numbers[20:23], numbers[23:]
-        frames, s, placed, reach, box = (
-            rows[:8],
-            rows[8:12],
-            rows[12 : 12 + n],
-            rows[12 + n : 12 + 2 * n],
-            rows[12 + 2 * n :],
-        )
-
-        moves = False
-        for k in range(10):
-            change[k] = abs(end[k] - start[k])
-            moves = moves or change[k] > 0.0
-
-        change[0] = math.hypot(change[0], change[1])
-        ready = np.empty(n, dtype=np.int64)
-        for k in range(n):
-            ready[k] = 0
-
-        found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
-
-        # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
-        # first three, the ends (of no length) and the whole, find theirs themselves.
-        intervals = np.empty((INTERVALS if moves else 1, 2))
-        lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
-        tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
-        guesses = np.empty((TASKS if moves else 0, 3))
-        intervals[0, 0], intervals[0, 1] = 1.0, 0.0
-        if moves:
-            intervals[1, 0], intervals[1, 1] = 0.0, 0.0
-            intervals[2, 0], intervals[2, 1] = 0.5, 0.5
-
-        count, head, tail = 0, 0, 3 if moves else 1
-        while head < tail:
-            middle, half = intervals[head, 0], intervals[head, 1]
-            for k in range(10):
-                conf[k] = start[k] + middle * (end[k] - start[k])
-
-            place_frames(conf, joints, frames)
-            fresh = head < 3
-            if fresh:
-                for k in range(n):
-                    place_part(k, frames, change, parts, part_poses, placed, reach)
-                first, last = (
-                    0,
-                    _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found),
-                )
-            else:
-                first, last = lists[head, 0], lists[head, 1]
-
-            before = count
-            for t in range(first, last):
-                if fresh:
-                    i, other = found[t, 0], found[t, 1]
-                    guess[0] = guess[1] = guess[2] = 0.0
-                else:
-                    i, other = tasks[t, 0], tasks[t, 1]
-                    guess[0], guess[1], guess[2] = guesses[t, 0], guesses[t, 1], guesses[t, 2]
-                    for p in (i, SELF - other):
-                        if p >= 0 and ready[p] != head:
-                            place_part(p, frames, change, parts, part_poses, placed, reach)
-                            ready[p] = head
-
-                far = demand(i, other, half, padding, parts, reach)
-                answer = check(
-                    i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
-                    vertices, leaves, guess, s, weights,
-                )  # fmt: skip
-                if answer == APART:
-                    continue
-                if answer == CLOSE:
-                    return verdict(np.int64(HIT), i, other)
-
-                if far <= padding or count == TASKS:
-                    return verdict(np.int64(UNDECIDED), i, other)
-                tasks[count, 0], tasks[count, 1] = i, other
-                guesses[count, 0], guesses[count, 1], guesses[count, 2] = (
-                    guess[0],
-                    guess[1],
-                    guess[2],
-                )
-                count += 1
-
-            if count > before:
-                if tail + 2 > INTERVALS:
-                    return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
-                for side in (-0.5, 0.5):
-                    intervals[tail, 0], intervals[tail, 1] = middle + side * half, 0.5 * half
-                    lists[tail, 0], lists[tail, 1] = before, count
-                    tail += 1
-
-            head += 1
-
-        return np.int64(FREE)
+        return _decided(start, end, padding, tables)
 
     return decide  # pyright: ignore[reportReturnType]  # a numba dispatcher
 
@@ -249,14 +272,15 @@ def sources_digest() -> int:
     looks at one file only.
     """
     files = (
-        Path(__file__).parent / f"{name}.py" for name in ("tables", "gjk", "kernels", "edge_check")
+        Path(__file__).parent / f"{name}.py"
+        for name in ("tables", "gjk", "placing", "kernels", "edge_check")
     )
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 
 sweep = _compiled(sources_digest())
 """sweep(start, end, padding, tables) -> verdict: whether the straight line between two
-configurations (10,) is free.
+configurations (3 + n,) is free.
 
 Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked
 middle are at least this far from everything, all states between at least half of it. `tables`:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import fcl
 import numpy as np
+from numpy.typing import NDArray
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box, Cylinder, Part, Shape, Sphere
@@ -25,6 +27,20 @@ class FclBody:
         self.objects = [fcl.CollisionObject(geometry(part.shape)) for part in parts]
         self._T_body_part = [part.pose.matrix for part in parts]
         self._at: list[Array | None] = [None] * len(parts)
+
+    @classmethod
+    def of_meshes(cls, meshes: Iterable[tuple[Array, NDArray[np.int64]]]) -> FclBody:
+        """Make a body of meshes: vertices (n, 3) in the body's frame and faces (m, 3)."""
+        body = cls(())
+        for vertices, faces in meshes:
+            model = fcl.BVHModel()
+            model.beginModel(len(vertices), len(faces))
+            model.addSubModel(vertices, faces)
+            model.endModel()
+            body.objects.append(fcl.CollisionObject(model))
+            body._T_body_part.append(np.eye(4))
+            body._at.append(None)
+        return body
 
     def place(self, index: int, T_world_body: Float[Array, "4 4"]) -> fcl.CollisionObject:
         """Place part `index` with the body at `T_world_body` (4, 4)."""

@@ -52,7 +52,7 @@ class Exact:
         self._standing = standing
         self._floor = floor
 
-    def nearer(self, conf: Float[Array, " 10"], part: int, other: int, padding: float) -> bool:
+    def nearer(self, conf: Float[Array, " conf"], part: int, other: int, padding: float) -> bool:
         """Check whether that pair (as in `sweep.pair_of`) is nearer than `padding` metres at
         `conf`; 0: intersects.
         """

@@ -41,11 +41,11 @@ class HandCollisions:
         self._scene = scene
         self._robot = robot
         T_hand_last = robot.T_flange_hand.inverse()
-        wrist = (*robot.links[-4].parts, *_core(robot))
+        wrist = (*robot.link(robot.joints[-1].child).parts, *_core(robot))
         behind = tuple(Part(part.shape, T_hand_last @ part.pose) for part in wrist)
-        self._parts_of_hand = (*robot.links[-3].parts, *behind)
+        self._parts_of_hand = (*robot.link(robot.hand).parts, *behind)
         self._hand = FclBody(self._parts_of_hand)
-        self._fingers = [FclBody(link.parts) for link in robot.links[-2:]]
+        self._fingers = [FclBody(link.parts) for link in robot.finger_links]
         self._bodies = {name: FclBody(body.parts) for name, body in scene.bodies.items()}
         self._held = {name: FclBody(scene.bodies[name].parts) for name in scene.movable}
         self._T_tool_hand = robot.T_hand_tool.inverse().matrix
@@ -124,7 +124,7 @@ class HandCollisions:
             fingers = [
                 (body, link.parts, self._T_tool_hand @ _finger(joint, opening))
                 for body, link, joint in zip(
-                    self._fingers, self._robot.links[-2:], self._robot.fingers, strict=True
+                    self._fingers, self._robot.finger_links, self._robot.fingers, strict=True
                 )
             ]
             self._open[opening] = _Movers.of(
@@ -187,10 +187,12 @@ def _core(robot: Robot) -> list[Part]:
     when |n - (n u) u| r + (n u) h <= d at both ends.
     """
     joint = robot.joints[-1]
+    if joint.kind == "prismatic" or len(robot.joints) < 2:
+        return []
     axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
     inverse = joint.origin.inverse()
     cores: list[Part] = []
-    for part in robot.links[-5].parts:
+    for part in robot.link(robot.joints[-2].child).parts:
         if not isinstance(part.shape, Hull):
             continue
 

@@ -10,7 +10,7 @@ import numpy as np
 from tamp.geometric.collision.tables import FRAME, ON_FLOOR, Rows, pose_rows
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.spheres import link_covers
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -36,8 +36,7 @@ class RobotTables:
     """Prepares a robot's rows once and completes them for an opening and an attached body.
 
     Args:
-        robot: The robot; its links are the base, the arm's foot, one link a joint, the hand and two
-            fingers.
+        robot: The robot.
         collected: Where its vertices and leaves go.
     """
 
@@ -45,21 +44,14 @@ class RobotTables:
         self.robot = robot
         origins = [joint.origin for joint in robot.joints]
         origins[0] = robot.T_base_arm @ origins[0]
-        self.joints = pose_rows(np.array([origin.matrix for origin in origins]))
+        poses = pose_rows(np.array([origin.matrix for origin in origins]))
+        self.joints = np.column_stack([poses, np.array(robot.prismatic, dtype=np.float64)])
 
-        hand = tuple(link.name for link in robot.links[-3:])
+        hand = robot.grippers
         covers = link_covers(robot)
         owners, rows, matrices = [], [], []
-        for index, link in enumerate(robot.links):
-            frame = min(max(0, index - 1), len(robot.joints))
-            offset = (
-                robot.T_base_arm
-                if index == 1
-                else robot.T_flange_hand
-                if link.name in hand
-                else Pose()
-            )
-
+        for link in robot.links:
+            frame, offset = robot.frame_of(link.name)
             for k, part in enumerate(link.parts):
                 row = collected.row(part, covers.get((link.name, k)))
                 row[FRAME], row[ON_FLOOR] = frame, float(frame == 0)
@@ -118,7 +110,7 @@ class RobotTables:
         """
         slides = np.zeros((len(matrices), 3))
         hand = self.robot.T_flange_hand.matrix
-        for link, joint in zip(self.robot.links[-2:], self.robot.fingers, strict=True):
+        for link, joint in zip(self.robot.finger_links, self.robot.fingers, strict=True):
             T_flange_finger = hand @ joint.origin.matrix
             for i, (name, k) in enumerate(self._owners):
                 if name == link.name:

@@ -23,10 +23,13 @@ WIDTH = 22
 
 KIND; SIZE: half extents of its box around CENTRE, both in the part's frame; RADIUS of its sphere
 around CENTRE; MARGIN around the core; VERTICES and LEAVES: first row and number of rows in those
-tables; SLACK: how far its spheres may stand out of it; FRAME: joint (1..7) that moves it, 0 for the
+tables; SLACK: how far its spheres may stand out of it; FRAME: joint (1..n) that moves it, 0 for the
 base; ON_FLOOR: may touch the floor; LOW and HIGH: corners of the world's box around it (obstacles
 only). Metres.
 """
+
+SLIDES = 12
+"""Column of a joint's row after its pose: 1 where it slides along its z, 0 where it turns."""
 
 
 class Tables(NamedTuple):
@@ -35,8 +38,8 @@ class Tables(NamedTuple):
 
     Attributes:
         room: x low, x high, y low, y high of the base's centre, metres.
-        joints: (7, 12), each joint's frame at angle 0 in the one before it, the first in the base;
-            they turn about z.
+        joints: (n, 13), each joint's frame at 0 in the one before it, the first in the base, and
+            SLIDES; they turn about z or slide along it.
         vertices: (3, v) of all hulls, each in its part's frame; one column a vertex, for vector
             instructions.
         leaves: (l, 4) centres and radii of the spheres that cover parts, each in its part's frame.

@@ -28,7 +28,7 @@ COLOURS: Mapping[str, tuple[float, float, float]] = {
 
 PLACEMENT = ("on", "at", "yaw", "rpy", "quaternion", "pose")
 _SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
-_COMMON = (*PLACEMENT, "fixed", "mass", "friction", "colour", "surfaces", "cavities")
+_COMMON = (*PLACEMENT, "fixed", "mass", "friction", "colour", "surfaces", "cavities", "front")
 _OPTIONS = {"mesh": ("scale",)}
 _LARGEST_MOVABLE = 5.0
 _LARGEST = 1e5
@@ -120,6 +120,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         visuals=_visuals(mesh, "colour" in entries),
         center_of_mass=mesh.center_of_mass if mesh else None,
         bare="surfaces" in entries,
+        front=entries["front"].angle() if "front" in entries else 0.0,
     )
 
     return Draft(body, {key: entries[key] for key in PLACEMENT if key in entries}, node, mesh)

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from tamp.errors import InputError
 from tamp.geometric.loading.bodies import Draft, read_body
 from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
+from tamp.geometric.loading.robots import find_robot, load_robot
 from tamp.geometric.loading.steadying import steady
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node, Passage
@@ -17,6 +18,9 @@ from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.system.files import find_problem
 
 _KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
+
+_ANYWHERE = Room((-FARTHEST, FARTHEST), (-FARTHEST, FARTHEST))
+_NO_MATTER_WHICH = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -61,21 +65,29 @@ class LoadedProblem:
         return self.entry_lines.get(keys)
 
 
-def load_scene(problem: str | Path) -> LoadedProblem:
+def load_scene(
+    problem: str | Path, robot: str | None = None, *, demonstration: bool = False
+) -> LoadedProblem:
     """Load a problem file.
 
     Args:
         problem: A path, or the name of a shipped problem.
+        robot: A shipped robot's name or a robot's folder, instead of the one that the file names;
+            its arm then starts at home.
+        demonstration: Whether it may go without robot and room, since no plan is wanted.
 
     Raises:
         InputError: Anything wrong with the file, with its line.
     """
     path = find_problem(problem)
     root = read_yaml(path)
-    entries = root.mapping(_KEYS, required=("robot", "room", "bodies", "goal"))
+    needed = ("bodies", "goal") if demonstration else ("robot", "room", "bodies", "goal")
+    entries = root.mapping(_KEYS, required=needed)
     name = entries["name"].text() if "name" in entries else path.stem
-    room = _room(entries["room"])
-    robot = _robot(entries["robot"], room)
+    room = _room(entries["room"]) if "room" in entries else _ANYWHERE
+    start = _NO_MATTER_WHICH
+    if "robot" in entries:
+        start = _robot(entries["robot"], room, path, robot)
 
     drafts = {
         body: read_body(body, node, path.parent)
@@ -90,7 +102,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
 
     return LoadedProblem(
         path=path,
-        scene=Scene(name, MappingProxyType(bodies), robot, room),
+        scene=Scene(name, MappingProxyType(bodies), start, room),
         goal=entries["goal"].passage(),
         domain=entries["domain"].text() if "domain" in entries else None,
         init=tuple(fact.passage() for fact in entries["init"].items()) if "init" in entries else (),
@@ -112,7 +124,7 @@ def load_scene(problem: str | Path) -> LoadedProblem:
             **{("samplers", relation): node.line for relation, node in samplers.items()},
         },
         lines={
-            "robot": entries["robot"].line,
+            "robot": entries["robot"].line if "robot" in entries else root.line,
             **{body: draft.node.line for body, draft in drafts.items()},
         },
     )
@@ -133,11 +145,16 @@ def _room(node: Node) -> Room:
     return Room(*limits)
 
 
-def _robot(node: Node, room: Room) -> RobotStart:
-    from tamp.geometric.robot.robot import ROBOTS  # not needed to read the rest
-
+def _robot(node: Node, room: Room, file: Path, instead: str | None) -> RobotStart:
     entries = node.mapping(("model", "base", "arm"), required=("model", "base"))
-    model = entries["model"].text(tuple(ROBOTS), "robot")
+    named = entries["model"]
+    if instead is not None:
+        model = find_robot(instead)
+    else:
+        try:
+            model = find_robot(named.text(), file.parent)
+        except InputError as error:
+            raise error.at(file, named.line) from None
     base = entries["base"].items(3)
     x, y, yaw = base[0].number(), base[1].number(), base[2].angle()
     for axis, value, (low, high) in (("x", x, room.x), ("y", y, room.y)):
@@ -146,13 +163,12 @@ def _robot(node: Node, room: Room) -> RobotStart:
                 f"the robot starts out of the room: {axis} = {value:g} is not within "
                 f"[{low:g}, {high:g}]"
             )
-    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if "arm" in entries else None)
+    own = "arm" in entries and instead is None
+    return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if own else None)
 
 
 def _arm(node: Node, model: str) -> tuple[float, ...]:
-    from tamp.geometric.robot.robot import ROBOTS
-
-    robot = ROBOTS[model]()
+    robot = load_robot(model)
     joints = node.items(len(robot.lower))
     angles = tuple(joint.angle() for joint in joints)
     for joint, angle, low, high in zip(joints, angles, robot.lower, robot.upper, strict=True):

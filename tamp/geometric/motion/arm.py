@@ -26,8 +26,8 @@ PATIENCE = 5
 def plan_arm(
     checker: Checker,
     base: Float[Array, " 3"],
-    start: Float[Array, " 7"],
-    goals: Float[Array, "... 7"],
+    start: Float[Array, " joints"],
+    goals: Float[Array, "... joints"],
     robot: Limits,
     rng: np.random.Generator,
     deadline: Deadline,
@@ -44,8 +44,8 @@ def plan_arm(
     Args:
         checker: The robot among the bodies.
         base: x, y in metres and yaw, shape (3,).
-        start: Joint angles, shape (7,), radians.
-        goals: One goal (7,) or several (k, 7); those in collision are left out.
+        start: Joint angles, shape (n,), radians.
+        goals: One goal (n,) or several (k, n); those in collision are left out.
         robot: Gives the joint limits.
         rng: Advanced by two draws at most per call, plus those of the shortcuts.
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
@@ -53,7 +53,7 @@ def plan_arm(
         shortcuts: Random cuts to try.
 
     Returns:
-        The path (n, 7), beginning with `start` and ending with one of `goals`, both exactly.
+        The path (m, n), beginning with `start` and ending with one of `goals`, both exactly.
     """
     start = np.asarray(start, dtype=float)
     candidates = np.atleast_2d(np.asarray(goals, dtype=float))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.motion.checker import Checker
+from tamp.geometric.motion.differential import turn_and_drive
 from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
 from tamp.geometric.motion.result import Failure, Planned
 from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
@@ -34,12 +35,14 @@ CURVE_STEP = (
 RETREATS = (0.3, 0.6)  # metres to back away from furniture before turning
 PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
 
+STEERINGS = ("se2", "reeds-shepp", "differential")
+
 EdgeTest = Callable[[Array, Array], bool]
 
 
 def plan_base(
     checker: Checker,
-    arm: Float[Array, " 7"],
+    arm: Float[Array, " joints"],
     start: Float[Array, " 3"],
     goal: Float[Array, " 3"],
     room: Room,
@@ -56,21 +59,22 @@ def plan_base(
     With "se2" the base moves in any direction: the straight line (translating and turning at once),
     turning before or after driving, and backing away first are tried in this order, then
     RRTConnect; the path is shortened. With "reeds-shepp" it drives like a car, along sampled curves
-    of `turning_radius` metres. Every edge of the result has been certified by `checker.edge_free`
+    of `turning_radius` metres. With "differential" it turns on the spot and drives straight ahead
+    or backwards. Every edge of the result has been certified by `checker.edge_free`
     as it is returned. Deterministic, as long as the deadline does not cut it.
 
     Args:
         checker: The robot, with what it holds, among the bodies.
-        arm: Joint angles, shape (7,), radians.
+        arm: Joint angles, shape (n,), radians.
         start: x, y in metres and yaw in radians, shape (3,).
         goal: The same; its yaw is meant up to whole turns.
         room: Where the base's centre may be.
         rng: The source of the planner's seed and of the shortcuts.
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
-        steering: "se2" or "reeds-shepp".
+        steering: One of STEERINGS.
         turning_radius: For "reeds-shepp", metres.
         effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
-        shortcuts: Random cuts to try ("se2" only).
+        shortcuts: Random cuts to try (not with "reeds-shepp").
 
     Returns:
         The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the
@@ -79,8 +83,8 @@ def plan_base(
     Raises:
         ValueError: Unknown steering.
     """
-    if steering not in ("se2", "reeds-shepp"):
-        raise ValueError(f"unknown steering '{steering}'. Choices: se2, reeds-shepp")
+    if steering not in STEERINGS:
+        raise ValueError(f"unknown steering '{steering}'. Choices: {', '.join(STEERINGS)}")
     start = np.asarray(start, dtype=float)
     goal = nearest(start, np.asarray(goal, dtype=float), YAW)
     checks = 0
@@ -123,6 +127,11 @@ def plan_base(
                 path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS,
                 periodic=YAW,
             )  # fmt: skip
+    elif steering == "differential":
+        path = turn_and_drive(
+            start, goal, room, edge_free, rng, seed=seed, checks=budget, deadline=deadline,
+            tries=shortcuts,
+        )  # fmt: skip
     else:
         plane = PlaneSpace(room.x, room.y, turning_radius)
         path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)

@@ -12,7 +12,7 @@ class Checker(Protocol):
     """Decides configurations and straight edges between them;
     `tamp.geometric.collision.collisions.Arrangement` is one.
 
-    A configuration has shape (10,): base x, y in metres, base yaw, then the arm's seven joints,
+    A configuration has shape (3 + n,): base x, y in metres, base yaw, then the arm's joints,
     radians.
     """
 
@@ -32,7 +32,7 @@ class Limits(Protocol):
 
     @property
     def lower(self) -> Sequence[float]:
-        """Smallest angles, shape (7,), radians."""
+        """Smallest angles, shape (n,), radians."""
         ...
 
     @property

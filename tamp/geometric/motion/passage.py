@@ -267,7 +267,7 @@ def _base(robot: Robot) -> tuple[float, tuple[float, float]] | None:
     """Compute the radius of the largest disc about the base's origin that is in the base, and
     between which heights.
     """
-    parts = robot.links[0].parts
+    parts = robot.link(robot.base).parts
     if (
         len(parts) != 1
         or not isinstance(parts[0].shape, Box)

@@ -1,9 +1,9 @@
-"""Compiled kinematics of an arm of seven revolute joints about z: FK, the check of IK solutions,
-path following.
+"""Compiled kinematics of an arm of any number of joints: FK, the Jacobian, path following.
 
-The arm is given as `origins` (7, 4, 4), each joint's frame at 0 in the one before (the first in the
-base), and `T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when
-it is imported first.
+The arm is given as `origins` (n, 4, 4), each joint's frame at 0 in the one before (the first in the
+base), `slides` (n,), 1 for a joint that slides along its z and 0 for one that turns about it, and
+`T_flange_tool` (4, 4). Metres and radians. Small on purpose: it is compiled once, when it is
+imported first.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ TWO_PI = 2.0 * np.pi
 INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """For functions that only compiled code calls; they are kept with the ones that call them."""
 
-_ANGLES, _ROWS, _POSES = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
+ANGLES, ROWS, POSES = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 
 
 @njit(**INNER)
@@ -33,20 +33,25 @@ def _product(A, B, C):
 
 
 @njit(**INNER)
-def frames(origins, T_flange_tool, q, joints, tool):
-    """Write the frames at q (7,): the joints' (7, 3, 4) and the tool's (3, 4), by FK."""
+def frames(origins, slides, T_flange_tool, q, joints, tool):
+    """Write the frames at q (n,): the joints' (n, 3, 4) and the tool's (3, 4), by FK."""
+    n = len(origins)
     for row in range(3):
         for column in range(4):
             joints[0, row, column] = origins[0, row, column]
-    for i in range(7):
+    for i in range(n):
         if i > 0:
             _product(joints[i - 1], origins[i], joints[i])
+        if slides[i] > 0.0:
+            for row in range(3):
+                joints[i, row, 3] += joints[i, row, 2] * q[i]
+            continue
         cos, sin = math.cos(q[i]), math.sin(q[i])
         for row in range(3):
             x, y = joints[i, row, 0], joints[i, row, 1]
             joints[i, row, 0] = x * cos + y * sin
             joints[i, row, 1] = y * cos - x * sin
-    _product(joints[6], T_flange_tool, tool)
+    _product(joints[n - 1], T_flange_tool, tool)
 
 
 @njit(**INNER)
@@ -74,55 +79,75 @@ def _error(tool, target, error):
 
 
 @njit(**INNER)
-def _solve(A, b):
-    """Overwrite b (6,) by the x of A x = b for a symmetric positive definite A (6, 6), overwritten
-    as well.
+def jacobian(slides, joints, tool, J):
+    """Write the Jacobian (6, n) of the tool: its origin's velocity above the angular one."""
+    for i in range(len(slides)):
+        ax, ay, az = joints[i, 0, 2], joints[i, 1, 2], joints[i, 2, 2]
+        if slides[i] > 0.0:
+            J[0, i], J[1, i], J[2, i] = ax, ay, az
+            J[3, i], J[4, i], J[5, i] = 0.0, 0.0, 0.0
+            continue
+        rx, ry, rz = (
+            tool[0, 3] - joints[i, 0, 3],
+            tool[1, 3] - joints[i, 1, 3],
+            tool[2, 3] - joints[i, 2, 3],
+        )
+        J[0, i], J[1, i], J[2, i] = ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx
+        J[3, i], J[4, i], J[5, i] = ax, ay, az
+
+
+@njit(**INNER)
+def solve(A, b, floor):
+    """Overwrite b (n,) by the x of A x = b for a symmetric positive definite A (n, n), of which the
+    lower half is read, and overwritten as well; no pivot is below `floor`.
 
     Written out because numba's linalg would import scipy.
     """
-    for i in range(6):
+    n = len(b)
+    for i in range(n):
         for j in range(i + 1):
             total = A[i, j]
             for k in range(j):
                 total -= A[i, k] * A[j, k]
-            A[i, j] = math.sqrt(max(total, 1e-12)) if i == j else total / A[j, j]
-    for i in range(6):
+            A[i, j] = math.sqrt(max(total, floor)) if i == j else total / A[j, j]
+    for i in range(n):
         for k in range(i):
             b[i] -= A[i, k] * b[k]
         b[i] /= A[i, i]
-    for i in range(5, -1, -1):
-        for k in range(i + 1, 6):
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
             b[i] -= A[k, i] * b[k]
         b[i] /= A[i, i]
 
 
 @njit(**INNER)
 def _step(J, error, q, lower, upper, drift, step):
-    """Write into step (7,) a damped least-squares step; joints that it would push out of their
+    """Write into step (n,) a damped least-squares step; joints that it would push out of their
     limits are frozen.
     """
-    active, wish = np.empty(7), np.empty(7)
-    for i in range(7):
+    n = len(q)
+    active, wish = np.empty(n), np.empty(n)
+    for i in range(n):
         active[i] = 1.0
     A, b = np.empty((6, 6)), np.empty(6)
 
-    for _ in range(7):
-        for i in range(7):
+    for _ in range(n):
+        for i in range(n):
             middle, half = (upper[i] + lower[i]) / 2, (upper[i] - lower[i]) / 2
             wish[i] = drift * active[i] * (middle - q[i]) / half
 
         for r in range(6):
             b[r] = error[r]
-            for i in range(7):
+            for i in range(n):
                 b[r] -= J[r, i] * wish[i]
             for c in range(6):
                 A[r, c] = 1e-8 if r == c else 0.0
-                for i in range(7):
+                for i in range(n):
                     A[r, c] += active[i] * J[r, i] * J[c, i]
 
-        _solve(A, b)
+        solve(A, b, 1e-12)
         frozen = False
-        for i in range(7):
+        for i in range(n):
             step[i] = wish[i]
             for r in range(6):
                 step[i] += active[i] * J[r, i] * b[r]
@@ -134,56 +159,22 @@ def _step(J, error, q, lower, upper, drift, step):
             break
 
     largest = 0.5
-    for i in range(7):
+    for i in range(n):
         largest = max(largest, abs(step[i]))
-    for i in range(7):
+    for i in range(n):
         step[i] *= 0.5 / largest
 
 
 @njit(
-    _ROWS(_POSES, _ROWS, _ANGLES, _ANGLES, _ROWS, _ROWS, types.float64),
-    cache=True,
-    error_model="numpy",
-    no_cfunc_wrapper=True,
-)
-def keep_valid(origins, T_flange_tool, lower, upper, target, candidates, tolerance):
-    """Return the candidates (n, 7), turned by full turns into the limits, whose FK meets the target
-    (4, 4). Shape (m, 7).
-
-    The tolerance holds for the position's distance in metres and for the largest difference of a
-    rotation's entries.
-    """
-    kept = np.empty((len(candidates), 7))
-    joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
-    count = 0
-    for n in range(len(candidates)):
-        inside = True
-        for i in range(7):
-            angle = candidates[n, i]
-            angle -= TWO_PI * np.ceil((angle - upper[i]) / TWO_PI)
-            inside = inside and angle >= lower[i]
-            kept[count, i] = angle
-        if inside:
-            frames(origins, T_flange_tool, kept[count], joints, tool)
-            worst = 0.0
-            for r in range(3):
-                for c in range(4):
-                    worst = max(worst, abs(tool[r, c] - target[r, c]))
-            if worst < tolerance:
-                count += 1
-    return kept[:count]
-
-
-@njit(
-    types.Tuple((_ROWS, types.int64))(
-        _POSES, _ROWS, _ANGLES, _ANGLES, _POSES, _ANGLES, types.float64
+    types.Tuple((ROWS, types.int64))(
+        POSES, ANGLES, ROWS, ANGLES, ANGLES, POSES, ANGLES, types.float64
     ),
     cache=True,
     error_model="numpy",
     no_cfunc_wrapper=True,
 )
-def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
-    """Follow the targets (k, 4, 4) by joint angles (k, 7), each from the one before by damped
+def follow(origins, slides, T_flange_tool, lower, upper, targets, start, jump):
+    """Follow the targets (k, 4, 4) by joint angles (k, n), each from the one before by damped
     Newton steps.
 
     Returns the path and the number of targets reached: k, or less where a target could not be met
@@ -191,36 +182,28 @@ def follow(origins, T_flange_tool, lower, upper, targets, start, jump):
     freedom drifts towards the middle of the joints' ranges (Liegeois 1977); a joint at its limit is
     frozen.
     """
-    path = np.empty((len(targets), 7))
-    joints, tool = np.empty((7, 3, 4)), np.empty((3, 4))
-    J, error = np.empty((6, 7)), np.empty(6)
-    q, step = start.copy(), np.empty(7)
+    n = len(origins)
+    path = np.empty((len(targets), n))
+    joints, tool = np.empty((n, 3, 4)), np.empty((3, 4))
+    J, error = np.empty((6, n)), np.empty(6)
+    q, step = start.copy(), np.empty(n)
 
     for k in range(len(targets)):
         miss = np.inf
         for iteration in range(25):
-            frames(origins, T_flange_tool, q, joints, tool)
+            frames(origins, slides, T_flange_tool, q, joints, tool)
             miss = _error(tool, targets[k], error)
             if miss < 1e-9:
                 break
 
-            for i in range(7):
-                ax, ay, az = joints[i, 0, 2], joints[i, 1, 2], joints[i, 2, 2]
-                rx, ry, rz = (
-                    tool[0, 3] - joints[i, 0, 3],
-                    tool[1, 3] - joints[i, 1, 3],
-                    tool[2, 3] - joints[i, 2, 3],
-                )
-                J[0, i], J[1, i], J[2, i] = ay * rz - az * ry, az * rx - ax * rz, ax * ry - ay * rx
-                J[3, i], J[4, i], J[5, i] = ax, ay, az
-
+            jacobian(slides, joints, tool, J)
             _step(J, error, q, lower, upper, 0.02 if iteration == 0 else 0.0, step)
-            for i in range(7):
+            for i in range(n):
                 q[i] = min(max(q[i] + step[i], lower[i]), upper[i])
 
         if miss > 1e-6:
             return path, k
-        for i in range(7):
+        for i in range(n):
             previous = path[k - 1, i] if k > 0 else start[i]
             if abs(q[i] - previous) > jump:
                 return path, k

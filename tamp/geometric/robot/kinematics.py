@@ -22,10 +22,7 @@ class Kinematics:
     joints.
 
     One object per robot: it owns pinocchio's buffers, so it must not be shared between threads.
-    Configurations are [base x, base y, base yaw, q1..q7], metres and radians.
-
-    Raises:
-        ValueError: A joint of the arm does not turn about its z axis.
+    Configurations are [base x, base y, base yaw, q1..qn], metres and radians.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -37,11 +34,9 @@ class Kinematics:
 
         origin = robot.T_base_arm
         for joint in robot.joints:
-            if joint.kind != "revolute" or joint.axis != (0.0, 0.0, 1.0):
-                raise ValueError(f"{joint.name}: only revolute joints about z are supported")
-            parent = model.addJoint(
-                parent, pinocchio.JointModelRZ(), _se3(origin @ joint.origin), joint.name
-            )
+            slides = joint.kind == "prismatic"
+            kind = pinocchio.JointModelPZ if slides else pinocchio.JointModelRZ
+            parent = model.addJoint(parent, kind(), _se3(origin @ joint.origin), joint.name)
             origin = Pose()
 
         self._tool = model.addFrame(
@@ -55,7 +50,7 @@ class Kinematics:
 
         self._model, self._data, self._flange = model, model.createData(), parent
         self._joint_of_link = tuple(
-            (link.name, 4 + index) for index, link in enumerate(robot.links[2:-3])
+            (joint.child, 4 + index) for index, joint in enumerate(robot.joints)
         )
         self._T_base_arm = robot.T_base_arm.matrix
         self._T_flange_hand = robot.T_flange_hand.matrix
@@ -64,35 +59,33 @@ class Kinematics:
         )
 
     def link_poses(
-        self, conf: Float[Array, " 10"], opening: float
+        self, conf: Float[Array, " conf"], opening: float
     ) -> dict[str, Float[Array, "4 4"]]:
         """Compute T_world_link (4, 4) of all links by name; each finger stands at opening / 2."""
-        data, links = self._data, self.robot.links
+        data, robot = self._data, self.robot
         pinocchio.forwardKinematics(self._model, data, conf)
         T_world_base = data.oMi[3].homogeneous
-        poses = {links[0].name: T_world_base, links[1].name: T_world_base @ self._T_base_arm}
+        poses = {robot.base: T_world_base, robot.foot: T_world_base @ self._T_base_arm}
         for name, index in self._joint_of_link:
             poses[name] = data.oMi[index].homogeneous
-        T_world_hand = poses[links[-3].name] = (
-            data.oMi[self._flange].homogeneous @ self._T_flange_hand
-        )
+        T_world_hand = poses[robot.hand] = data.oMi[self._flange].homogeneous @ self._T_flange_hand
         for name, origin, axis in self._fingers:
             T_hand_finger = origin.copy()
             T_hand_finger[:3, 3] += axis * (opening / 2)
             poses[name] = T_world_hand @ T_hand_finger
         return poses
 
-    def tool(self, conf: Float[Array, " 10"]) -> Float[Array, "4 4"]:
+    def tool(self, conf: Float[Array, " conf"]) -> Float[Array, "4 4"]:
         """Compute T_world_tool, shape (4, 4)."""
         pinocchio.forwardKinematics(self._model, self._data, conf)
         return pinocchio.updateFramePlacement(self._model, self._data, self._tool).homogeneous
 
-    def arm_tool(self, arm: Float[Array, " 7"]) -> Float[Array, "4 4"]:
-        """Compute T_base_tool, shape (4, 4), at joint angles (7,)."""
+    def arm_tool(self, arm: Float[Array, " joints"]) -> Float[Array, "4 4"]:
+        """Compute T_base_tool, shape (4, 4), at joint positions (n,)."""
         return self.tool(np.concatenate([(0.0, 0.0, 0.0), arm]))
 
-    def jacobian(self, conf: Float[Array, " 10"]) -> Float[Array, "6 10"]:
-        """Compute the Jacobian of the tool by conf, shape (6, 10), in the world's axes: the tool
+    def jacobian(self, conf: Float[Array, " conf"]) -> Float[Array, "6 conf"]:
+        """Compute the Jacobian of the tool by conf, shape (6, 3 + n), in the world's axes: the tool
         origin's velocity above the angular one.
         """
         frame = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED

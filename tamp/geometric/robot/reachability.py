@@ -5,6 +5,7 @@ table.
 from __future__ import annotations
 
 import math
+import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,9 +29,33 @@ work.
 """
 
 
-def asset(robot_name: str) -> Path:
-    """Return the file of the robot's table, written by benchmarks/build_reachability.py."""
-    return Path(__file__).parent / "assets" / f"{robot_name}_reachability.npz"
+def asset(robot: Robot) -> Path:
+    """Return the file of the robot's table."""
+    return robot.folder / "reachability.npz"
+
+
+def _read(file: Path) -> dict[str, Array]:
+    """Read a table.
+
+    Raises:
+        InputError: It is missing or damaged.
+    """
+    remedy = "Make the robot again: tamp-robot make"
+    if not file.is_file():
+        raise InputError("the robot's reachability table is missing", file=file, remedy=remedy)
+    try:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
+            table: dict[str, Array] = {
+                name: arrays[name]
+                for name in ("heights", "directions", "rotations", "distances", "counts")
+            }
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        what = " ".join(str(error).split())
+        raise InputError(f"damaged: {what}", file=file, remedy=remedy) from None
+    shape = tuple(len(table[name]) for name in ("heights", "directions", "distances"))
+    if table["counts"].ndim != 4 or table["counts"].shape[:3] != shape:
+        raise InputError("damaged: its arrays do not fit together", file=file, remedy=remedy)
+    return table
 
 
 class Reachability:
@@ -44,20 +69,14 @@ class Reachability:
     reachability inversion" (ICRA 2013).
 
     Raises:
-        InputError: The robot has no table yet.
+        InputError: The robot's table is missing or damaged.
     """
 
     def __init__(self, robot: Robot) -> None:
-        file = asset(robot.name)
-        if not file.is_file():
-            remedy = f"Build it: python benchmarks/build_reachability.py {robot.name}"
-            raise InputError(f"no reachability table for '{robot.name}'", remedy=remedy)
-        with np.load(file) as table:
-            self._heights: Array = table["heights"]
-            self._directions: Array = table["directions"]
-            self._rotations: Array = table["rotations"]
-            self._distances: Array = table["distances"]
-            counts: Array = table["counts"]
+        table = _read(asset(robot))
+        self._heights, self._directions = table["heights"], table["directions"]
+        self._rotations, self._distances = table["rotations"], table["distances"]
+        counts = table["counts"]
         self._headings = counts.shape[-1]
         # Far placements keep the base clear of the furniture that the object stands on: with the
         # cube of the distance two to four times as many draws are clear as by the counts alone, and

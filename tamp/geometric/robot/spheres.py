@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,20 +14,16 @@ if TYPE_CHECKING:
 
 
 def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"], float]]:
-    """Load the shipped cover of each part by (link, number): centres and radii (k, 4) in the part's
-    frame, and its slack.
+    """Load the cover of each part by (link, number): centres and radii (k, 4) in the part's frame,
+    and its slack.
 
-    Made by benchmarks/build_robot_spheres.py. A robot without a shipped cover has none: the kernels
-    then use the bounding spheres and the exact test alone.
+    For a part without a cover the kernels use its bounding sphere and the exact test alone.
     """
-    path = Path(__file__).parent / "assets" / f"{robot.name}_spheres.npz"
-    if not path.exists():
-        return {}
-    arrays = np.load(path)
     covers = {}
-    for link in robot.links:
-        for k in range(len(link.parts)):
-            key = f"{link.name}/{k}"
-            if key in arrays:
-                covers[link.name, k] = (arrays[key], float(arrays[f"{key}/slack"]))
+    with np.load(robot.folder / "geometry.npz", allow_pickle=False) as arrays:
+        for link in robot.links:
+            for k in range(len(link.parts)):
+                key = f"{link.name}/{k}"
+                if f"{key}/spheres" in arrays:
+                    covers[link.name, k] = (arrays[f"{key}/spheres"], float(arrays[f"{key}/slack"]))
     return covers

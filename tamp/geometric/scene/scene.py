@@ -136,6 +136,8 @@ class Body:
         visuals: What to draw in place of its parts.
         center_of_mass: In the body's frame, metres, where a file says it; None for parts of one
             density.
+        front: Angle in the body's frame from its -y axis, where furniture has its front, to the
+            side from which a viewer sees it, radians; left and right of a relation go by it.
     """
 
     name: str
@@ -152,6 +154,7 @@ class Body:
     bare: bool = False
     visuals: tuple[Visual, ...] = ()
     center_of_mass: tuple[float, float, float] | None = None
+    front: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -167,7 +170,7 @@ class RobotStart:
     """The robot, and where it starts.
 
     Attributes:
-        model: A name in ROBOTS.
+        model: A shipped robot's name, or the full path of a robot's folder.
         base: x, y in metres and yaw in radians.
         arm: Joint angles in radians, or None for the model's home configuration.
     """

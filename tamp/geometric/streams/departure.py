@@ -22,7 +22,7 @@ FINE = 4
 
 
 def lift_hits(
-    context: Context, pose: Pose, grasp: Grasp, lift: Float[Array, "n 10"],
+    context: Context, pose: Pose, grasp: Grasp, lift: Float[Array, "n conf"],
     others: Mapping[str, Pose] | None = None, padding: float = 0.0,
 ) -> tuple[str, str] | None:  # fmt: skip
     """Return the first pair that collides while a held body is lifted off a pose, as

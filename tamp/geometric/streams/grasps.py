@@ -40,6 +40,9 @@ DEPTH = (0.006, 0.030)
 """Least and largest depth of the tool's origin in the body along the approach: finger tips 1.5 to 4
 cm deep, metres."""
 
+SHALLOW = 0.012
+"""Depth below the top of a slanted hand's tool, metres: deeper, the palm would meet the body."""
+
 HALF_HAND = 0.035
 """Half the hand's thickness and some air, metres: a side grasp keeps this far from what the body
 stands on."""
@@ -79,14 +82,14 @@ def sample_grasps(
     without end.
 
     Canonical are grasps from above at the middle and from the sides at half height, from the sides
-    near the top, then slanted ones, and last those with a finger under the body; above and side are
-    meant with the body as it stands at the start. Each was closed exactly: the open hand is free of
-    the body at the grasp and while it draws back, and both pads meet the body within the friction
-    cone. Firm ones come as they are found; the fair ones of a group of canonical grasps follow that
-    group; those that the body's weight strains more, or that leave the open hand little room, come
-    with the first random ones. Of random grasps the strained ones come a few at a time, the least
-    strained first. Ends only when nothing (new) is found any more: a body that is too wide
-    everywhere gives none.
+    near the top, then slanted ones, those with a finger under the body, and last slanted ones near
+    the top of a tall body; above and side are meant with the body as it stands at the start. Each
+    was closed exactly: the open hand is free of the body at the grasp and while it draws back, and
+    both pads meet the body within the friction cone. Firm ones come as they are found; the fair
+    ones of a group of canonical grasps follow that group; those that the body's weight strains
+    more, or that leave the open hand little room, come with the first random ones. Of random
+    grasps the strained ones come a few at a time, the least strained first. Ends only when nothing
+    (new) is found any more: a body that is too wide everywhere gives none.
 
     Args:
         body: Its mass, friction and centre of mass weigh the grasps.
@@ -181,6 +184,11 @@ def _canonical(
         tools = (_at_middle(solid, closing, approach, up, high) for closing, approach in order)
         yield (closed for closed in map(fit.close, tools) if closed is not None)
 
+    if tall:  # a slanted line through the middle of a tall body meets it far to the side
+        above = sorted(slanted(axes, up), key=lambda pair: float(pair[1] @ up))
+        tools = (_at_top(solid, approach, closing, up) for closing, approach in above)
+        yield (closed for closed in map(fit.close, tools) if closed is not None)
+
 
 def _grasp(body: Body, closed: Closed) -> Grasp:
     return Grasp(body.name, Pose.from_matrix(closed.T_body_tool).inverse(), float(closed.opening))
@@ -207,6 +215,14 @@ def _at_middle(
     return _tool(
         closing, approach, _deep(solid, point, approach, max(min(depth, DEPTH[1]), DEPTH[0]))
     )
+
+
+def _at_top(solid: Solid, approach: Array, closing: Array, up: Array) -> Array:
+    """Put the tool just below the body's top, over its centre, where a slanted hand has the least
+    lever arm.
+    """
+    point = solid.centre + (solid.extent(up)[1] - SHALLOW - solid.centre @ up) * up
+    return _tool(closing, approach, point)
 
 
 def _deep(solid: Solid, point: Array, approach: Array, depth: float) -> Array:

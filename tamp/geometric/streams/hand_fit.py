@@ -60,7 +60,7 @@ class HandFit:
         self._solid, self._robot = solid, robot
         self._body = FclBody(body.parts)
         self._parts = [self._body.place(index, np.eye(4)) for index in range(len(body.parts))]
-        hand, left, right = robot.links[-3:]
+        hand, (left, right) = robot.link(robot.hand), robot.finger_links
         self._hand, self._left, self._right = (
             FclBody(hand.parts),
             FclBody(left.parts),
@@ -116,8 +116,8 @@ class HandFit:
         )
 
     def _touches(self, link: FclBody, T_body_link: Array) -> bool:
-        (item,) = (link.place(index, T_body_link) for index in range(len(link.objects)))
-        return any(touch(item, part, 0.0) for part in self._parts)
+        items = (link.place(index, T_body_link) for index in range(len(link.objects)))
+        return any(touch(item, part, 0.0) for item in items for part in self._parts)
 
     def _first_contact(self, T_body_tool: Array, index: int) -> float | None:
         """Find how far from the middle a closing finger meets the body, to 0.1 mm; None when it

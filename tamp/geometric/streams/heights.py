@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.context import Context
+from tamp.geometric.robot.kinematics import base_matrix
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.streams.approach import LIFT
 
@@ -67,6 +68,9 @@ def _nearest_stand(context: Context, x: float, y: float) -> float | None:
     """Find how near to the point the arm's foot gets, the robot facing it, the arm at home, among
     the fixed bodies.
     """
+    if context.robot.drive == "fixed":
+        T = base_matrix(np.array(context.scene.robot.base)) @ context.robot.T_base_arm.matrix
+        return float(math.hypot(x - T[0, 3], y - T[1, 3]))
     room, foot = context.scene.room, float(np.linalg.norm(context.robot.T_base_arm.position[:2]))
     among = context.fixed_only(None)
     for distance in RINGS:

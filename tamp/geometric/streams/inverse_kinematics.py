@@ -65,7 +65,7 @@ def inverse_kinematics(
     failures = 0.0
     while failures < PATIENCE:
         reason: Rejection | None = None
-        for base in context.reachability.sample(T_world_tool, call.rng, BATCH):
+        for base in context.stands(T_world_tool, call.rng, BATCH):
             refused = _standing(context, body, grasp, base, call)
             if refused is not None:
                 reason = reason or refused
@@ -87,6 +87,24 @@ def inverse_kinematics(
             yield reason if failures < PATIENCE else replace(reason, given_up=True)
 
 
+def inverse_kinematics_here(
+    context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, call: Call
+) -> Iterator[Reach | Rejection]:
+    """Yield approaches as `inverse_kinematics` does, from a base pose that is given."""
+    T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
+    stand = np.array(base.array)
+    failures = 0.0
+    while failures < PATIENCE:
+        refused = _standing(context, body, grasp, stand, call)
+        found = refused or _reaching(context, pose, grasp, stand, T_world_tool, call)
+        if not isinstance(found, Rejection):
+            failures = -math.inf
+            yield found[1]
+            continue
+        failures += 1
+        yield found if failures < PATIENCE else replace(found, given_up=True)
+
+
 def _standing(
     context: Context, body: str, grasp: Grasp, base: Array, call: Call
 ) -> Rejection | None:
@@ -101,7 +119,8 @@ def _standing(
         among = context.fixed_only(held)
         if not among.free(home):
             return _collision(among.hits(home, PROBE), who)
-    if not _can_leave(context, grasp, base, home) and call.rng.random() >= NOOK:
+    fixed = context.robot.drive == "fixed"
+    if not fixed and not _can_leave(context, grasp, base, home) and call.rng.random() >= NOOK:
         return Rejection("base stands in a nook", kind=RejectionKind.NO_STANCE)
     return None
 
@@ -198,8 +217,8 @@ def follow_line(
     context: Context,
     T_base_tool: Float[Array, "4 4"],
     offset: Float[Array, " 3"],
-    q: Float[Array, " 7"],
-) -> Float[Array, "k 7"] | None:
+    q: Float[Array, " joints"],
+) -> Float[Array, "k joints"] | None:
     """Compute arm configurations (k, 7) that move the tool straight by `offset` (3,) metres in the
     base frame, from q.
     """

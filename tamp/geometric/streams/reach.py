@@ -61,6 +61,8 @@ def within_reach(
     if math.hypot(horizontal, vertical) > span:
         return _out_of_reach(f"{horizontal:.2f} m outside of the room")
 
+    if robot.drive == "fixed":
+        return _from_where_it_is(context, low, high, span)
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
     return True if gap is None else _out_of_reach(gap.text)
 
@@ -69,14 +71,32 @@ def _out_of_reach(how: str) -> Rejection:
     return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE)
 
 
+def _from_where_it_is(context: Context, low: Array, high: Array, span: float) -> bool | Rejection:
+    """Check whether the arm of a robot that does not drive could touch a box from where it is."""
+    x, y, yaw = context.scene.robot.base
+    shoulder = Pose.from_xyz_yaw(x, y, 0.0, yaw).apply(_shoulder(context.robot)[None])[0]
+    beyond = np.maximum(np.maximum(low - shoulder, shoulder - high), 0.0)
+    distance = float(np.linalg.norm(beyond))
+    if distance <= span:
+        return True
+    return _out_of_reach(
+        f"{distance:.2f} m from the arm, which reaches {span:.2f} m and does not drive"
+    )
+
+
 def arm_length(robot: Robot) -> float:
-    """Bound the length from the second joint to the finger tips of the arm stretched out, metres,
-    from above.
+    """Bound the length from the first joint to the finger tips of the arm stretched out, metres,
+    from above; joints that slide are thought to be far out.
     """
-    pieces = [joint.origin for joint in robot.joints[2:]] + [robot.T_flange_hand, robot.T_hand_tool]
-    return sum(math.hypot(*piece.position) for piece in pieces) + PAD
+    pieces = [joint.origin for joint in robot.joints[1:]] + [robot.T_flange_hand, robot.T_hand_tool]
+    slides = sum(
+        max(abs(low), abs(high))
+        for low, high, slides in zip(robot.lower, robot.upper, robot.prismatic, strict=True)
+        if slides
+    )
+    return sum(math.hypot(*piece.position) for piece in pieces) + slides + PAD
 
 
 def _shoulder(robot: Robot) -> Array:
-    """Return the position of the second joint in the base's frame, (3,)."""
-    return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)
+    """Return the position of the first joint in the base's frame, (3,): it stays where it is."""
+    return np.array((robot.T_base_arm @ robot.joints[0].origin).position)

@@ -7,7 +7,7 @@ from typing import Any
 
 from tamp.geometric.streams.approach import test_approach, test_approach_clear
 from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
-from tamp.geometric.streams.inverse_kinematics import inverse_kinematics
+from tamp.geometric.streams.inverse_kinematics import inverse_kinematics, inverse_kinematics_here
 from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
 from tamp.geometric.streams.movable_supports import (
     sample_inside_movable,
@@ -26,6 +26,7 @@ STREAMS: Mapping[str, Callable[..., Any]] = {
     "shift-on": shift,
     "shift-inside": shift,
     "inverse-kinematics": inverse_kinematics,
+    "inverse-kinematics-here": inverse_kinematics_here,
     "test-reachable": test_reachable,
     "test-pose-clear": test_pose_clear,
     "test-approach": test_approach,

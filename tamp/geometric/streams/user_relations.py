@@ -33,9 +33,10 @@ def sample_relation(
     whatever is below them.
 
     The generator sees the scene as it will be at that step; a pose among the inputs is that of the
-    body before it. That the body rests there, clear of the fixed bodies, is certified here,
-    everything else by other streams' tests; but where the relation has no test and a classifier,
-    `judge`, that is asked here, with the inputs at these indices.
+    body before it. That the body rests there, on a place among the inputs where there is one, clear
+    of the fixed bodies, is certified here, everything else by other streams' tests; but where the
+    relation has no test and a classifier, `judge`, that is asked here, with the inputs at these
+    indices.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
     at = {
@@ -45,10 +46,12 @@ def sample_relation(
     }
 
     scene = context.scene
+    places = {*scene.surfaces, *scene.cavities}
+    named = {*arguments[1:]} & places or places
     regions = {
         place.name: place
         for place in (*scene.surfaces.values(), *scene.cavities.values())
-        if place.body in scene.fixed
+        if place.body in scene.fixed and place.name in named
     }
 
     def certified(proposal: Placement | Pose) -> Pose | Rejection:

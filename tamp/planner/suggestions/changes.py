@@ -12,7 +12,8 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scaling import scale_part, scale_pose, scale_visual
 from tamp.geometric.scene.scene import Body, Box, Cavity, Part, Scene, Surface
 from tamp.planner.problem import Problem
-from tamp.symbolic.pddl.structs import And, Atom, Formula, Or
+from tamp.symbolic.pddl.atoms import atoms
+from tamp.symbolic.pddl.structs import And, Atom, Formula
 
 SMALLER = (
     (0.75, "a quarter smaller", 2),
@@ -56,7 +57,7 @@ class Change:
 def changes(problem: Problem) -> Iterator[Change]:
     """Yield all changes that are thought of, in no order that matters."""
     scene = problem.scene
-    words = {word for atom in _atoms(problem.stream_task.task.goal) for word in atom.terms}
+    words = {word for atom in atoms(problem.stream_task.task.goal) for word in atom.terms}
     wanted = {
         name for name in (*scene.bodies, *scene.surfaces, *scene.cavities) if name.lower() in words
     }
@@ -240,13 +241,3 @@ def _larger(body: Body, place: Surface | Cavity) -> Body | None:
         for one in body.cavities
     )
     return replace(body, parts=tuple(parts), surfaces=surfaces, cavities=cavities)
-
-
-def _atoms(formula: Formula) -> Iterator[Atom]:
-    if isinstance(formula, Atom):
-        yield formula
-    elif isinstance(formula, And | Or):
-        for part in formula.parts:
-            yield from _atoms(part)
-    else:
-        yield from _atoms(formula.body)

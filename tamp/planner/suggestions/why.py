@@ -1,4 +1,4 @@
-"""Explain by relaxations why a problem has no plan: small changes tried one by one."""
+"""Explain by suggestions why a problem has no plan: small changes tried one by one."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from tamp.planner.suggestions.changes import Change, changes
 from tamp.symbolic.algorithms.result import Outcome, Progress
 from tamp.system.deadline import Deadline, OutOfTime
 
-SLICE = 5.0
+MAX_SECONDS_PER_TRIAL = 5.0
 """Seconds of planning for one change and one seed at most,"""
 
-SHARE = 8
+TRIALS_IN_THE_TIME = 8
 """and so many changes shall have their turn."""
 
-SEEDS = 3
+SEEDS_PER_CHANGE = 3
 """Seeds with each of which a change must help, and without it none of them."""
 
-STEP = 1
+SEED_STRIDE = 1
 """From one of these seeds to the next."""
 
-ENOUGH = 3
+ENOUGH_SUGGESTIONS = 3
 """Changes that work, after which no more are tried."""
 
-SHOWN = 8
+SHOWN_FAILURES = 8
 """Changes that did not help which are listed in words."""
 
 PROVEN = (Outcome.INFEASIBLE,)
@@ -38,7 +38,7 @@ PROVEN = (Outcome.INFEASIBLE,)
 
 
 @dataclass(frozen=True)
-class Relaxation:
+class Suggestion:
     """A change with which a plan was found for each seed, and without it for none.
 
     Attributes:
@@ -53,13 +53,13 @@ class Relaxation:
 
 
 @dataclass(frozen=True)
-class Why:
+class Suggestions:
     """The changes with which there is a plan, the smallest first, and what else was tried.
 
     Attributes:
-        relaxations: Those that helped.
+        suggestions: Those that helped.
         tried: How many were tried.
-        known: How many were thought of.
+        considered: How many were thought of.
         failed: Those that did not help, in the order in which they were tried, each with how many
             seeds it helped.
         untried: Those for which there was no time, or no need.
@@ -67,13 +67,13 @@ class Why:
         budget: Seconds for each change and seed.
     """
 
-    relaxations: tuple[Relaxation, ...]
+    suggestions: tuple[Suggestion, ...]
     tried: int
-    known: int
+    considered: int
     failed: tuple[tuple[str, int], ...] = ()
     untried: tuple[str, ...] = ()
     unchanged: tuple[int, ...] = ()
-    budget: float = SLICE
+    budget: float = MAX_SECONDS_PER_TRIAL
 
     def text(self) -> str:
         """Return a few lines for people."""
@@ -82,18 +82,20 @@ class Why:
             for seed in self.unchanged
         ]
 
-        for one in self.relaxations:
+        for one in self.suggestions:
             plan = f"a plan of {one.actions} actions, found in {one.seconds:.1f} s"
             lines.append(
                 f"  It would be solvable {one.text} "
-                f"({plan}; with all of {SEEDS} seeds, and without it none)"
+                f"({plan}; with all of {SEEDS_PER_CHANGE} seeds, and without it none)"
             )
         if not lines:
             what = (
-                f"none of {self.tried} changes that were tried (of {self.known}) "
+                f"none of {self.tried} changes that were tried (of {self.considered}) "
                 "makes it solvable by itself"
             )
-            lines.append(f"  {what}, with {SEEDS} seeds and {self.budget:.1f} s for each")
+            lines.append(
+                f"  {what}, with {SEEDS_PER_CHANGE} seeds and {self.budget:.1f} s for each"
+            )
 
         lines += self._others(
             "tried as well, and did not help", [_failed(*one) for one in self.failed]
@@ -102,39 +104,40 @@ class Why:
 
     @staticmethod
     def _others(label: str, texts: list[str]) -> list[str]:
-        more = f", and {len(texts) - SHOWN} more" if len(texts) > SHOWN else ""
-        return [f"  {label}: {', '.join(texts[:SHOWN])}{more}"] if texts else []
+        more = f", and {len(texts) - SHOWN_FAILURES} more" if len(texts) > SHOWN_FAILURES else ""
+        return [f"  {label}: {', '.join(texts[:SHOWN_FAILURES])}{more}"] if texts else []
 
     def json(self) -> dict[str, object]:
         """Return the same for programs."""
         found = [
             {"change": r.text, "actions": r.actions, "seconds": round(r.seconds, 3)}
-            for r in self.relaxations
+            for r in self.suggestions
         ]
         return {
             "relaxations": found,
             "tried": self.tried,
-            "known": self.known,
+            "known": self.considered,
             "failed": [{"change": text, "seeds": seeds} for text, seeds in self.failed],
             "untried": list(self.untried),
             "unchanged": list(self.unchanged),
-            "seeds": SEEDS,
+            "seeds": SEEDS_PER_CHANGE,
             "budget": round(self.budget, 3),
         }
 
 
-def why(
+def suggest_changes(
     solution: Solution,
     reload: Callable[[Scene], Problem],
     *,
     max_time: float = 30.0,
     progress: Progress | None = None,
     trying: Callable[[str], None] | None = None,
-) -> Why:
+) -> Suggestions:
     """Try changes until some work or the time is up; Ctrl-C ends it with those found.
 
-    A change counts when it brings a plan with each of SEEDS seeds, while the problem as it is has
-    none with any of them in the same time: what is only luck is told apart from what is a cause.
+    A change counts when it brings a plan with each of SEEDS_PER_CHANGE seeds, while the problem as
+    it is has none with any of them in the same time: what is only luck is told apart from what is a
+    cause.
 
     Args:
         solution: One without a plan.
@@ -164,8 +167,8 @@ class _Trial:
             trying,
         )
         self._deadline = Deadline(max_time)
-        self._budget = min(SLICE, max_time / SHARE)
-        self._seeds = [solution.seed + STEP * number for number in range(SEEDS)]
+        self._budget = min(MAX_SECONDS_PER_TRIAL, max_time / TRIALS_IN_THE_TIME)
+        self._seeds = [solution.seed + SEED_STRIDE * number for number in range(SEEDS_PER_CHANGE)]
         # What failed with more time fails with less; what was proven once holds for all seeds.
         enough = (
             solution.outcome is Outcome.EXHAUSTED
@@ -174,10 +177,10 @@ class _Trial:
         proven = solution.outcome in PROVEN
         self._unsolved = set(self._seeds if proven else self._seeds[:1] if enough else ())
         self._unchanged: list[int] = []
-        self._found: list[tuple[int, Relaxation]] = []
+        self._found: list[tuple[int, Suggestion]] = []
         self._failed: list[tuple[str, int]] = []
 
-    def run(self) -> Why:
+    def run(self) -> Suggestions:
         """Run all trials, as far as the time goes."""
         said = "\n".join(self._solution.explanation).lower()
         told = set(re.findall(r"[\w-]+", said))
@@ -189,7 +192,11 @@ class _Trial:
         ended = 0
         try:
             for number, change in enumerate(order):
-                if self._deadline.passed or self._unchanged or len(self._found) >= ENOUGH:
+                if (
+                    self._deadline.passed
+                    or self._unchanged
+                    or len(self._found) >= ENOUGH_SUGGESTIONS
+                ):
                     break
                 changed = _changed(self._solution.problem, change, self._reload)
                 if changed is not None:
@@ -200,11 +207,11 @@ class _Trial:
             pass
 
         self._found.sort(key=lambda item: item[0])
-        relaxations = () if self._unchanged else tuple(relaxation for _, relaxation in self._found)
+        suggestions = () if self._unchanged else tuple(suggestion for _, suggestion in self._found)
         tried = len(self._found) + len(self._failed)
         untried = tuple(change.text for change in order[ended:])
-        return Why(
-            relaxations, tried, len(order), tuple(self._failed), untried,
+        return Suggestions(
+            suggestions, tried, len(order), tuple(self._failed), untried,
             tuple(self._unchanged), self._budget,
         )  # fmt: skip
 
@@ -218,7 +225,7 @@ class _Trial:
             first = first or attempt
         if first is not None and self._needed():
             seconds = first.seconds["total"]
-            self._found.append((change.size, Relaxation(change.text, len(first.plan), seconds)))
+            self._found.append((change.size, Suggestion(change.text, len(first.plan), seconds)))
 
     def _needed(self) -> bool:
         """Check that the problem as it is has no plan with any of the seeds, in the same time."""
@@ -242,7 +249,7 @@ class _Trial:
 
 
 def _failed(text: str, seeds: int) -> str:
-    return text if not seeds else f"{text} (helps with {seeds} of {SEEDS} seeds)"
+    return text if not seeds else f"{text} (helps with {seeds} of {SEEDS_PER_CHANGE} seeds)"
 
 
 def _silent(text: str) -> None:

@@ -6,21 +6,36 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from tamp.symbolic.algorithms.adaptive import FIRST_TRIES, ROUND_BUDGET, Adaptive
+from tamp.symbolic.algorithms.adaptive import (
+    FIRST_TRIES,
+    ROUND_DRAWS,
+    plan_adaptively,
+    start_adaptive,
+)
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
+from tamp.symbolic.algorithms.knowledge import restore_objects
+from tamp.symbolic.algorithms.outcomes import solved_result
+from tamp.symbolic.algorithms.planning_run import (
+    Run,
+    bind_skeleton,
+    renew,
+    search_plan,
+    skeleton_of,
+)
+from tamp.symbolic.algorithms.priced_search import lower_bound
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
 
-BOUND_LIMIT = 30
+MAX_BOUND_STATES = 30
 """States that are expanded for the lower bound."""
 
 WEIGHTS = (2.0, 1.0)
 """Of the estimate in searches for cheaper plans, in turn."""
 
-VAIN = 10
+MAX_VAIN_SEARCHES = 10
 """Searches for a cheaper plan that may come to nothing between two plans that are better."""
 
-WINDOW = 4
+ACTIONS_DRAWN_ANEW = 4
 """Actions whose values are drawn anew at a time: a body's way from place to place."""
 
 Better = Callable[[Result], bool]
@@ -52,62 +67,66 @@ def solve_anytime(
         What ended the search for the first plan; after that nothing but the time ends it, by
         OutOfTime.
     """
-    run = Adaptive(problem, make_rng, deadline, progress)
-    first = run.solve()
+    run = start_adaptive(problem, make_rng, deadline, progress)
+    first = plan_adaptively(run)
     if first.outcome is not Outcome.SOLVED:
         return first
     better(first)
 
-    bound = run.lower_bound(BOUND_LIMIT)
+    bound = _lower_bound(run)
     bounded(bound)
 
     best, vain = first, 0
-    while run.bound is not None and best.actions and not deadline.passed:
+    while best.skeleton is not None and best.actions and not deadline.passed:
         cost = sum(action.cost for action in best.actions)
+        skeleton, memory = best.skeleton, dict(best.skeleton.memory)
         found = None
-        if cost > bound + 1e-9 and vain < VAIN:
+        if cost > bound + 1e-9 and vain < MAX_VAIN_SEARCHES:
             vain += 1
             found = _cheaper(run, WEIGHTS[vain % len(WEIGHTS)], cost)
 
-        skeleton, memory = run.bound[0], dict(run.bound[0].memory)
         if found is None:
             found = _redrawn(run, skeleton, choose)
-        if found is not None and better(found[0]):
-            best, run.bound, vain = found[0], found[1], 0
+        if found is not None and better(found):
+            best, vain = found, 0
         else:
             skeleton.memory = memory
         progress(run.effort)
+
     if deadline.passed:
         raise OutOfTime
     return best
 
 
-_Found = tuple[Result, tuple[Skeleton, dict[int, str]]]
+def _lower_bound(run: Run) -> float:
+    """Bound any plan's cost from below, with nothing left out of the optimistic task."""
+    if restore_objects(run.knowledge):
+        renew(run)
+    with run.effort.searching():
+        return lower_bound(run.optimistic, MAX_BOUND_STATES, run.deadline)
 
 
-def _cheaper(run: Adaptive, weight: float, cost: float) -> _Found | None:
+def _cheaper(run: Run, weight: float, cost: float) -> Result | None:
     """Find and bind a plan that costs less."""
-    plan = run.search(weight=weight, below=cost - 1e-9).plan
-    if plan is None:
+    found = search_plan(run, weight=weight, below=cost - 1e-9)
+    if found is None:
         return None
-    skeleton = run.skeleton(plan)
-    values = run.bind(skeleton, FIRST_TRIES + skeleton.rounds, ROUND_BUDGET * (1 + skeleton.rounds))
+    skeleton = skeleton_of(run, found)
+    tries, draws = FIRST_TRIES + skeleton.rounds, ROUND_DRAWS * (1 + skeleton.rounds)
+    values = bind_skeleton(run, skeleton, tries, draws)
     skeleton.rounds += 1
-    return _found(run, skeleton, values)
+    return None if values is None else solved_result(run, skeleton, values)
 
 
-def _redrawn(run: Adaptive, skeleton: Skeleton, choose: Random) -> _Found | None:
+def _redrawn(run: Run, skeleton: Skeleton, choose: Random) -> Result | None:
     """Bind the plan anew with other values for what a few of its actions in a row need."""
-    first = choose.randrange(1 - WINDOW, max(1, len(skeleton.steps)))
+    first = choose.randrange(1 - ACTIONS_DRAWN_ANEW, max(1, len(skeleton.steps)))
     chosen = {
         number
         for number, node in enumerate(skeleton.nodes)
-        if not node.stream.is_test and first <= node.step < first + WINDOW
+        if not node.stream.is_test and first <= node.step < first + ACTIONS_DRAWN_ANEW
     }
-    return _found(
-        run, skeleton, run.bind(skeleton, 1, len(skeleton.nodes), fresh=chosen) if chosen else None
-    )
-
-
-def _found(run: Adaptive, skeleton: Skeleton, values: dict[int, str] | None) -> _Found | None:
-    return None if values is None else (run.solved(skeleton, values), (skeleton, values))
+    if not chosen:
+        return None
+    values = bind_skeleton(run, skeleton, 1, len(skeleton.nodes), fresh=chosen)
+    return None if values is None else solved_result(run, skeleton, values)

@@ -3,107 +3,111 @@
 from __future__ import annotations
 
 import math
-import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from tamp.symbolic.algorithms.binding.skeleton_steps import with_nogoods
-from tamp.symbolic.algorithms.experience.elsewhere import elsewhere
-from tamp.symbolic.algorithms.experience.exploration_prices import doubts
+from tamp.symbolic.algorithms.experience.exploration_prices import exploration_prices
+from tamp.symbolic.algorithms.experience.failing_states import avoid_failing_states
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_task import Imagination
-from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.algorithms.experience.success_posterior import Posterior
+from tamp.symbolic.algorithms.optimistic.optimistic_task import OptimisticTask
+from tamp.symbolic.algorithms.result import SearchStatistics
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.mutex import excluded
 from tamp.symbolic.search.operators import InstantiatedTask
-from tamp.symbolic.search.search import Reason, search
-from tamp.symbolic.search.search import Result as Found
+from tamp.symbolic.search.search import Plan, Reason, search
 from tamp.system.deadline import Deadline
 
 SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is
 taken."""
 
+WEIGHT = 5.0
+"""Of the estimate in the search for a first plan."""
 
-class PricedSearch(Imagination):
-    """The optimistic task, and searches in it that avoid what failed.
+
+@dataclass(frozen=True, eq=False)
+class PricedPlan:
+    """A plan, the task in which it was found, and the prices that it was found under.
 
     Attributes:
-        brief: Whether searches end without a plan where they have seen SEARCH_LIMIT states.
+        plan: Of the optimistic task.
+        task: That task, guarded by what binding has learned.
+        prices: Of its static facts, where they are not free.
     """
 
-    brief = False
+    plan: Plan
+    task: InstantiatedTask
+    prices: Mapping[Fact, float]
 
-    def __init__(self, problem: StreamTask, deadline: Deadline, pruned: bool) -> None:
-        self.deadline = deadline
-        super().__init__(problem, pruned)
-        self.experience = Experience()
-        self.doubtful = False
-        self._audited: InstantiatedTask | None = None
-        self.prices: dict[Fact, float] = {}
-        self.searched = self.instantiated
 
-    def search(self, *, weight: float = 5.0, below: float = math.inf) -> Found:
-        """Search for a plan of the optimistic task, priced by experience.
+def priced_search(
+    optimistic: OptimisticTask,
+    experience: Experience,
+    posteriors: Mapping[str, Posterior],
+    deadline: Deadline,
+    audit: Callable[[], bool],
+    effort: SearchStatistics,
+    *,
+    weight: float = WEIGHT,
+    below: float = math.inf,
+    brief: bool = False,
+) -> PricedPlan | None:
+    """Search for a plan that avoids what failed.
 
-        Args:
-            weight: Of the estimate: with less the plans are cheaper and the search is longer.
-            below: What the actions of the plan must cost less than; when it is given, there is one
-                try only.
-        """
-        started = time.perf_counter()
-        try:
-            return self._search(weight, below)
-        finally:
-            self.effort.search_seconds += time.perf_counter() - started
+    Args:
+        optimistic: The task to search in.
+        experience: Says what failed.
+        posteriors: What earlier runs say of streams, by name.
+        deadline: When to give up.
+        audit: Asked in a long search whether it is proven that there is no plan.
+        effort: Is told of the states that were expanded.
+        weight: Of the estimate: with less the plans are cheaper and the search is longer.
+        below: What the actions of the plan must cost less than; when it is given, there is one try
+            only.
+        brief: End without a plan after SEARCH_LIMIT states.
+    """
+    guarded, prices = with_nogoods(optimistic.instantiated, experience)
+    task = avoid_failing_states(guarded, experience, optimistic.facts)
+    prices |= exploration_prices(optimistic.facts, experience, posteriors) | experience.prices()
 
-    def _search(self, weight: float, below: float) -> Found:
-        self.effort.searches += 1
-        if self.doubtful and self.excluded():
-            return Found(None, Reason.UNSOLVABLE, 0, 0, math.inf)
+    unit = mean_action_cost(optimistic.instantiated)
+    if unit > 1.0:
+        prices = {fact: unit * price for fact, price in prices.items()}
 
-        instantiated, prices = with_nogoods(self.instantiated, self.experience)
-        self.searched = instantiated = elsewhere(instantiated, self.experience, self.optimism)
-        prices |= (
-            doubts(self.optimism, self.experience, self.problem.known) | self.experience.prices()
-        )
-
-        unit = self._usual_cost()
-        if unit > 1.0:
-            prices = {fact: unit * price for fact, price in prices.items()}
-        self.prices = prices
-
+    patience = experience.patience
+    any_will_do = below == math.inf and not brief
+    found = None
+    if not (any_will_do and patience.skips()):
         found = search(
-            instantiated, price=prices, limit=SEARCH_LIMIT, deadline=self.deadline, weight=weight,
-            below=below, audit=self.excluded,
+            task, price=prices, limit=SEARCH_LIMIT, deadline=deadline, weight=weight, below=below,
+            audit=audit,
         )  # fmt: skip
-        self.effort.expanded += found.expanded
-        if found.reason is Reason.LIMIT and below == math.inf and not self.brief:
-            # with many prices many plans look alike: then any plan will do
-            found = search(instantiated, search="greedy", price=prices, deadline=self.deadline)
-            self.effort.expanded += found.expanded
-        return found
+        effort.expanded += found.expanded
+        if any_will_do:
+            patience.note(in_vain=found.reason is Reason.LIMIT)
+    if found is None or (found.reason is Reason.LIMIT and any_will_do):
+        # with many prices many plans look alike: then any plan will do
+        found = search(task, search="greedy", price=prices, deadline=deadline)
+        effort.expanded += found.expanded
+    return None if found.plan is None else PricedPlan(found.plan, task, prices)
 
-    def excluded(self) -> bool:
-        """Check that goals are proven to exclude each other in the optimistic task."""
-        if self._audited is self.instantiated:
-            return False
-        self._audited = self.instantiated
-        return excluded(self.instantiated, self.deadline) is not None
 
-    def lower_bound(self, limit: int) -> float:
-        """Bound any plan's cost from below, seeing `limit` states; 0 if guesses are missing."""
-        self.recall()
-        started = time.perf_counter()
-        found = search(
-            self.instantiated,
-            search="astar",
-            heuristic="lmcut",
-            limit=limit,
-            deadline=self.deadline,
-        )
-        self.effort.search_seconds += time.perf_counter() - started
-        return found.bound if self.optimism.complete else 0.0
+def mean_action_cost(task: InstantiatedTask) -> float:
+    """Compute the operators' mean cost, the unit of prices where actions cost more than one."""
+    operators = task.operators
+    return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
 
-    def _usual_cost(self) -> float:
-        """Compute the operators' mean cost, the unit of prices where actions cost more than one."""
-        operators = self.instantiated.operators
-        return sum(operator.cost for operator in operators) / len(operators) if operators else 1.0
+
+def exclude_each_other(task: InstantiatedTask, deadline: Deadline) -> bool:
+    """Check that goals are proven to exclude each other."""
+    return excluded(task, deadline) is not None
+
+
+def lower_bound(optimistic: OptimisticTask, limit: int, deadline: Deadline) -> float:
+    """Bound any plan's cost from below, seeing `limit` states; 0 if instances are missing."""
+    found = search(
+        optimistic.instantiated, search="astar", heuristic="lmcut", limit=limit, deadline=deadline
+    )
+    return found.bound if optimistic.facts.complete else 0.0

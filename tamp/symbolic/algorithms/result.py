@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import Enum
 
+from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.bound_stream import BoundStream, Objects
 from tamp.symbolic.algorithms.costs import BoundFunction
-from tamp.symbolic.algorithms.experience.failure_counts import Tally
+from tamp.symbolic.algorithms.experience.failure_counts import FailureCount
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 from tamp.symbolic.pddl.structs import Fact, Task
@@ -34,8 +37,8 @@ class StreamTask:
         values: The objects' values, where they are more than their names.
         functions: Costs that Python computes.
         by_value: Whether equal values are one object.
-        known: What earlier runs say of streams, by name; those that fail often are avoided from the
-            start.
+        posteriors: What earlier runs say of streams, by name; those that fail often are avoided
+            from the start.
     """
 
     task: Task
@@ -43,7 +46,7 @@ class StreamTask:
     values: Mapping[str, object]
     functions: tuple[BoundFunction, ...] = ()
     by_value: bool = False
-    known: Mapping[str, Posterior] = field(default_factory=dict[str, Posterior])
+    posteriors: Mapping[str, Posterior] = field(default_factory=dict[str, Posterior])
 
 
 @dataclass(frozen=True)
@@ -56,8 +59,8 @@ class PlanAction:
 
 
 @dataclass
-class Effort:
-    """The effort: how much was done.
+class SearchStatistics:
+    """The effort of a run: how much was done.
 
     Attributes:
         searches: Symbolic searches.
@@ -81,9 +84,27 @@ class Effort:
     apart_seconds: float = 0.0
     refuted: int = 0
 
+    @contextmanager
+    def searching(self) -> Generator[None]:
+        """Count the time inside as search and instantiation."""
+        started = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.search_seconds += time.perf_counter() - started
+
+    @contextmanager
+    def explaining(self) -> Generator[None]:
+        """Count the time inside as spent on saying why there is no plan."""
+        started = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.explaining_seconds += time.perf_counter() - started
+
 
 @dataclass(frozen=True)
-class Attempt:
+class SkeletonAttempt:
     """A skeleton that was tried.
 
     Attributes:
@@ -99,7 +120,7 @@ class Attempt:
     failures: tuple[str, ...]
 
 
-def _none() -> tuple[Attempt, ...]:
+def _none() -> tuple[SkeletonAttempt, ...]:
     return ()
 
 
@@ -115,6 +136,7 @@ class Result:
         tallies: What was tried for which action, where there is no plan.
         memory: What the streams have learned in the run, as they keep it.
         attempts: Says which skeletons were tried, to those who ask.
+        skeleton: Of the plan, unless another run, asked for a second opinion, found it.
     """
 
     outcome: Outcome
@@ -122,13 +144,14 @@ class Result:
     actions: tuple[PlanAction, ...] = ()
     certified: tuple[Fact, ...] = ()
     statistics: dict[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
-    effort: Effort = field(default_factory=Effort)
+    effort: SearchStatistics = field(default_factory=SearchStatistics)
     explanation: tuple[str, ...] = ()
-    tallies: tuple[Tally, ...] = ()
+    tallies: tuple[FailureCount, ...] = ()
     warnings: tuple[str, ...] = ()
     memory: Mapping[str, object] = field(default_factory=dict[str, object])
-    attempts: Callable[[], tuple[Attempt, ...]] = _none
+    attempts: Callable[[], tuple[SkeletonAttempt, ...]] = _none
+    skeleton: Skeleton | None = None
 
 
-Progress = Callable[[Effort], None]
+Progress = Callable[[SearchStatistics], None]
 """Called between rounds with what was done so far."""

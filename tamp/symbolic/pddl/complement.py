@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.structs import (
     Action,
     And,
@@ -139,7 +140,7 @@ def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
     while more:
         more = False
         for rule in domain.derived:
-            used = {atom.predicate for atom, _ in _atoms(rule.body, True)}
+            used = {atom.predicate for atom, _ in signed_atoms(rule.body)}
             if rule.head.predicate not in found and any(
                 one in decided or one in found for one in used
             ):
@@ -164,13 +165,13 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
     """
     derived = domain.derived_predicates
     seen: set[tuple[str, bool]] = set()
-    stack = [*_atoms(goal, True)]
+    stack = [*signed_atoms(goal)]
     for action in domain.actions:
-        stack += _atoms(action.precondition, True)
+        stack += signed_atoms(action.precondition)
         for effect in action.effects:
             stack += [
                 (atom, sign)
-                for atom, one in _atoms(effect.condition, True)
+                for atom, one in signed_atoms(effect.condition)
                 for sign in (one, not one)
             ]
     while stack:
@@ -180,14 +181,7 @@ def atoms_of_conditions(domain: Domain, goal: Formula) -> Iterator[tuple[Atom, b
             seen.add((atom.predicate, sign))
             for rule in domain.derived:
                 if rule.head.predicate == atom.predicate:
-                    stack += _atoms(rule.body, sign)
-
-
-def signed_atoms(formula: Formula, sign: bool = True) -> Iterator[tuple[Atom, bool]]:
-    """Generate the atoms of a formula that is needed to hold, or not to, each with whether it
-    helps by holding.
-    """
-    return _atoms(formula, sign)
+                    stack += signed_atoms(rule.body, sign)
 
 
 def _rewrite(formula: Formula, sign: bool, instead: Complements, helps: bool) -> Formula:
@@ -212,16 +206,3 @@ def _rewrite(formula: Formula, sign: bool, instead: Complements, helps: bool) ->
             return Exists(parameters, _rewrite(body, sign, instead, helps))
         case Forall(parameters, body):
             return Forall(parameters, _rewrite(body, sign, instead, helps))
-
-
-def _atoms(formula: Formula, sign: bool) -> Iterator[tuple[Atom, bool]]:
-    match formula:
-        case Atom():
-            yield formula, sign
-        case Not(body):
-            yield from _atoms(body, not sign)
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from _atoms(part, sign)
-        case Exists(_, body) | Forall(_, body):
-            yield from _atoms(body, sign)

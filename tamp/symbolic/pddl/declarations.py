@@ -79,6 +79,7 @@ def parse_types(nodes: Sequence[Node]) -> Types:
             parents[name] = tuple(
                 parent for parent in parents[name] if parent != name
             )  # - itself: says nothing
+
     parents.setdefault("object", ())
     notes: list[str] = []
     for symbol in (symbol for entry in entries for symbol in entry.types):
@@ -91,6 +92,7 @@ def parse_types(nodes: Sequence[Node]) -> Types:
                 )
             )
             parents[as_name(symbol, "a type").text] = ()
+
     _check_depth({entry.name.text: entry.name for entry in entries}, parents)
     full = {
         name: tuple(t for t in above if t != "object") or ("object",)
@@ -167,6 +169,7 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
         if isinstance(node, Group):
             groups.append(node)
             continue
+
         result = nodes[position] if position < len(nodes) else None
         if node.text != "-" or result is None:
             raise error(
@@ -176,6 +179,7 @@ def parse_functions(nodes: Sequence[Node], types: Mapping[str, str]) -> Signatur
         if typed == len(groups):  # an empty list before a type
             position += 1
             continue
+
         typed = len(groups)
         if symbol.text in types:
             raise error(

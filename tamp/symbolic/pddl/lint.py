@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 
+from tamp.symbolic.pddl.atoms import atoms, signed_atoms
 from tamp.symbolic.pddl.nodes import warning
-from tamp.symbolic.pddl.structs import (
-    And,
-    Atom,
-    Domain,
-    Exists,
-    Fact,
-    Forall,
-    Formula,
-    Not,
-    Or,
-    Place,
-    StreamFile,
-)
+from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, Place, StreamFile
 
 
 def lint(
@@ -38,7 +27,7 @@ def lint(
     """
     found: list[tuple[Place, str]] = []
     asked = {atom.predicate for atom in _conditions(domain)} | {
-        atom.predicate for atom in _atoms(goal)
+        atom.predicate for atom in (atoms(goal) if goal is not None else ())
     }
     found += _unused_predicates(domain, streams, asked)
     if streams is not None:
@@ -134,9 +123,11 @@ def _unachievable(
         makers |= {atom.predicate for atom in stream.certified}
     given = {fact[0] for fact in initial}
 
-    for atom in _atoms(goal, positive_only=True):
-        if atom.predicate in makers or (
-            atom.predicate in domain.types and atom.predicate not in domain.predicates
+    for atom, sign in signed_atoms(goal):
+        if (
+            not sign
+            or atom.predicate in makers
+            or (atom.predicate in domain.types and atom.predicate not in domain.predicates)
         ):
             continue
         without_variables = not any(term.startswith("?") for term in atom.terms)
@@ -156,29 +147,8 @@ def _unachievable(
 
 def _conditions(domain: Domain) -> Iterator[Atom]:
     for action in domain.actions:
-        yield from _atoms(action.precondition)
+        yield from atoms(action.precondition)
         for effect in action.effects:
-            yield from _atoms(effect.condition)
+            yield from atoms(effect.condition)
     for rule in domain.derived:
-        yield from _atoms(rule.body)
-
-
-def _atoms(
-    formula: Formula | None, *, positive_only: bool = False, sign: bool = True
-) -> Iterator[Atom]:
-    parts: Iterable[Formula] = ()
-    match formula:
-        case None:
-            return
-        case Atom():
-            if sign or not positive_only:
-                yield formula
-            return
-        case Not(body):
-            parts, sign = (body,), not sign
-        case And(inner) | Or(inner):
-            parts = inner
-        case Exists(_, body) | Forall(_, body):
-            parts = (body,)
-    for part in parts:
-        yield from _atoms(part, positive_only=positive_only, sign=sign)
+        yield from atoms(rule.body)

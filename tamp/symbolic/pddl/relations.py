@@ -12,7 +12,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from tamp.symbolic.pddl.complement import complement_name, signed_atoms
+from tamp.symbolic.pddl.atoms import signed_atoms
+from tamp.symbolic.pddl.complement import complement_name
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, Stream, StreamFile
 
 POSE = "pose"

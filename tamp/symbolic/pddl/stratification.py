@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
+from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.nodes import error
-from tamp.symbolic.pddl.structs import And, Atom, Derived, Exists, Forall, Formula, Not, Or, Place
+from tamp.symbolic.pddl.structs import Atom, Derived, Place
 
 
 def strata(rules: Sequence[Derived]) -> dict[str, int]:
@@ -22,7 +23,7 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
     uses = [
         (rule.head.predicate, atom, positive)
         for rule in rules
-        for atom, positive in _uses(rule.body, True)
+        for atom, positive in signed_atoms(rule.body)
     ]
     uses = [use for use in uses if use[1].predicate in levels]
     # Levels only rise; one that exceeds the number of predicates rises for ever.
@@ -40,42 +41,21 @@ def strata(rules: Sequence[Derived]) -> dict[str, int]:
 
 
 def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
-    """Make the error at the first negation that lies on a cycle."""
-    for head, atom, positive in uses:
-        way = None if positive else _way(atom.predicate, head, uses)
-        if way:
-            place = atom.place or Place(None, 1, 1)
-            cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))
-            return error(place, f"derived predicate '{head}' rests on its own negation: {cycle}")
-    raise ValueError("no negation lies on a cycle")
+    """Make the error at the first negation that lies on a cycle.
 
-
-def _way(start: str, goal: str, uses: Sequence[tuple[str, Atom, bool]]) -> tuple[str, ...] | None:
-    """Find predicates from `start` to `goal`, each resting on the next."""
-    ways: list[tuple[str, ...]] = [(start,)]
-    seen = {start}
-    while ways:
-        way = ways.pop(0)
-        if way[-1] == goal:
-            return way
-        for head, atom, _ in uses:
-            if head == way[-1] and atom.predicate not in seen:
-                seen.add(atom.predicate)
-                ways.append((*way, atom.predicate))
-    return None
-
-
-def _uses(formula: Formula, positive: bool) -> Iterator[tuple[Atom, bool]]:
-    """Generate the atoms of a formula, and whether each stands under an even number of
-    negations.
+    The graph is networkx's, which takes 0.1 s to import: that is for errors only. Strata themselves
+    are computed above for each domain that is read, and need no graph.
     """
-    match formula:
-        case Atom():
-            yield formula, positive
-        case Not(body):
-            yield from _uses(body, not positive)
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from _uses(part, positive)
-        case Exists(_, body) | Forall(_, body):
-            yield from _uses(body, positive)
+    import networkx as nx
+
+    rests_on = nx.DiGraph((head, atom.predicate) for head, atom, _ in uses)
+    for head, atom, positive in uses:
+        if positive or not nx.has_path(rests_on, atom.predicate, head):
+            continue
+        way = nx.shortest_path(  # pyright: ignore[reportUnknownMemberType]
+            rests_on, atom.predicate, head
+        )
+        place = atom.place or Place(None, 1, 1)
+        cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))
+        return error(place, f"derived predicate '{head}' rests on its own negation: {cycle}")
+    raise ValueError("no negation lies on a cycle")

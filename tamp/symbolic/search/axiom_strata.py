@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from tamp.symbolic.pddl.structs import Fact
@@ -19,6 +19,14 @@ class AxiomStratum:
     free: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
     mask: int = 0
     recursive: bool = False
+
+    def axioms(self) -> Iterator[tuple[tuple[int, int], int]]:
+        """Yield the axioms: what must hold and what must not, and the head."""
+        for negative, head in self.free:
+            yield (0, negative), head
+        for watched in self.watched.values():
+            for positive, negative, head in watched:
+                yield (positive, negative), head
 
 
 def axiom_strata(

@@ -45,6 +45,10 @@ class SearchLimitReached(Exception):
         self.reason = reason
 
 
+class TooSlow(Exception):
+    """Ends a search in plain Python that another loop takes over, from the beginning."""
+
+
 class SearchSpace:
     """A search under way: its closed states with their parents, its counts and its limits.
 
@@ -52,7 +56,12 @@ class SearchSpace:
         best: The cost of the cheapest known way to each state.
         parents: For each state the one before it on that way, and the operator between them.
         bound: What no plan costs less than, as far as A* knows.
+        patience: Expanded states after which, again and again, it is asked whether it is too slow.
+        too_slow: What is asked then.
     """
+
+    patience = 50
+    too_slow: Callable[[], bool] | None = None
 
     def __init__(
         self,
@@ -82,6 +91,8 @@ class SearchSpace:
         if self.deadline is not None and self.deadline.passed:
             raise SearchLimitReached(Reason.TIME)
         self.expanded += 1
+        if self.too_slow is not None and self.expanded % self.patience == 0 and self.too_slow():
+            raise TooSlow
         if self.expanded == AUDIT_AFTER_STATES and self.audit is not None and self.audit():
             raise SearchLimitReached(Reason.UNSOLVABLE)
 

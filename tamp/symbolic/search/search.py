@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tamp.errors import InputError
@@ -11,10 +11,13 @@ from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.eager import astar, best_first
 from tamp.symbolic.search.expansion import Plan as Plan
 from tamp.symbolic.search.expansion import Reason as Reason
-from tamp.symbolic.search.expansion import SearchLimitReached, SearchSpace
-from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS
+from tamp.symbolic.search.expansion import SearchLimitReached, SearchSpace, TooSlow
+from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS, Heuristic
 from tamp.symbolic.search.lazy import lazy
 from tamp.symbolic.search.operators import InstantiatedTask
+from tamp.symbolic.search.packed import selection
+from tamp.symbolic.search.packed.restarts import STALLED, greedy_with_restarts
+from tamp.symbolic.search.packed.search import fits, packed_lazy
 from tamp.symbolic.search.successors import Price, Successors
 from tamp.system.deadline import Deadline
 
@@ -70,6 +73,7 @@ def search(
     deadline: Deadline | None = None,
     below: float = math.inf,
     audit: Callable[[], bool] | None = None,
+    seed: int = 0,
 ) -> Result:
     """Search for a plan.
 
@@ -90,6 +94,8 @@ def search(
             prices. Not for the greedy searches, which keep to the first way to each state.
         audit: Asked once, when the search turns out not to be a short one: whether it is proven
             that there is no plan.
+        seed: Of the random orders in which greedy search without a limit begins anew where it
+            stalls.
     """
     if search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
@@ -99,15 +105,32 @@ def search(
     if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
         return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(instantiated, price if price is not None else {})
-    run = SearchSpace(
-        successors, [HEURISTICS[name](successors) for name in names], limit, deadline, below, audit
-    )
 
-    try:
-        plan = SEARCHES[search](run, weight)
-        reason = None if plan else Reason.UNSOLVABLE
-    except SearchLimitReached as stop:
-        plan, reason = None, stop.reason
+    packable = search in ("wastar", "greedy") and fits(names, successors)
+
+    def space(heuristics: Sequence[Heuristic] = ()) -> SearchSpace:
+        return SearchSpace(successors, heuristics, limit, deadline, below, audit)
+
+    def packed(run: SearchSpace) -> Plan | None:
+        if search == "greedy" and limit is None:
+            return greedy_with_restarts(run, names, seed)
+        return packed_lazy(run, names, math.inf if search == "greedy" else weight)
+
+    if packable and selection.pays(0):
+        run = space()
+        plan, reason = _attempt(run, packed)
+    else:
+        run = space([HEURISTICS[name](successors) for name in names])
+        if packable:
+            run.too_slow = lambda: (
+                (search == "greedy" and limit is None and run.expanded >= STALLED)
+                or selection.pays(run.patience * successors.entries)
+            )
+        try:
+            plan, reason = _attempt(run, lambda run: SEARCHES[search](run, weight))
+        except TooSlow:
+            run = space()
+            plan, reason = _attempt(run, packed)
 
     return Result(
         plan,
@@ -116,6 +139,17 @@ def search(
         run.evaluated,
         run.bound if ADMISSIBLE.issuperset(names) else 0.0,
     )
+
+
+def _attempt(
+    run: SearchSpace, find: Callable[[SearchSpace], Plan | None]
+) -> tuple[Plan | None, Reason | None]:
+    """Look for a plan; return it, or why there is none."""
+    try:
+        plan = find(run)
+    except SearchLimitReached as stop:
+        return None, stop.reason
+    return plan, None if plan else Reason.UNSOLVABLE
 
 
 def unreachable(instantiated: InstantiatedTask) -> tuple[Fact, ...]:

@@ -77,10 +77,10 @@ class Successors:
         self.goal = mask(instantiated.goal.positive)
         self.goal_absent = mask(instantiated.goal.negative)
         self.derived_mask = mask(axiom.head for axiom in instantiated.axioms)
-        self._strata = axiom_strata(instantiated.axioms, mask)
+        self.strata = axiom_strata(instantiated.axioms, mask)
         self.axiom_cost = [sum(map(self.price, axiom.static)) for axiom in instantiated.axioms]
-        self._watched, self._always = self._watch()
-        self._watch_mask = sum(1 << i for i in self._watched)
+        self.watched, self.always = self._watch()
+        self.watch_mask = sum(1 << i for i in self.watched)
         self._guards_on = {mask(facts): owners for facts, owners in self._guarded.items()}
         self._many = [facts for facts in self._guards_on if facts.bit_count() > 1]
         fluents = {source.fluent for source in self._blocked}
@@ -115,7 +115,7 @@ class Successors:
 
     def closure(self, state: State) -> State:
         """Return the state with its derived facts."""
-        for stratum in self._strata:
+        for stratum in self.strata:
             before = -1
             while before != state:
                 before = state
@@ -140,8 +140,8 @@ class Successors:
     def applicable(self, closed: State) -> list[int]:
         """Return the operators whose preconditions hold; guards are not looked at."""
         before, absent = self.before, self.absent
-        found = [i for i in self._always if not absent[i] & closed]
-        mask, watched = closed & self._watch_mask, self._watched
+        found = [i for i in self.always if not absent[i] & closed]
+        mask, watched = closed & self.watch_mask, self.watched
         while mask:
             low = mask & -mask
             mask ^= low
@@ -219,6 +219,21 @@ class Successors:
                     added |= adds
             after |= added
         return after
+
+    @property
+    def entries(self) -> int:
+        """Return how many numbers describe the operators: what a state takes goes with it."""
+        return len(self.facts) + sum(1 + len(o.positive) for o in self.operators)
+
+    @property
+    def lists_guards(self) -> bool:
+        """Return whether all guards that cost something are at hand: none is made as it is met."""
+        return not self._blocked
+
+    def guard_sets(self) -> list[State]:
+        """List the guards' facts in the order of `triggered`, where all guards are at hand."""
+        single = sorted(facts for facts in self._guards_on if facts.bit_count() == 1)
+        return [*self._many, *single]
 
     def _collect_guards(self) -> None:
         """Sort the guards by their facts. Those not made yet are made where a listed price matters,

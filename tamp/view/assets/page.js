@@ -9,7 +9,7 @@ const make = (tag, text, kind) => {
 };
 const state = { time: 0, playing: false, last: 0, pointed: null, dirty: true, hidden: new Set() };
 const times = new Float32Array(bytes(data.times)), rows = new Float32Array(bytes(data.rows));
-const duration = times[times.length - 1], WIDTH = 11;
+const duration = times[times.length - 1], WIDTH = data.robot.joints.length + 4;
 
 // ---- where everything is
 
@@ -22,16 +22,16 @@ function rowAt(time) {
 }
 
 function linksAt(row) {
-  const robot = data.robot, T = M.mul(M.move(row[0], row[1], 0), M.rotZ(row[2]));
+  const robot = data.robot, n = robot.joints.length, T = M.mul(M.move(row[0], row[1], 0), M.rotZ(row[2]));
   const places = { [robot.links[0].name]: T };
   let at = places[robot.links[1].name] = M.mul(T, robot.T_base_arm);
   robot.joints.forEach((origin, i) => {
-    at = M.mul(M.mul(at, origin), M.rotZ(row[3 + i]));
+    at = M.mul(M.mul(at, origin), robot.slides[i] ? M.move(0, 0, row[3 + i]) : M.rotZ(row[3 + i]));
     places[robot.links[2 + i].name] = at;
   });
   const hand = places[robot.links[robot.links.length - 3].name] = M.mul(at, robot.T_flange_hand);
   for (const finger of robot.fingers) {
-    const [x, y, z] = finger.axis.map((part) => (part * row[10]) / 2);
+    const [x, y, z] = finger.axis.map((part) => (part * row[3 + n]) / 2);
     places[finger.link] = M.mul(M.mul(hand, finger.origin), M.move(x, y, z));
   }
   return { places, tool: M.mul(hand, robot.T_hand_tool) };

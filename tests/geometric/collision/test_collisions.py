@@ -13,15 +13,16 @@ from benchmarks.collision import compare
 from benchmarks.collision_reference import PlainFcl, random_confs, random_pose, random_scene
 from tamp.geometric.collision.collisions import PADDING, Attachment, Collisions
 from tamp.geometric.collision.fcl_bodies import FclBody
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cylinder, Part, RobotStart, Room, Scene, Sphere
 
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 @pytest.fixture(scope="module")

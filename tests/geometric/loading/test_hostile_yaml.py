@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,9 @@ import pytest
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.overlaps import check_overlaps, find_overlaps
+
+BLOWN_UP_S = 20.0
+"""CPU seconds that no small file needs, also on a machine that does ten things at once."""
 
 GOOD = """\
 domain: cupboard
@@ -70,7 +74,7 @@ def test_one_error_within_seconds(tmp_path: Path, text: str, message: str) -> No
     started = time.process_time()
     with pytest.raises(InputError, match=message) as caught:
         load_scene(tmp_path / "mine.yaml")
-    assert time.process_time() - started < 4.0
+    assert time.process_time() - started < BLOWN_UP_S
     assert caught.value.line is not None and len(caught.value.message) < 1000
 
 
@@ -87,29 +91,26 @@ def crowd(count: int, step: float) -> str:
     )
 
 
-def test_thousands_of_bodies_in_one_place(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text(crowd(2500, 0.0))
-    started = time.process_time()
-    loaded = load_scene(tmp_path / "mine.yaml")
-    with pytest.raises(InputError, match=r"'b0' and 'b1' overlap at the start, 50\.0 mm deep"):
-        check_overlaps(loaded)
-    assert time.process_time() - started < 4.0
+@pytest.mark.parametrize(
+    ("step", "message"),
+    [(0.0, r"'b0' and 'b1' overlap at the start, 50\.0 mm deep"), (0.001, r"'b0' and 'b1' overlap"), (0.1, None)],
+    ids=["in one place", "like scales", "side by side"],
+)
+def test_work_grows_with_the_number_of_bodies_not_with_its_square(
+    tmp_path: Path, step: float, message: str | None
+) -> None:
+    """Ratios, since a loaded machine needs several times the CPU time for the same work."""
 
+    def work(count: int) -> float:
+        (tmp_path / "mine.yaml").write_text(crowd(count, step))
+        started = time.process_time()
+        loaded = load_scene(tmp_path / "mine.yaml")
+        with pytest.raises(InputError, match=message) if message else nullcontext():
+            check_overlaps(loaded)
+        return time.process_time() - started
 
-def test_thousands_of_bodies_that_lie_in_each_other_like_scales(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text(crowd(2500, 0.001))
-    started = time.process_time()
-    loaded = load_scene(tmp_path / "mine.yaml")
-    with pytest.raises(InputError, match=r"'b0' and 'b1' overlap at the start"):
-        check_overlaps(loaded)
-    assert time.process_time() - started < 6.0
-
-
-def test_thousands_of_bodies_side_by_side(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text(crowd(2500, 0.1))
-    started = time.process_time()
-    check_overlaps(load_scene(tmp_path / "mine.yaml"))
-    assert time.process_time() - started < 6.0
+    work(50)
+    assert work(2000) < 12 * min(work(400), work(400))
 
 
 def test_overlaps_come_in_the_scenes_order(tmp_path: Path) -> None:

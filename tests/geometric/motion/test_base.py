@@ -35,7 +35,7 @@ def test_an_empty_room_is_crossed_straight_turning_the_shorter_way() -> None:
     assert path is not None and np.allclose(path, np.array([START, np.array([2.0, 0.0, 2 * np.pi - 3.0])]))
 
 
-@pytest.mark.parametrize("steering", ["se2", "reeds-shepp"])
+@pytest.mark.parametrize("steering", ["se2", "reeds-shepp", "differential"])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_table_is_driven_round(steering: str, seed: int) -> None:
     checker = Sampled(round_table, 0.02)
@@ -78,7 +78,7 @@ def test_the_failure_says_why() -> None:
 
 
 def test_unknown_steering_is_refused_with_the_choices() -> None:
-    with pytest.raises(ValueError, match=r"unknown steering 'dubins'. Choices: se2, reeds-shepp"):
+    with pytest.raises(ValueError, match=r"unknown steering 'dubins'. Choices: se2, reeds-shepp, differential"):
         _plan(Sampled(lambda _: False), steering="dubins")
 
 
@@ -98,3 +98,26 @@ def test_a_start_turned_round_drives_off(steering: str, yaw: float) -> None:
         assert planned.path is not None and len(planned.path) > 2
         assert np.array_equal(planned.path[0], start) and _same_place(planned.path[-1], np.array(goal))
         assert _certified(checker, planned.path)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_differential_drive_turns_or_drives_straight(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    start, goal = (np.array([side * 2.0, *rng.uniform((-2.0, -3.0), (2.0, 3.0))]) for side in (-1.0, 1.0))
+    path = _plan(Sampled(round_table, 0.02), start, goal, seed, "differential").path
+    assert path is not None and np.array_equal(path[0], start) and _same_place(path[-1], goal)
+    for a, b in pairwise(path):
+        moved = b[:2] - a[:2]
+        if np.linalg.norm(moved) > 1e-9:  # then it does not turn, and goes where it looks, or straight back
+            assert abs(b[2] - a[2]) < 1e-9
+            assert abs(moved[1] * np.cos(a[2]) - moved[0] * np.sin(a[2])) < 1e-9
+
+
+def test_a_differential_drive_backs_out_before_it_turns() -> None:
+    def collides(conf: Array) -> bool:  # furniture to both sides of what is in front of it
+        return bool(abs(np.sin(conf[2])) > 0.2 and conf[0] > -0.5)
+
+    start, goal = np.array([0.0, 0.0, 0.0]), np.array([-1.5, 1.0, 2.0])
+    planned = _plan(Sampled(collides, 0.02), start, goal, steering="differential")
+    assert planned.path is not None and _certified(Sampled(collides, 0.02), planned.path)
+    assert planned.path[1][0] < -0.5 and planned.path[1][2] == 0.0

@@ -11,11 +11,12 @@ import pytest
 
 from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.loading.load import load_scene
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.timing import time_path
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.system.deadline import Deadline
 
@@ -33,7 +34,7 @@ goal: (and (on can table))
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 @pytest.fixture(scope="module")
@@ -92,11 +93,11 @@ from pathlib import Path
 from tamp.geometric.collision.collisions import Collisions
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.loading.load import load_scene
-from tamp.geometric.robot.robot import panda_mobile
+from tamp.geometric.loading.robots import ROBOTS
 from tests.geometric.motion.test_with_robot import PROBLEM, _past_the_pillar
 file = Path({str(tmp_path)!r}) / "motions.yaml"
 file.write_text(PROBLEM)
-robot = panda_mobile()
+robot = ROBOTS["panda_mobile"]()
 collisions = Collisions(load_scene(file).scene, robot, Kinematics(robot))
 print([hashlib.sha256(_past_the_pillar(collisions, robot, seed).tobytes()).hexdigest() for seed in (0, 1, 0)])
 """

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 @pytest.fixture(scope="module")

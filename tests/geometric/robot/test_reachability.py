@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tamp.errors import InputError
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
 from tamp.geometric.robot.reachability import BROAD, Reachability, asset
-from tamp.geometric.robot.robot import ROBOTS, Robot, panda_mobile
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 @pytest.fixture(scope="module")
@@ -78,11 +80,11 @@ def test_a_tool_pose_outside_the_table_still_gets_samples(reachability: Reachabi
     assert np.all(np.isfinite(reachability.sample(high, np.random.default_rng(0), 10)))
 
 
-def test_a_robot_without_a_table_is_refused(robot: Robot) -> None:
-    with pytest.raises(InputError, match="unknown_robot"):
-        Reachability(dataclasses.replace(robot, name="unknown_robot"))
+def test_a_robot_without_a_table_is_refused(robot: Robot, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="reachability table is missing"):
+        Reachability(dataclasses.replace(robot, folder=tmp_path))
 
 
 @pytest.mark.parametrize("name", sorted(ROBOTS))
 def test_every_robot_has_a_small_table(name: str) -> None:
-    assert asset(name).stat().st_size < 1_000_000
+    assert asset(ROBOTS[name]()).stat().st_size < 1_000_000

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from tamp.geometric.robot.robot import panda_mobile
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.spheres import link_covers
 from tamp.geometric.scene.scene import Hull
 
 
 def test_every_point_of_every_hull_lies_in_a_sphere(rng: np.random.Generator) -> None:
-    robot = panda_mobile()
+    robot = ROBOTS["panda_mobile"]()
     covers = link_covers(robot)
     checked = 0
     for link in robot.links:
@@ -30,7 +30,7 @@ def test_every_point_of_every_hull_lies_in_a_sphere(rng: np.random.Generator) ->
 
 
 def test_slack_bounds_how_far_spheres_stand_out() -> None:
-    robot = panda_mobile()
+    robot = ROBOTS["panda_mobile"]()
     covers = link_covers(robot)
     assert len(covers) == 11
     for link in robot.links:

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
-from tamp.geometric.robot.robot import Robot, panda_mobile
+from tamp.geometric.loading.robots import ROBOTS
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 from tamp.geometric.stability.ray_crossings import Solid
@@ -54,7 +55,7 @@ BODIES = {
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return panda_mobile()
+    return ROBOTS["panda_mobile"]()
 
 
 def first(robot: Robot, thing: Body, count: int, seed: int = 0) -> list[Grasp]:
@@ -201,6 +202,19 @@ def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
     assert max(aside) > 0.06  # none is lost
     uneven = replace(long, center_of_mass=(0.1, 0.0, 0.0))
     assert all(abs(grasp.T_tool_body.inverse().position[0] - 0.1) < 0.03 for grasp in first(robot, uneven, 8))
+
+
+def test_a_tall_panel_is_grasped_aslant_over_its_centre(robot: Robot) -> None:
+    """What hangs straight down meets the arm at home; a slanted line through its middle leaves it far aside."""
+    panel = body(Box((0.5, 0.07, 0.4)))
+
+    def aslant(grasp: Grasp) -> Rejection | None:
+        down = float(grasp.T_tool_body.inverse().rotation[:, 2] @ [0.0, 0.0, -1.0])
+        return None if abs(down - math.sqrt(0.5)) < 1e-6 else Rejection("not 45 degrees")
+
+    found = sample_grasps(panel, robot, np.random.default_rng(0), refused=aslant)
+    grasp = next(one for one in found if isinstance(one, Grasp))
+    assert abs(grasp.T_tool_body.inverse().position[0]) < 0.02
 
 
 def load(folder: Path, thing: str) -> list[object]:

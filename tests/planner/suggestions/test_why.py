@@ -14,7 +14,7 @@ from tamp.commands.solve import NO_PLAN, SOLVED, run
 from tamp.planner.problem import Problem, load_problem
 from tamp.planner.solution import Action, Solution
 from tamp.planner.suggestions.changes import changes
-from tamp.planner.suggestions.why import Why, why
+from tamp.planner.suggestions.why import Suggestions, suggest_changes
 from tamp.planner.timed_trajectories import Trajectory
 from tamp.symbolic.algorithms.result import Outcome
 
@@ -94,18 +94,18 @@ def outcomes(monkeypatch: pytest.MonkeyPatch, chance: dict[str, set[int]], spent
     monkeypatch.setattr("tamp.planner.suggestions.why.solve", solved)
 
 
-def asked(folder: Path, outcome: Outcome = Outcome.TIMEOUT) -> Why:
+def asked(folder: Path, outcome: Outcome = Outcome.TIMEOUT) -> Suggestions:
     path = written("covered", folder, 2)
     problem = load_problem(path)
     solution = Solution(problem, outcome, 0, "adaptive", seconds={"total": 30.0})
-    return why(solution, lambda scene: load_problem(path, scene=scene), max_time=30.0)
+    return suggest_changes(solution, lambda scene: load_problem(path, scene=scene), max_time=30.0)
 
 
 def test_a_body_is_named_only_where_three_seeds_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spent: list[float] = []
     outcomes(monkeypatch, {"monitor": {0, 1, 2}, "other_0": {0, 1}}, spent)
     found = asked(tmp_path)
-    assert [one.text for one in found.relaxations] == ["without monitor"]
+    assert [one.text for one in found.suggestions] == ["without monitor"]
     assert ("without other_0", 2) in found.failed and len(set(spent)) == 1
     text = found.text()
     assert "It would be solvable without monitor" in text
@@ -115,7 +115,7 @@ def test_a_body_is_named_only_where_three_seeds_agree(tmp_path: Path, monkeypatc
 def test_luck_is_no_cause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     outcomes(monkeypatch, {"monitor": {0, 1, 2}, "": {1}}, [])
     found = asked(tmp_path)
-    assert found.relaxations == () and found.unchanged == (1,)
+    assert found.suggestions == () and found.unchanged == (1,)
     assert "With --seed 1 a plan is found as it is" in found.text() and "without monitor" not in found.text()
 
 
@@ -123,5 +123,5 @@ def test_what_is_proven_needs_no_second_run(tmp_path: Path, monkeypatch: pytest.
     spent: list[float] = []
     outcomes(monkeypatch, {"monitor": {0, 1, 2}}, spent)
     found = asked(tmp_path, Outcome.INFEASIBLE)
-    assert [one.text for one in found.relaxations] == ["without monitor"]
+    assert [one.text for one in found.suggestions] == ["without monitor"]
     assert len(spent) == 3 + len(found.failed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tamp.stream import Call, Rejection
-from tamp.symbolic.algorithms.adaptive import ROUND_BUDGET
+from tamp.symbolic.algorithms.adaptive import ROUND_DRAWS
 from tests.symbolic.algorithms.toys import replay, solve, stream_task
 
 DOMAIN = """
@@ -24,7 +24,7 @@ STREAMS = """
 
 
 def test_a_long_skeleton_is_gone_through_once_before_the_next_search() -> None:
-    count = ROUND_BUDGET // 2 + 10  # each chore has two nodes
+    count = ROUND_DRAWS // 2 + 10  # each chore has two nodes
     tested = 0
 
     def draw_tool(chore: str, call: Call) -> Iterator[float]:

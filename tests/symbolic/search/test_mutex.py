@@ -102,4 +102,4 @@ def test_rules_that_lead_in_circles_come_to_an_end(goal: str) -> None:
     instantiated = instantiate(parse_task(text, parse_domain(CIRCLES, None), None))
     began = time.process_time()
     assert excluded(instantiated, Deadline()) is None
-    assert time.process_time() - began < 10.0
+    assert time.process_time() - began < 50.0

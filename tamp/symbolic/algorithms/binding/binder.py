@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
 
+from tamp.symbolic.algorithms.binding.levels import Level, Levels
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Fact
 from tamp.system.deadline import Deadline, OutOfTime
 
@@ -17,15 +17,6 @@ REFUSALS = 20
 
 RECENT = 3
 """How many of an instance's latest results are tried again before drawing new ones."""
-
-
-@dataclass
-class _Level:
-    """One node on the way down: its candidates, and the levels that its failure depends on."""
-
-    candidates: Iterator[tuple[str, ...]]
-    conflict: set[int]
-    culprits: set[int] = field(default_factory=set[int])
 
 
 class Binder:
@@ -39,7 +30,7 @@ class Binder:
         self._streams = streams
         self._experience = experience
         self._deadline = deadline
-        self.units = 0
+        self.draws = 0
         self._met: list[tuple[Node, Instance]] = []
 
     def bind(
@@ -62,40 +53,45 @@ class Binder:
             holds: Has the last word on values for all variables; what it refuses is not returned.
         """
         nodes = skeleton.nodes
-        makers = {variable: i for i, node in enumerate(nodes) for variable in node.outputs}
+        makers = skeleton.makers
         values: dict[int, str] = {}
-        levels: list[_Level] = []
+        levels = Levels(skeleton.users, fresh)
 
-        spent_before = self.units
+        spent_before = self.draws
         self._met.clear()
         refusals = 0
 
+        def enter(index: int) -> Level:
+            level = self._enter(skeleton, index, makers, values, tries, index in fresh)
+            levels.enter(index, level)
+            return level
+
+        def standing(index: int) -> Level:
+            level = levels.standing(index)
+            if level is None:
+                level = enter(index)
+                next(level.candidates)  # the value that it has
+            return level
+
         while True:
-            index = len(levels)
-            if index < len(nodes):
-                levels.append(self._enter(skeleton, index, makers, values, tries, index in fresh))
+            index = levels.next()
+            if index is not None:
+                level = enter(index)
             elif holds is None or holds(values):
                 return values
             else:
                 refusals += 1
-                if refusals > REFUSALS or not levels:
+                if refusals > REFUSALS or not nodes:
                     return None
-                levels[-1].conflict.update(range(index - 1))  # any of them may be to blame
-            while True:
-                level = levels[-1]
-                index = len(levels) - 1
-                outputs = next(level.candidates, None)
-                if outputs is not None:
-                    values.update(zip(nodes[index].outputs, outputs, strict=True))
-                    break
+                index = len(nodes) - 1
+                level = standing(index)
+                level.conflict.update(range(index))  # any of them may be to blame
 
-                levels.pop()
-                for variable in nodes[index].outputs:
-                    values.pop(variable, None)
+            while (outputs := next(level.candidates, None)) is None:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
-                if not conflict or self.units - spent_before > budget:
-                    if self.units == spent_before:
+                if not conflict or self.draws - spent_before > budget:
+                    if self.draws == spent_before:
                         # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._met:
                             self._note(node, instance, False)
@@ -104,13 +100,14 @@ class Binder:
                     return None
 
                 target = max(conflict)
-                for dropped in range(target + 1, len(levels)):
-                    for variable in nodes[dropped].outputs:
-                        values.pop(variable, None)
-                del levels[target + 1 :]
-                levels[target].culprits |= conflict
+                levels.jump(index, target)
+                index, level = target, standing(target)
+                level.culprits |= conflict
                 if self._deadline.passed:
                     raise OutOfTime
+
+            levels.take(index, outputs)
+            values.update(zip(nodes[index].outputs, outputs, strict=True))
 
     def _settle(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
@@ -131,7 +128,7 @@ class Binder:
             if not instance.exhausted:
                 if self._deadline.passed:
                     raise OutOfTime
-                self.units += 1
+                self.draws += 1
                 self._note(node, instance, self._streams.draw(instance) is not None)
 
     def _enter(
@@ -142,7 +139,7 @@ class Binder:
         values: dict[int, str],
         tries: int,
         fresh: bool,
-    ) -> _Level:
+    ) -> Level:
         node = skeleton.nodes[index]
         inputs = tuple(value_of(term, values) for term in node.inputs)
         fluents = node.given.union(
@@ -152,7 +149,7 @@ class Binder:
         )
         instance = self._streams.instance(node.stream.name, inputs, fluents)
         conflict = {makers[term] for term in node.inputs if isinstance(term, int)}
-        return _Level(
+        return Level(
             self._candidates(skeleton, index, instance, makers, conflict, tries, fresh), conflict
         )
 
@@ -202,7 +199,7 @@ class Binder:
                 raise OutOfTime
             if instance.exhausted:
                 break
-            self.units += 1
+            self.draws += 1
             outputs = self._streams.draw(instance)
             self._note(node, instance, outputs is not None)
             if outputs is not None and offer(outputs):
@@ -216,22 +213,24 @@ class Binder:
 
     def _note(self, node: Node, instance: Instance, success: bool) -> None:
         if success or instance.last is None:
-            self._experience.note(node.fact, None)
+            self._experience.record(node.fact, None)
             return
         if node.stream.is_fluent and instance.last.blockers:
             present = _present(node, instance.last.blockers)
             if present:
-                self._experience.note_nogood(node.fact, present, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
                 return
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
             words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
             if not any(word.startswith(MARK) for word in words):
                 call = (node.stream.name, node.guess[0])
-                self._experience.note_exact(call, node.stream.declaration.fluents, present)
+                self._experience.record_failing_state(
+                    call, node.stream.declaration.fluents, present
+                )
             if present:  # nobody says what of the state is to blame
-                self._experience.note_nogood(node.fact, present, instance.last.reason)
-        self._experience.note(node.fact, instance.last.reason)
+                self._experience.record_nogood(node.fact, present, instance.last)
+        self._experience.record(node.fact, instance.last)
 
     def _blame(
         self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]

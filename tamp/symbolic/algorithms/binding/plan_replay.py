@@ -51,7 +51,7 @@ class _Certified:
         return {fact for made in self.shown.values() for facts in made.values() for fact in facts}
 
 
-class Standing:
+class PlanReplay:
     """Judges bound plans of a run.
 
     Args:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.structs import Fact
@@ -103,3 +104,23 @@ class Skeleton:
     def signature(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
         """Return what tells it from other skeletons."""
         return tuple((step.name, step.arguments) for step in self.steps)
+
+    @cached_property
+    def makers(self) -> dict[int, int]:
+        """Return for each variable the place of the call that puts it out."""
+        return {variable: i for i, node in enumerate(self.nodes) for variable in node.outputs}
+
+    @cached_property
+    def users(self) -> list[list[int]]:
+        """List for each call the later ones that take, or are shown, what it puts out."""
+        makers = self.makers
+        users: list[list[int]] = [[] for _ in self.nodes]
+        for index, node in enumerate(self.nodes):
+            seen = {makers[term] for term in node.inputs if isinstance(term, int)}
+            for (_, terms), _ in node.fluents:
+                seen.update(
+                    makers[term] for term in terms if isinstance(term, int) and term in makers
+                )
+            for maker in seen:
+                users[maker].append(index)
+        return users

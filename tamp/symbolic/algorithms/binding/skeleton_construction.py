@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tamp.symbolic.algorithms.binding.call_order import ordered
 from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Step, Term
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK, Guess
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import ANY
 from tamp.symbolic.search.plan_trace import End
@@ -15,10 +15,10 @@ from tamp.symbolic.search.plan_trace import End
 def build_skeleton(
     steps: Sequence[Step],
     end: End,
-    maker: Callable[[Fact], Guess | None],
-    promise: Callable[[str], Fact | None],
+    certifier: Callable[[Fact], OptimisticInstance | None],
+    certified_fact_of: Callable[[str], Fact | None],
     given: Iterable[Fact] = (),
-    chosen: Mapping[tuple[int, Fact], Guess] | None = None,
+    chosen: Mapping[tuple[int, Fact], OptimisticInstance] | None = None,
 ) -> Skeleton:
     """Collect the stream calls of an optimistic plan.
 
@@ -28,32 +28,36 @@ def build_skeleton(
     Args:
         steps: The plan.
         end: The final state, and what the goal rests on in it.
-        maker: Who certifies an optimistic fact; None for known ones.
-        promise: What the call that gives a placeholder, or a value, certifies of it; None for the
-            task's own objects.
+        certifier: Who certifies an optimistic fact; None for known ones.
+        certified_fact_of: What the call that gives a placeholder, or a value, certifies of it;
+            None for the task's own objects.
         given: Facts that no action changes: they are shown to the streams that ask for them.
         chosen: For a step's number and a fact that it rests on who certifies that there, where
             several may.
     """
-    builder = _Builder(maker, promise, given, chosen or {})
+    builder = SkeletonBuilder(certifier, certified_fact_of, given, chosen or {})
     for number, step in enumerate(steps):
-        builder.take(number, step)
-    builder.finish(len(steps), end)
+        builder.add_action(number, step)
+    builder.add_goal(len(steps), end)
     return builder.skeleton(tuple(steps))
 
 
-class _Builder:
+class SkeletonBuilder:
     """Walks through the plan and keeps for each fluent fact which variables stand in it."""
 
     def __init__(
         self,
-        maker: Callable[[Fact], Guess | None],
-        promise: Callable[[str], Fact | None],
+        certifier: Callable[[Fact], OptimisticInstance | None],
+        certified_fact_of: Callable[[str], Fact | None],
         given: Iterable[Fact],
-        chosen: Mapping[tuple[int, Fact], Guess],
+        chosen: Mapping[tuple[int, Fact], OptimisticInstance],
     ) -> None:
         self._chosen = chosen
-        self._maker, self._promise, self._given = maker, promise, frozenset(given)
+        self._certifier, self._certified_fact_of, self._given = (
+            certifier,
+            certified_fact_of,
+            frozenset(given),
+        )
         self._parent: list[int] = []
         self._producer: dict[int, Node] = {}
         self._nodes: list[Node] = []
@@ -112,25 +116,25 @@ class _Builder:
 
     # The walk.
 
-    def take(self, number: int, step: Step) -> None:
+    def add_action(self, number: int, step: Step) -> None:
         """Take one action: bind its arguments through what it reads, require what it rests on."""
         for fact in step.state:
             self._state.setdefault(fact, fact[1:])
         self._shown[number] = {fact: self._state[fact] for fact in step.state}
         local = self._read(step.read | step.deleted, step.state, step.derived)
         for fact in sorted(step.static):
-            self._require(fact, local, number)
+            self._require_static(fact, local, number)
 
         for argument in step.arguments:
             # no condition says what it is: any value of the stream that gives it will do
             if argument.startswith(MARK):
-                self._anything(argument, local, number)
+                self._require_any(argument, local, number)
 
         for usage in step.usages:
             around = dict(local)
             for fact in sorted(usage.present):
-                self._adopt(fact, around)
-            self._require(usage.fact, around, number)
+                self._bind_fluent(fact, around)
+            self._require_static(usage.fact, around, number)
             self._certify((usage.fact,), around)
 
         self._actions.append((step.name, self._lift(step.arguments, local)))
@@ -138,12 +142,12 @@ class _Builder:
         for fact in step.added:
             self._state[fact] = self._lift(fact[1:], local)
 
-    def finish(self, number: int, end: End) -> None:
+    def add_goal(self, number: int, end: End) -> None:
         """Require what the goal rests on in the final state."""
         self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in end.state}
         local = self._read(end.read, end.state, end.derived)
         for fact in sorted(end.static):
-            self._require(fact, local, number)
+            self._require_static(fact, local, number)
         self._certify(end.static, local)
 
     def skeleton(self, steps: tuple[Step, ...]) -> Skeleton:
@@ -180,7 +184,7 @@ class _Builder:
         """
         local: dict[str, Term] = {}
         for fact in sorted(read):
-            self._adopt(fact, local)
+            self._bind_fluent(fact, local)
 
         open_ = {
             name
@@ -191,10 +195,10 @@ class _Builder:
         if open_:
             for fact in sorted(state):
                 if not open_.isdisjoint(fact[1:]):
-                    self._adopt(fact, local)
+                    self._bind_fluent(fact, local)
         return local
 
-    def _adopt(self, fact: Fact, local: dict[str, Term]) -> None:
+    def _bind_fluent(self, fact: Fact, local: dict[str, Term]) -> None:
         for name, term in zip(fact[1:], self._state.get(fact, fact[1:]), strict=True):
             if name.startswith(MARK):
                 if name in local:
@@ -207,19 +211,19 @@ class _Builder:
             if fact[0] != ANY:
                 self._certified.append((fact[0], self._lift(fact[1:], local)))
 
-    def _anything(self, name: str, local: dict[str, Term], number: int) -> None:
+    def _require_any(self, name: str, local: dict[str, Term], number: int) -> None:
         """Require a value that nothing is said of."""
-        promised = None if name in local else self._promise(name)
+        promised = None if name in local else self._certified_fact_of(name)
         if promised is not None:
-            self._require(promised, local, number)
+            self._require_static(promised, local, number)
             self._certify((promised,), local)
 
-    def _require(self, fact: Fact, local: dict[str, Term], number: int) -> Node | None:
+    def _require_static(self, fact: Fact, local: dict[str, Term], number: int) -> Node | None:
         """Have a fact certified; by which call, if it takes one."""
         if fact[0] == ANY:
-            self._anything(fact[1], local, number)
+            self._require_any(fact[1], local, number)
             return None
-        guess = self._chosen.get((number, fact)) or self._maker(fact)
+        guess = self._chosen.get((number, fact)) or self._certifier(fact)
         if guess is None:
             return None
 
@@ -231,7 +235,7 @@ class _Builder:
                     node = candidate
 
         if node is None:
-            needs = [self._require(needed, local, number) for needed in guess.domain]
+            needs = [self._require_static(needed, local, number) for needed in guess.domain]
             inputs = self._lift(guess.inputs, local)
             outputs = tuple(
                 _variable(local.setdefault(name, self._new())) for name in guess.outputs

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.bound_stream import ADVISORY
-from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Fact
 
-LATEST = 100
+MAX_SKELETONS = 100
 """So many plans, the latest, are looked at: the user waits for the answer."""
 
 
 @dataclass
-class Tally:
+class FailureCount:
     """The calls of one stream for one action with its objects, over all plans that were tried.
 
     Attributes:
@@ -26,6 +26,7 @@ class Tally:
         tries: Results asked for.
         successes: Those that came, or held.
         reasons: Why the others did not.
+        in_the_way: The objects that they hit or that blocked them, counted.
     """
 
     action: str
@@ -33,6 +34,7 @@ class Tally:
     tries: int = 0
     successes: int = 0
     reasons: Counter[str] = field(default_factory=Counter[str])
+    in_the_way: Counter[str] = field(default_factory=Counter[str])
 
     @property
     def failures(self) -> int:
@@ -40,20 +42,20 @@ class Tally:
         return self.tries - self.successes
 
     @property
-    def never(self) -> bool:
+    def always_failed(self) -> bool:
         """Return whether all tries failed."""
         return self.tries > 0 and self.successes == 0
 
     def text(self) -> str:
         """Describe it in one line."""
         reasons = ", ".join(f"{count} {reason}" for reason, count in self.reasons.most_common(3))
-        how = "never worked" if self.never else f"worked {self.successes} times"
+        how = "never worked" if self.always_failed else f"worked {self.successes} times"
         return f"{self.action}: {self.stream} {how} in {self.tries} tries: {reasons}"
 
 
-def tallies(
+def failure_counts(
     skeletons: Sequence[Skeleton], experience: Experience, names: Mapping[str, object]
-) -> tuple[Tally, ...]:
+) -> tuple[FailureCount, ...]:
     """Count what was tried by action and stream: what never worked first, then by failures.
 
     Args:
@@ -61,15 +63,15 @@ def tallies(
         experience: What binding them has taught.
         names: The values of the problem's objects: those that are their own names stand for things.
     """
-    records: dict[Fact, list[Record]] = {
+    records: dict[Fact, list[FailureRecord]] = {
         fact: [record] for fact, record in experience.facts.items()
     }
     for (fact, _), record in experience.nogoods.items():
         records.setdefault(fact, []).append(record)
 
-    made: dict[tuple[str, str], Tally] = {}
+    made: dict[tuple[str, str], FailureCount] = {}
     counted: set[tuple[str, str, Fact]] = set()
-    for skeleton in skeletons[-LATEST:]:
+    for skeleton in skeletons[-MAX_SKELETONS:]:
         users = _users(skeleton)
         labels: dict[int, str] = {}
         for node, user in zip(skeleton.nodes, users, strict=True):
@@ -81,24 +83,26 @@ def tallies(
             if (*key, node.fact) in counted:
                 continue
             counted.add((*key, node.fact))
-            tally = made.setdefault(key, Tally(*key))
+            tally = made.setdefault(key, FailureCount(*key))
             for record in records[node.fact]:
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
+                tally.in_the_way.update(record.in_the_way)
 
     rows = [tally for tally in made.values() if tally.tries]
-    return tuple(sorted(rows, key=lambda row: (not row.never, -row.failures)))
+    return tuple(sorted(rows, key=lambda row: (not row.always_failed, -row.failures)))
 
 
-def in_the_way(rows: Sequence[Tally], names: Mapping[str, object]) -> tuple[tuple[str, int], ...]:
-    """Count the things of the problem that reasons name as hit or blocking; most first."""
+def blocking_objects(
+    rows: Sequence[FailureCount], names: Mapping[str, object]
+) -> tuple[tuple[str, int], ...]:
+    """Count the things of the problem that were hit or that blocked a way; most first."""
     counts: Counter[str] = Counter()
     for row in rows:
-        for reason, count in row.reasons.items():
-            if "hits " in reason or "blocked by " in reason:
-                words = reason.replace(",", " ").lower().split()
-                counts.update({word: count for word in words if isinstance(names.get(word), str)})
+        for name, count in row.in_the_way.items():
+            if isinstance(names.get(name.lower()), str):
+                counts[name.lower()] += count
     return tuple(counts.most_common())
 
 

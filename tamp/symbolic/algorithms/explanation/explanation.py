@@ -9,27 +9,30 @@ from collections.abc import Mapping, Sequence
 from tamp.stream import Rejection
 from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
-from tamp.symbolic.algorithms.experience.failure_counts import Tally, in_the_way
-from tamp.symbolic.algorithms.experience.stream_statistics import Experience, Record
-from tamp.symbolic.algorithms.explanation.goal_conflicts import InstantiateGoal, conflict
+from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects
+from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
+from tamp.symbolic.algorithms.explanation.goal_conflicts import (
+    InstantiateGoal,
+    minimal_unsolvable_goals,
+)
 from tamp.symbolic.algorithms.explanation.kept import kept_from
-from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
-from tamp.symbolic.algorithms.result import Attempt, StreamTask
+from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.algorithms.result import SkeletonAttempt, StreamTask
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
-SOON = 3.0
+CONFLICT_SECONDS = 3.0
 """Seconds in which goals that exclude each other are looked for once it is proven that there is no
 plan."""
 
-SELDOM = 0.05
+LEAST_SHARE_OF_FAILURES = 0.05
 """What never worked is the cause where it failed at least so often, as a share of the failures of
 what failed most."""
 
-LINES = 6
+MAX_CAUSES = 6
 """How many causes are worth reading."""
 
 
@@ -38,10 +41,10 @@ def explain_attempts(
     skeletons: Sequence[Skeleton],
     experience: Experience,
     bound: Skeleton | None,
-) -> tuple[Attempt, ...]:
+) -> tuple[SkeletonAttempt, ...]:
     """List what was tried, in the order in which it was found, and what failed in it."""
     return tuple(
-        Attempt(
+        SkeletonAttempt(
             actions=tuple(
                 " ".join([step.name, *_names(problem, step.arguments)]) for step in skeleton.steps
             ),
@@ -57,7 +60,7 @@ def explain_infeasible(
     problem: StreamTask,
     instantiated: InstantiatedTask,
     dead: Mapping[tuple[str, tuple[str, ...]], Rejection],
-    missing: Missing,
+    unachievable: UnachievableFacts,
     deadline: Deadline,
     instantiate: InstantiateGoal,
 ) -> tuple[str, ...]:
@@ -67,7 +70,7 @@ def explain_infeasible(
         problem: The task and its streams.
         instantiated: The optimistic task, unsolvable.
         dead: The calls that ended without a value.
-        missing: Says what a fact lacks.
+        unachievable: Says what a fact lacks.
         deadline: When to look no further.
         instantiate: Instantiates the task with another goal.
     """
@@ -83,7 +86,7 @@ def explain_infeasible(
             if set(_names(problem, key[1])) & set(words):
                 blamed.add(key)
                 causes.append(f"{_call(problem, *key)}: {rejection.reason}")
-        causes = causes or [missing.reason(fact) + _kinds(problem, words)]
+        causes = causes or [unachievable.reason(fact) + _kinds(problem, words)]
         lines += [f"{text} cannot be reached: {cause}" for cause in causes]
 
     lines += [
@@ -94,8 +97,8 @@ def explain_infeasible(
     if blamed or unreachable(instantiated):
         return tuple(dict.fromkeys(lines))
 
-    soon = Deadline(min(SOON, deadline.left()))
-    goals = conflict(instantiated, soon, problem.task.goal, instantiate)
+    soon = Deadline(min(CONFLICT_SECONDS, deadline.left()))
+    goals = minimal_unsolvable_goals(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
         return tuple(dict.fromkeys((_exclusive(goals), *lines)))
 
@@ -119,7 +122,7 @@ def _exclusive(goals: Sequence[str]) -> str:
 
 
 def explain_failures(
-    problem: StreamTask, streams: Streams, rows: Sequence[Tally], tried: bool
+    problem: StreamTask, streams: Streams, rows: Sequence[FailureCount], tried: bool
 ) -> tuple[str, ...]:
     """Name the call that did not end, what never worked or failed most, and what was in the way.
 
@@ -134,14 +137,16 @@ def explain_failures(
         [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
     )
     # one that failed once or twice is no cause
-    least = SELDOM * max((row.failures for row in rows), default=0)
-    never = [row for row in rows if row.never and row.failures >= least]
+    least = LEAST_SHARE_OF_FAILURES * max((row.failures for row in rows), default=0)
+    never = [row for row in rows if row.always_failed and row.failures >= least]
     mostly = sorted(
         (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
     )
     lines = [row.text() for row in never or mostly]
-    blocking = [f"{name} ({count} times)" for name, count in in_the_way(rows, problem.values)[:3]]
-    lines = lines[:LINES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
+    blocking = [
+        f"{name} ({count} times)" for name, count in blocking_objects(rows, problem.values)[:3]
+    ]
+    lines = lines[:MAX_CAUSES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
     lines = lines if tried else _never_worked(problem, streams)
     none = "no single step failed more than it worked" if tried else "no action plan was found yet"
     return (*endless, *lines) or (none,)
@@ -165,7 +170,7 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
     )
     return [
         f"{kind} never worked: {text}"
-        for (kind, _), text in zip(never[:LINES], texts, strict=False)
+        for (kind, _), text in zip(never[:MAX_CAUSES], texts, strict=False)
     ]
 
 
@@ -186,10 +191,10 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
             if record is not None and record.failures > record.successes:
                 rows.append((record.failures, _row(skeleton, node, present, record)))
     rows.sort(key=lambda row: -row[0])
-    return list(dict.fromkeys(text for _, text in rows[:LINES]))
+    return list(dict.fromkeys(text for _, text in rows[:MAX_CAUSES]))
 
 
-def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: Record) -> str:
+def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: FailureRecord) -> str:
     objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
     reasons = ", ".join(f"{count} {reason}" for reason, count in record.reasons.most_common(3))
     tries = record.failures + record.successes

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import combinations
 
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
 from tamp.symbolic.search.instantiation.normal_form import show
@@ -15,25 +15,25 @@ from tamp.symbolic.search.operators import Goal, InstantiatedTask
 from tamp.symbolic.search.search import Reason, search
 from tamp.system.deadline import Deadline
 
-LIMIT = 5000
+MAX_STATES = 5000
 """States that a search may expand in the attempt to prove that some of the goals alone are too
 many."""
 
-PAIRS = 200
+MAX_PAIRS = 200
 """Pairs of conjuncts looked at where the goal is one formula with variables."""
 
 InstantiateGoal = Callable[[Formula], InstantiatedTask]
 """Instantiates the task with another goal."""
 
 
-def conflict(
+def minimal_unsolvable_goals(
     instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
 ) -> tuple[str, ...]:
     """Find a minimal conflict: goals that cannot be reached together, as texts.
 
     Pairs of facts that exclude each other say it at once. Where they do not, one goal after the
-    other is left out; it stays out when the others are proven unsolvable without it, within LIMIT
-    and the time.
+    other is left out; it stays out when the others are proven unsolvable without it, within
+    MAX_STATES and the time.
 
     Args:
         instantiated: The task.
@@ -59,7 +59,7 @@ def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) 
     for part in parts:
         if part in denied:
             return tuple(sorted((show(part), show(Not(part)))))
-    fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:PAIRS]
+    fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:MAX_PAIRS]
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
@@ -76,7 +76,7 @@ def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple
         if not rest or deadline.passed:
             break
         left = replace(instantiated, goal=_goal(instantiated.goal, rest))
-        found = search(left, search="greedy", limit=LIMIT, deadline=deadline)
+        found = search(left, search="greedy", limit=MAX_STATES, deadline=deadline)
         if found.reason is Reason.UNSOLVABLE:
             kept = rest
     return tuple(kept)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from tamp.symbolic.algorithms.explanation.unachievable_facts import plain_atoms
 from tamp.symbolic.algorithms.result import StreamTask
+from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
 from tamp.symbolic.search.lasting import forbidden_by, lasting
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 
-CALLS = 2
+MAX_CALLS_NAMED = 2
 """Calls that are named as the reason why a thing stays where it is."""
 
 
@@ -48,7 +48,7 @@ def kept_from(
                 if not names.isdisjoint(others)
             ]
 
-            because = f" ({', '.join(reasons[:CALLS])})" if reasons else ""
+            because = f" ({', '.join(reasons[:MAX_CALLS_NAMED])})" if reasons else ""
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now
@@ -104,7 +104,7 @@ def _unwanted(formula: Formula) -> Iterator[Atom]:
 def _follows(problem: StreamTask, rule_head: Atom, body: Formula, head: Fact, fact: Fact) -> bool:
     """Check that the rule derives the head from the fact, given what plainly holds at the start."""
     binding = dict(zip(rule_head.terms, head[1:], strict=False))
-    atoms = plain_atoms(body)
+    atoms = necessary_atoms(body)
     for atom in atoms:
         if atom.predicate != fact[0]:
             continue

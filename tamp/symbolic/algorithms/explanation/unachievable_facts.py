@@ -7,19 +7,20 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
+from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Formula, Parameter, Task
 
-DEEPEST = 4
+MAX_CHAIN = 4
 """Steps of a chain of missing facts that are worth reading."""
 
-LOOKS = 2000
+MAX_FACTS_EXAMINED = 2000
 """Facts looked at for each way to a fact; after that the best so far counts."""
 
 Binding = dict[str, str]
 
 
 @dataclass(frozen=True)
-class _Way:
+class Achiever:
     """An action, rule or stream that could make a fact true: name, conditions, variables' types."""
 
     name: str
@@ -28,7 +29,7 @@ class _Way:
     binding: Binding
 
 
-class Missing:
+class UnachievableFacts:
     """Looks for what is missing.
 
     Args:
@@ -53,7 +54,7 @@ class Missing:
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
         for fact in sorted(self._known):
             self._by_predicate[fact[0]].append(fact)
-        self._looks = 0
+        self._examined = 0
 
     def reason(self, fact: Fact) -> str:
         """Say why nothing makes the fact true: "cook needs (hot stove), which nothing makes
@@ -61,7 +62,7 @@ class Missing:
         """
         said: list[str] = []
         seen = {fact}
-        for _ in range(DEEPEST):
+        for _ in range(MAX_CHAIN):
             found = self._nearest(fact)
             if found is None:
                 break
@@ -78,49 +79,57 @@ class Missing:
     def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
         """Find the way to a fact that lacks least, and what; None if no way lacks anything."""
         best: tuple[str, list[Atom]] | None = None
-        for way in self._ways(fact):
-            self._looks = 0
-            lacks = self._lacks(
-                list(way.conditions), way.binding, way.types, len(way.conditions) + 1
+        for achiever in self._achievers(fact):
+            self._examined = 0
+            lacks = self._missing_preconditions(
+                list(achiever.conditions),
+                achiever.binding,
+                achiever.types,
+                len(achiever.conditions) + 1,
             )
             if lacks and (best is None or len(lacks) < len(best[1])):
-                best = way.name, lacks
+                best = achiever.name, lacks
         return best
 
-    def _ways(self, fact: Fact) -> Iterator[_Way]:
+    def _achievers(self, fact: Fact) -> Iterator[Achiever]:
         domain = self._task.domain
         for action in domain.actions:
             for effect in action.effects:
                 if effect.adds:
-                    conditions = (*plain_atoms(action.precondition), *plain_atoms(effect.condition))
+                    conditions = (
+                        *necessary_atoms(action.precondition),
+                        *necessary_atoms(effect.condition),
+                    )
                     parameters = (*action.parameters, *effect.parameters)
-                    yield from self._way(
+                    yield from self._achiever(
                         action.name, effect.atom, conditions, _typed(parameters), fact
                     )
+
         for rule in domain.derived:
             types = {**_typed(rule.parameters), **_inner(rule.body)}
-            yield from self._way(
-                f"being {rule.head.predicate}", rule.head, plain_atoms(rule.body), types, fact
+            yield from self._achiever(
+                f"being {rule.head.predicate}", rule.head, necessary_atoms(rule.body), types, fact
             )
+
         for stream in self._streams:
             declared = stream.declaration
             for atom in declared.certified:
-                yield from self._way(stream.name, atom, declared.domain, {}, fact)
+                yield from self._achiever(stream.name, atom, declared.domain, {}, fact)
 
-    def _way(
+    def _achiever(
         self,
         name: str,
         head: Atom,
         conditions: Iterable[Atom],
         types: Mapping[str, tuple[str, ...]],
         fact: Fact,
-    ) -> Iterator[_Way]:
+    ) -> Iterator[Achiever]:
         if head.predicate == fact[0]:
             binding = self._matched(head, fact, {}, types)
             if binding is not None:
-                yield _Way(name, tuple(conditions), types, binding)
+                yield Achiever(name, tuple(conditions), types, binding)
 
-    def _lacks(
+    def _missing_preconditions(
         self,
         conditions: list[Atom],
         binding: Binding,
@@ -138,23 +147,23 @@ class Missing:
         rest = [one for one in conditions if one is not atom]
         best: list[Atom] | None = None
         if atom.predicate in self._assumed or atom.predicate == "=":
-            return self._lacks(rest, binding, types, fewer)
+            return self._missing_preconditions(rest, binding, types, fewer)
 
         for fact in self._by_predicate[atom.predicate]:
-            self._looks += 1
-            if self._looks > LOOKS:
+            self._examined += 1
+            if self._examined > MAX_FACTS_EXAMINED:
                 break
             grown = self._matched(atom, fact, binding, types)
             if grown is None:
                 continue
-            found = self._lacks(rest, grown, types, fewer)
+            found = self._missing_preconditions(rest, grown, types, fewer)
             if found is not None and len(found) < fewer:
                 best, fewer = found, len(found)
             if best == [] or grown == binding:
                 return best
 
         if fewer > 1:
-            found = self._lacks(rest, binding, types, fewer - 1)
+            found = self._missing_preconditions(rest, binding, types, fewer - 1)
             if found is not None and len(found) + 1 < fewer:
                 best = [
                     Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)),
@@ -182,15 +191,6 @@ class Missing:
 
     def _fits(self, word: str, wanted: tuple[str, ...]) -> bool:
         return self._task.domain.fits(self._types.get(word, ()), wanted)
-
-
-def plain_atoms(formula: Formula) -> tuple[Atom, ...]:
-    """List the atoms that must hold for a formula to hold, as far as they are plain."""
-    if isinstance(formula, Atom):
-        return (formula,)
-    if isinstance(formula, And):
-        return tuple(atom for part in formula.parts for atom in plain_atoms(part))
-    return plain_atoms(formula.body) if isinstance(formula, Exists) else ()
 
 
 def _inner(formula: Formula) -> dict[str, tuple[str, ...]]:

@@ -6,7 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or, Task
+from tamp.symbolic.pddl.atoms import atoms, signed_atoms
+from tamp.symbolic.pddl.structs import Atom, Task
 
 
 def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
@@ -20,21 +21,21 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
     positive = {atom.predicate for atom, sign in atoms_of(task) if sign}
     positive |= {atom.predicate for stream in everything for atom in stream.declaration.domain}
 
-    makers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
+    producers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
     for stream in everything:
         for atom in stream.declaration.certified:
-            makers[atom.predicate].append((stream, atom))
+            producers[atom.predicate].append((stream, atom))
 
     return {
         predicate: made[0]
-        for predicate, made in makers.items()
+        for predicate, made in producers.items()
         if len(made) == 1
         and made[0][0].is_test
         and len(made[0][0].declaration.certified) == 1
         and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
         and predicate not in positive
         and all(
-            atom.predicate in makers or atom.predicate in task.domain.types
+            atom.predicate in producers or atom.predicate in task.domain.types
             for atom in made[0][0].declaration.domain
         )
     }
@@ -46,22 +47,10 @@ def atoms_of(task: Task) -> Iterator[tuple[Atom, bool]]:
     In an action's condition a negation counts as help, since only a derived rule's negation can
     become a guard.
     """
-    stack: list[tuple[Formula, bool, bool]] = [(task.goal, True, False)]
-    stack += [(action.precondition, True, False) for action in task.domain.actions]
-    stack += [
-        (effect.condition, True, False)
-        for action in task.domain.actions
-        for effect in action.effects
-    ]
-    stack += [(rule.body, True, True) for rule in task.domain.derived]
-    while stack:
-        formula, sign, in_rule = stack.pop()
-        match formula:
-            case Atom():
-                yield formula, sign
-            case And(parts) | Or(parts):
-                stack += [(part, sign, in_rule) for part in parts]
-            case Not(body):
-                stack.append((body, sign != in_rule, in_rule))
-            case Exists(_, body) | Forall(_, body):
-                stack.append((body, sign, in_rule))
+    conditions = [task.goal]
+    for action in task.domain.actions:
+        conditions += [action.precondition, *(effect.condition for effect in action.effects)]
+    for condition in conditions:
+        yield from ((atom, True) for atom in atoms(condition))
+    for rule in task.domain.derived:
+        yield from signed_atoms(rule.body)

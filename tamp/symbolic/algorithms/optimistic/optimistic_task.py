@@ -1,162 +1,122 @@
-"""The optimistic task of a run: what is imagined, how deep, and without calls known as dead."""
+"""The optimistic task: the symbolic task over placeholders, as far as knowledge does not forbid."""
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 
-from tamp.stream import Rejection
-from tamp.symbolic.algorithms.bound_stream import Objects
-from tamp.symbolic.algorithms.costs import Costs
-from tamp.symbolic.algorithms.optimistic.anything import anything
-from tamp.symbolic.algorithms.optimistic.assumable_tests import assumable
+from tamp.symbolic.algorithms.knowledge import Knowledge
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import (
-    ENOUGH,
-    LEVELS,
-    Named,
-    Optimism,
-    imagine,
-    relevant,
-    type_facts,
-    used_predicates,
+    MAX_DEPTH,
+    MAX_INSTANCES,
+    instantiate_streams,
 )
-from tamp.symbolic.algorithms.result import Effort, StreamTask
+from tamp.symbolic.algorithms.planning_task import PlanningTask
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.symbolic.search.operators import InstantiatedTask
 
-DEEPEST = 8
-"""How many times the first depth and number of guesses are imagined at most, when there is no plan
-with fewer."""
+MAX_DEPTH_FACTOR = 8
+"""How many times the first depth and number of instances are instantiated at most, when there is no
+plan with fewer."""
 
 
-class Imagination:
-    """The task with placeholders for what streams may give, imagined anew as calls die.
+@dataclass(frozen=True, eq=False)
+class OptimisticTask:
+    """Optimistic facts, and the task instantiated over them."""
 
-    Args:
-        problem: The task and its streams.
-        pruned: Leave out the streams whose facts nothing asks for.
+    facts: OptimisticFacts
+    instantiated: InstantiatedTask
+
+    @property
+    def goal_is_reachable(self) -> bool:
+        """Return whether each goal fact can become true, if nothing is ever undone."""
+        reached = self.instantiated.reachable | self.instantiated.initial
+        return self.instantiated.goal.positive <= reached
+
+
+def optimistic_task(task: PlanningTask, knowledge: Knowledge) -> OptimisticTask:
+    """Instantiate the optimistic task without the calls that are known to have ended.
+
+    Where instances have to be left out, those that are not deeper than a first plan asks for are
+    all that is kept: the knowledge's depth limit is set, and raised until the goal is reachable.
     """
+    made = _over_certified(task, knowledge)
+    while _is_limited(knowledge) and not made.goal_is_reachable:
+        knowledge.depth_limit = (knowledge.depth_limit or 0) + 1
+        made = _over_certified(task, knowledge)
+    return made
 
-    def __init__(self, problem: StreamTask, pruned: bool) -> None:
-        task = problem.task
-        self.problem = problem
-        self.objects = Objects(
-            {**task.domain.constants, **task.objects},
-            {**{name: name for name in task.domain.constants}, **problem.values},
-            by_value=problem.by_value,
-        )
-        self.costs = Costs(problem.functions, self.objects, task.costs)
-        self.task = replace(task, costs=self.costs)
 
-        self.effort = Effort()
-        self.dead: dict[tuple[str, tuple[str, ...]], Rejection] = {}
-        self.given_up = False
-        self.depth = 1
-        self.shallow: int | None = None
+def sampled_task(task: PlanningTask, knowledge: Knowledge) -> OptimisticTask:
+    """Instantiate the task over sampled facts; only fluent streams' outputs are placeholders."""
+    facts = instantiate_streams(
+        [stream for stream in task.streams if stream.is_fluent],
+        [*task.initial_facts, *knowledge.sampled_facts],
+        max_depth=1,
+        placeholders=knowledge.placeholders,
+    )
+    return _instantiated(task, knowledge, knowledge.sampled_facts, facts)
 
-        self.aside = self.bystanders()
-        wanted = anything(task)
-        useful = relevant(
-            problem.streams,
-            used_predicates(task),
-            lambda types: any(task.domain.fits(types, want) for want in wanted),
-        )
-        self.assumed = assumable(useful, task)
-        tests = {stream.name for stream, _ in self.assumed.values()}
-        self.useful = [s for s in (useful if pruned else problem.streams) if s.name not in tests]
 
-        self.refused: set[Fact] = set()
-        self.names: dict[tuple[str, tuple[str, ...]], Named] = {}
-        self.settled: set[tuple[str, tuple[str, ...]]] = set()
-        self.real: dict[Fact, None] = {}
-
-        self.known = [*sorted(task.initial), *type_facts(task)]
-        changing = task.domain.fluent_predicates
-        shown = {
-            name for stream in problem.streams for name in stream.declaration.fluents
-        } - changing
-        self.given = frozenset(fact for fact in task.initial if fact[0] in shown)
-
-        self.instantiator = Instantiator(self.task, frozenset(self.assumed))
-        self.optimism, self.instantiated = self.imagined()
-
-    def bystanders(self) -> frozenset[str]:
-        """Return the objects of which nothing is imagined at first: none, unless overridden."""
-        return frozenset()
-
-    def recall(self, objects: frozenset[str] | None = None) -> bool:
-        """Imagine these as well that were set aside, or all of them; say if there were any."""
-        recalled = self.aside if objects is None else objects & self.aside
-        if recalled:
-            self.aside -= recalled
-            self.optimism, self.instantiated = self.imagined()
-        return bool(recalled)
-
-    def imagined(self) -> tuple[Optimism, InstantiatedTask]:
-        """Instantiate the optimistic task without the calls that are known to be dead.
-
-        Where guesses have to be left out, those that are not deeper than a first plan asks for are
-        all that is kept.
-        """
-        started = time.perf_counter()
-        try:
-            optimism = self._guesses()
-            instantiated = self._instantiated(optimism)
-            while (
-                self._shallower()
-                and not instantiated.goal.positive <= instantiated.reachable | instantiated.initial
-            ):
-                self.shallow = (self.shallow or 0) + 1
-                optimism = self._guesses()
-                instantiated = self._instantiated(optimism)
-            return optimism, instantiated
-        finally:
-            self.effort.search_seconds += time.perf_counter() - started
-
-    def _guesses(self) -> Optimism:
-        """Guess as much as may be; the lowest level alone, once those were too many."""
-        optimism = Optimism(complete=False)
-        if self.shallow is None:
-            optimism = self._imagined(None)
-            self.shallow = None if optimism.complete else 1
-        return self._imagined(self.shallow) if self.shallow is not None else optimism
-
-    def _imagined(self, deepest: int | None) -> Optimism:
-        known = (
-            [fact for fact in self.known if self.aside.isdisjoint(fact)]
-            if self.aside
-            else self.known
-        )
-        optimism = imagine(
-            self.useful,
-            [*known, *self.real],
-            dead=frozenset((*self.dead, *self.settled)),
-            levels=LEVELS * self.depth,
-            deepest=deepest,
-            enough=ENOUGH * self.depth,
-            names=self.names,
-        )
-        optimism.assumed = self.assumed
-        return optimism
-
-    def _instantiated(self, optimism: Optimism) -> InstantiatedTask:
-        facts = [*self.real, *optimism.makers]
-        types = {**self.objects.types, **optimism.types}
-        return self.instantiator.instantiate(facts, types, frozenset(self.refused))
-
-    def _shallower(self) -> bool:
-        """Check that guesses are kept shallower than they might be."""
-        return self.shallow is not None and self.shallow < LEVELS * self.depth
-
-    def deepen(self) -> bool:
-        """Imagine more where guesses were left out; say if anything could be added."""
-        if not self.optimism.complete and self._shallower():
-            self.shallow = (self.shallow or 0) + 1
-        elif self.optimism.complete or self.depth >= DEEPEST:
-            self.given_up |= not self.optimism.complete
-            return False
-        else:
-            self.depth *= 2
-        self.optimism, self.instantiated = self.imagined()
+def raise_depth_limit(knowledge: Knowledge, made: OptimisticTask) -> bool:
+    """Allow for more instances where some were left out; say if anything can be added."""
+    if made.facts.complete:
+        return False
+    if _is_limited(knowledge):
+        knowledge.depth_limit = (knowledge.depth_limit or 0) + 1
         return True
+    if knowledge.depth_factor >= MAX_DEPTH_FACTOR:
+        knowledge.incomplete = True
+        return False
+    knowledge.depth_factor *= 2
+    return True
+
+
+def _over_certified(task: PlanningTask, knowledge: Knowledge) -> OptimisticTask:
+    """Instantiate over certified facts, as deep as the limit allows."""
+    facts = _within_the_limit(task, knowledge)
+    return _instantiated(task, knowledge, knowledge.certified_facts, facts)
+
+
+def _is_limited(knowledge: Knowledge) -> bool:
+    """Check that instances are kept shallower than they might be."""
+    limit = knowledge.depth_limit
+    return limit is not None and limit < MAX_DEPTH * knowledge.depth_factor
+
+
+def _within_the_limit(task: PlanningTask, knowledge: Knowledge) -> OptimisticFacts:
+    """Instantiate as much as may be; the lowest level alone, once those were too many."""
+    if knowledge.depth_limit is None:
+        facts = _optimistic_facts(task, knowledge)
+        if facts.complete:
+            return facts
+        knowledge.depth_limit = 1
+    return _optimistic_facts(task, knowledge)
+
+
+def _optimistic_facts(task: PlanningTask, knowledge: Knowledge) -> OptimisticFacts:
+    """Instantiate the streams that may give something new for objects that are not excluded."""
+    excluded = knowledge.excluded_objects
+    initial: tuple[Fact, ...] | list[Fact] = task.initial_facts
+    if excluded:
+        initial = [fact for fact in initial if excluded.isdisjoint(fact)]
+
+    return instantiate_streams(
+        task.streams,
+        [*initial, *knowledge.certified_facts],
+        ended=knowledge.ended_calls,
+        max_depth=MAX_DEPTH * knowledge.depth_factor,
+        max_generator_depth=knowledge.depth_limit,
+        max_instances=MAX_INSTANCES * knowledge.depth_factor,
+        placeholders=knowledge.placeholders,
+    )
+
+
+def _instantiated(
+    task: PlanningTask, knowledge: Knowledge, certified: Iterable[Fact], facts: OptimisticFacts
+) -> OptimisticTask:
+    """Instantiate the symbolic task over certified facts and what is optimistic."""
+    facts.lazily_tested = task.lazily_tested
+    instantiated = task.instantiate(certified, facts, frozenset(knowledge.false_facts))
+    return OptimisticTask(facts, instantiated)

@@ -69,11 +69,11 @@ class Landmarks:
         useful = (1 << 2 * self._size) - 1
         self.landmarks = list(bits(wanted & useful))
         self._all = wanted & useful
-        self._goals = goals & useful
+        self.goals = goals & useful
         self._reached: dict[State, Mask] = {}
         self._complements = self._all >> self._size
-        self._weights = self._weigh(effects, relaxed_state.costs)
-        self._needs = self._first_needs(sets, before, effects)
+        self.weights = self._weigh(effects, relaxed_state.costs)
+        self.needs = self._first_needs(sets, before, effects)
 
     def remaining(self, closed: State, parent: State | None) -> Mask:
         """Return the landmarks that are still to come, or to come again.
@@ -89,14 +89,14 @@ class Landmarks:
             reached &= known | now
         self._reached[closed] = reached
         missing = self._all & ~reached
-        again = self._goals
+        again = self.goals
         for fact in bits(missing):
-            again |= self._needs.get(fact, 0)
+            again |= self.needs.get(fact, 0)
         return missing | (again & ~now & self._all)
 
     def cost(self, remaining: Mask) -> float:
         """Sum the costs of the landmarks' cheapest achievers."""
-        weights = self._weights
+        weights = self.weights
         return sum(weights[fact] for fact in bits(remaining))
 
     def _holding(self, closed: State) -> Mask:

@@ -46,12 +46,12 @@ class Relaxation:
         self._successors = s = successors
         self._size = size = len(s.facts)
         step = 1.0 if steps and any(s.cost[i] == 0.0 for i in s.alive) else 0.0
-        self._owners: list[int] = []
-        self._before: list[list[int]] = []
-        self._costs: list[float] = []
-        self._effects: list[list[int]] = []
-        self._negative: dict[int, list[int]] = {}
-        self._of_operator: list[list[int]] = [[] for _ in s.operators]
+        self.owner_list: list[int] = []
+        self.before: list[list[int]] = []
+        self.costs: list[float] = []
+        self.effects: list[list[int]] = []
+        self.negative: dict[int, list[int]] = {}
+        self.of_operator: list[list[int]] = [[] for _ in s.operators]
         derived = s.mask(axiom.head for axiom in s.instantiated.axioms)
         negated = s.guard_mask | s.goal_absent
 
@@ -62,7 +62,7 @@ class Relaxation:
 
         for axiom in s.instantiated.axioms:
             negated |= s.mask(axiom.negative)
-        self._negated = negated = negated & ~derived
+        self.negated = negated = negated & ~derived
         every = (1 << size) - 1
         split = cache(_split)
 
@@ -95,44 +95,44 @@ class Relaxation:
                 [s.number[axiom.head]],
             )
 
-        self.free = [i for i, facts in enumerate(self._before) if not facts]
-        self._removal = self._removal_costs()
-        self._negative_goals = list(bits(s.goal_absent & ~derived))
-        self.goals = [*bits(s.goal), *(size + fact for fact in self._negative_goals)]
-        self._entries = sum(map(len, self._before)) + len(self._before) + size
+        self.free = [i for i, facts in enumerate(self.before) if not facts]
+        self.removal = self._removal_costs()
+        self.negative_goals = list(bits(s.goal_absent & ~derived))
+        self.goals = [*bits(s.goal), *(size + fact for fact in self.negative_goals)]
+        self._entries = sum(map(len, self.before)) + len(self.before) + size
         self._prepare(choose(0))
 
     def _prepare(self, kernels: Kernels) -> None:
         """Make the lists that the kernels take, of the states that trigger no guards and violate
         nothing.
         """
-        before = kernels.rows(self._before)
-        effects, needed = kernels.rows(self._effects), kernels.transposed(before, 2 * self._size)
-        self._base = RelaxedState(kernels, before, kernels.reals(self._costs), effects, needed)
+        before = kernels.rows(self.before)
+        effects, needed = kernels.rows(self.effects), kernels.transposed(before, 2 * self._size)
+        self._base = RelaxedState(kernels, before, kernels.reals(self.costs), effects, needed)
         self._relaxed_states: dict[int, RelaxedState] = {}
         self._ends = kernels.integers(self.goals)
-        self.owners, self.groups = kernels.integers(self._owners), kernels.rows(self._of_operator)
+        self.owners, self.groups = kernels.integers(self.owner_list), kernels.rows(self.of_operator)
 
     def _add(
         self, owner: int, before: list[int], absent: int, cost: float, effects: list[int]
     ) -> None:
-        number = len(self._owners)
-        self._owners.append(owner)
-        self._before.append(before)
-        self._costs.append(cost)
-        self._effects.append(effects)
+        number = len(self.owner_list)
+        self.owner_list.append(owner)
+        self.before.append(before)
+        self.costs.append(cost)
+        self.effects.append(effects)
         if owner >= 0:
-            self._of_operator[owner].append(number)
-        for fact in bits(absent & self._negated):
-            self._negative.setdefault(fact, []).append(number)
+            self.of_operator[owner].append(number)
+        for fact in bits(absent & self.negated):
+            self.negative.setdefault(fact, []).append(number)
 
     def _removal_costs(self) -> list[float]:
         """Compute for each fact the cost of the cheapest operator that deletes it."""
         costs = [math.inf] * self._size
-        for i, effects in enumerate(self._effects):
+        for i, effects in enumerate(self.effects):
             for effect in effects:
                 if effect >= self._size:
-                    costs[effect - self._size] = min(costs[effect - self._size], self._costs[i])
+                    costs[effect - self._size] = min(costs[effect - self._size], self.costs[i])
         return costs
 
     def holding(self, closed: State) -> list[int]:
@@ -141,12 +141,12 @@ class Relaxation:
         """
         return [
             *bits(closed),
-            *(self._size + fact for fact in self._negative_goals if not closed >> fact & 1),
+            *(self._size + fact for fact in self.negative_goals if not closed >> fact & 1),
         ]
 
     def key(self, state: State) -> State:
         """Return what states with the same relaxed task have in common."""
-        return state & self._negated
+        return state & self.negated
 
     def relaxed_state(self, state: State, effort: int = 1) -> RelaxedState:
         """Return the relaxed task as seen from a state, to be gone through about so many times."""
@@ -222,11 +222,11 @@ class Relaxation:
         s, found = self._successors, TriggeredGuards()
         waiting, raised, blocked = found.waiting, found.raised, found.blocked
         for fact in bits(state):
-            if fact in self._negative:
-                waiting[1 << fact, math.inf] = list(self._negative[fact])
+            if fact in self.negative:
+                waiting[1 << fact, math.inf] = list(self.negative[fact])
 
         for facts in s.triggered(state):
-            removal = min(self._removal[fact] for fact in bits(facts))
+            removal = min(self.removal[fact] for fact in bits(facts))
             for operator, price in s.penalties(facts).items():
                 paid = price <= removal and price < math.inf
                 if paid:
@@ -234,7 +234,7 @@ class Relaxation:
                 else:
                     blocked.setdefault(operator, []).append((facts, price))
 
-                for i in self._of_operator[operator]:
+                for i in self.of_operator[operator]:
                     if paid:
                         found.dearer.append(i)
                         found.by.append(price)
@@ -276,7 +276,7 @@ class Relaxation:
         it = exploration.relaxed_state
         cost, plan = it.kernels.relaxed_plan(
             exploration.costs, exploration.supporters, it.before, it.effects, it.costs, self.owners,
-            len(self._of_operator), self._ends, 2 * self._size,
+            len(self.of_operator), self._ends, 2 * self._size,
         )  # fmt: skip
         return cost, list(map(int, plan))
 

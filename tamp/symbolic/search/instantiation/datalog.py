@@ -142,10 +142,15 @@ def join(
     """Extend the bindings `rows` of `variables` to all that satisfy the body; return the bindings
     of `order`.
 
-    Atoms are joined greedily, that which adds the fewest rows first, through an index on what is
-    bound already.
+    Ground atoms are looked up first; the others are joined greedily, that which adds the fewest
+    rows first, through an index on what is bound already.
     """
-    atoms = list(body.positive)
+    atoms: list[Atom] = []
+    for atom in body.positive:
+        if any(term.startswith("?") for term in atom.terms):
+            atoms.append(atom)
+        elif atom.terms not in relations.rows(atom.predicate):
+            return []
     negative = list(body.negative)
     equalities = list(body.equalities)
     known = {variable: i for i, variable in enumerate(variables)}

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from tamp.stream import Call
-from tamp.symbolic.algorithms.adaptive import Adaptive
+from tamp.symbolic.algorithms.adaptive import start_adaptive
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
+from tamp.symbolic.algorithms.planning_run import Run, search_plan, skeleton_of
 from tamp.system.deadline import Deadline
 from tests.symbolic.algorithms.toys import stream_task
 
@@ -38,14 +39,14 @@ def poses(cup: str, call: Call) -> Iterator[int]:
 
 def planned(
     goal: str, clear: Callable[[str, int], bool] = lambda cup, pose: True, cups: str = "tea mug"
-) -> tuple[Adaptive, Skeleton]:
+) -> tuple[Run, Skeleton]:
     """A run that has searched, and the skeleton of its first plan, not bound yet."""
     functions: dict[str, Callable[..., Any]] = {
         "sample-pose": poses,
         "test-clear": lambda cup, pose, call: clear(cup, pose),
     }
     problem = stream_task(DOMAIN, STREAMS, functions, {name: ("cup",) for name in cups.split()}, "", goal)
-    run = Adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
-    plan = run.search().plan
-    assert plan is not None
-    return run, run.skeleton(plan)
+    run = start_adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
+    found = search_plan(run)
+    assert found is not None
+    return run, skeleton_of(run, found)

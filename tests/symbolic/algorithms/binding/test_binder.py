@@ -13,8 +13,8 @@ def test_the_value_that_passes_is_taken(good: int) -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == good)
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None
-    assert [run.objects.values[name] for name in values.values()] == [good]
-    assert run.binder.units == 2 * good  # each pose is drawn and tested once
+    assert [run.task.objects.values[name] for name in values.values()] == [good]
+    assert run.binder.draws == 2 * good  # each pose is drawn and tested once
 
 
 def test_without_enough_tries_there_is_none_and_later_there_is() -> None:
@@ -26,9 +26,9 @@ def test_without_enough_tries_there_is_none_and_later_there_is() -> None:
 def test_what_worked_is_tried_first() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == 2)
     first = run.binder.bind(skeleton, 4, 100)
-    spent = run.binder.units
+    spent = run.binder.draws
     assert run.binder.bind(skeleton, 4, 100) == first
-    assert run.binder.units == spent
+    assert run.binder.draws == spent
 
 
 def test_a_failure_goes_back_to_what_it_depends_on() -> None:
@@ -50,7 +50,7 @@ def test_the_last_word_is_asked_of_all_values() -> None:
     heard: list[object] = []
 
     def holds(values: dict[int, str]) -> bool:
-        heard.extend(run.objects.values[name] for name in values.values())
+        heard.extend(run.task.objects.values[name] for name in values.values())
         return heard[-1] == 3
 
     values = run.binder.bind(skeleton, 4, 100, holds=holds)
@@ -60,7 +60,7 @@ def test_the_last_word_is_asked_of_all_values() -> None:
 def test_failures_are_noted_under_what_they_concern() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
     assert run.binder.bind(skeleton, 4, 100) is None
-    drawn, tested = (run.experience.facts[node.fact] for node in skeleton.nodes)
+    drawn, tested = (run.knowledge.experience.facts[node.fact] for node in skeleton.nodes)
     assert (drawn.successes, drawn.failures) == (4, 0)
     assert (tested.successes, tested.failures) == (0, 4) and tested.price > 0.0
 

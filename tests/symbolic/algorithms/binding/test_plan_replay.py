@@ -11,15 +11,15 @@ def test_what_was_drawn_and_tested_stands() -> None:
     run, skeleton = planned("(put tea)")
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None
-    assert run.standing.fault(skeleton, values) is None
+    assert run.replay.fault(skeleton, values) is None
 
 
 def test_another_value_than_the_one_tested_does_not() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == 2)
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None
-    others = [name for name, value in run.objects.values.items() if value == 1]
-    fault = run.standing.fault(skeleton, dict.fromkeys(values, others[0]))
+    others = [name for name, value in run.task.objects.values.items() if value == 1]
+    fault = run.replay.fault(skeleton, dict.fromkeys(values, others[0]))
     assert fault is not None and not fault.expected
     assert fault.reason == f"(clear tea {others[0]}) was not certified"
 
@@ -28,9 +28,9 @@ def test_an_action_that_is_missing_is_missed() -> None:
     run, skeleton = planned("(taken tea)")
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None
-    first = run.standing.fault(replace(skeleton, actions=skeleton.actions[1:]), values)
+    first = run.replay.fault(replace(skeleton, actions=skeleton.actions[1:]), values)
     assert first is not None and "precondition does not hold" in first.reason and not first.expected
-    last = run.standing.fault(replace(skeleton, actions=skeleton.actions[:1]), values)
+    last = run.replay.fault(replace(skeleton, actions=skeleton.actions[:1]), values)
     assert last is not None and "the goal does not hold in the end" in last.reason
 
 
@@ -40,9 +40,9 @@ def test_values_that_turn_out_the_same_are_nobodys_mistake() -> None:
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None
     broken = replace(skeleton, actions=skeleton.actions[:1])
-    fault = run.standing.fault(broken, values)
+    fault = run.replay.fault(broken, values)
     assert fault is not None and not fault.expected
     named = replace(broken, certified=(*broken.certified, ("cup", (next(iter(values.values())),))))
     run.streams.certain.add(("cup", next(iter(values.values()))))
-    fault = run.standing.fault(named, values)
+    fault = run.replay.fault(named, values)
     assert fault is not None and fault.expected

@@ -6,7 +6,8 @@ import random
 from collections.abc import Iterator
 
 from tamp.stream import Call
-from tamp.symbolic.algorithms.adaptive import Adaptive
+from tamp.symbolic.algorithms.adaptive import start_adaptive
+from tamp.symbolic.algorithms.planning_run import search_plan, skeleton_of
 from tamp.system.deadline import Deadline
 from tests.symbolic.algorithms.binding.shelf import planned
 from tests.symbolic.algorithms.toys import stream_task
@@ -73,9 +74,9 @@ def test_what_is_asked_for_and_lifts_a_guard_as_well_is_one_value() -> None:
     functions = {"sample-grip": grips, "test-firm": lambda spot, grip, call: grip == 3}
     goal = "(exists (?g - grip) (held ?g))"
     problem = stream_task(GUARD, GUARD_STREAMS, functions, {}, "(on s)", goal)
-    run = Adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
-    plan = run.search().plan
-    assert plan is not None
-    skeleton = run.skeleton(plan)
+    run = start_adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
+    found = search_plan(run)
+    assert found is not None
+    skeleton = skeleton_of(run, found)
     assert [node.stream.name for node in skeleton.nodes] == ["sample-grip", "test-firm"]
     assert skeleton.actions[0][1][0] == skeleton.nodes[0].outputs[0]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
 from tamp.stream import Call, Rejection
 from tamp.symbolic.algorithms.bound_stream import Objects, Streams
-from tamp.symbolic.algorithms.experience.failure_counts import Tally, in_the_way
+from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects
 from tamp.symbolic.algorithms.explanation.explanation import explain_failures
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system.deadline import Deadline
@@ -69,8 +70,8 @@ GRASPS = """
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_stream_that_was_given_up_proves_nothing(algorithm: str, given_up: bool) -> None:
     def sample_grasp(thing: str, call: Call) -> Iterator[Rejection]:
-        yield Rejection("hits wall")
-        yield Rejection("hits wall", given_up=given_up)
+        yield Rejection.hits("wall")
+        yield replace(Rejection.hits("wall"), given_up=given_up)
 
     functions = {"sample-grasp": sample_grasp}
     objects = {"mug": ("thing",), "wall": ("thing",)}
@@ -80,9 +81,9 @@ def test_a_stream_that_was_given_up_proves_nothing(algorithm: str, given_up: boo
     assert "mug" in " ".join(result.explanation)
     if algorithm == "adaptive":
         (tally,) = result.tallies
-        assert (tally.action, tally.stream, tally.never) == ("pick mug", "sample-grasp", True)
+        assert (tally.action, tally.stream, tally.always_failed) == ("pick mug", "sample-grasp", True)
         assert tally.tries == tally.reasons["hits wall"] >= 2
-        assert in_the_way(result.tallies, problem.values) == (("wall", tally.tries),)
+        assert blocking_objects(result.tallies, problem.values) == (("wall", tally.tries),)
 
 
 def test_the_call_that_raised_proves_nothing() -> None:
@@ -96,12 +97,12 @@ def test_the_call_that_raised_proves_nothing() -> None:
 
 def test_what_failed_once_is_not_blamed_before_what_failed_a_hundred_times() -> None:
     rows = [
-        Tally("place cup", "test-pose-clear", 1, 0, Counter({"hits can": 1})),
-        Tally("pick cup", "inverse-kinematics", 120, 2, Counter({"hits wall": 118})),
+        FailureCount("place cup", "test-pose-clear", 1, 0, Counter({"hits can": 1})),
+        FailureCount("pick cup", "inverse-kinematics", 120, 2, Counter({"hits wall": 118})),
     ]
     problem = stream_task(KITCHEN, NO_STREAMS, {}, THINGS, "", "(cooked egg)")
     (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
     assert first.startswith("pick cup: inverse-kinematics worked 2 times in 120 tries")
-    rows[0] = Tally("place cup", "test-pose-clear", 30, 0, Counter({"hits can": 30}))
+    rows[0] = FailureCount("place cup", "test-pose-clear", 30, 0, Counter({"hits can": 30}))
     (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
     assert first == "place cup: test-pose-clear never worked in 30 tries: 30 hits can"

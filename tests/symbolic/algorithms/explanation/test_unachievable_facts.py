@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tamp.symbolic.algorithms.explanation.unachievable_facts import Missing
+from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
 from tamp.symbolic.algorithms.result import StreamTask
 from tests.symbolic.algorithms.toys import stream_task
 
@@ -30,10 +30,10 @@ STREAMS = """
 OBJECTS = {"egg": ("food",), "ring": ("stove",)}
 
 
-def missing(*facts: tuple[str, ...], assumed: tuple[str, ...] = ()) -> Missing:
+def missing(*facts: tuple[str, ...], assumed: tuple[str, ...] = ()) -> UnachievableFacts:
     functions = {"sample-pose": lambda food, call: iter(()), "test-near": lambda food, pose, call: False}
     problem: StreamTask = stream_task(DOMAIN, STREAMS, functions, OBJECTS, "", "(eaten egg)")
-    return Missing(problem.task, problem.streams, facts, OBJECTS, assumed)
+    return UnachievableFacts(problem.task, problem.streams, facts, OBJECTS, assumed)
 
 
 RAW = ("raw", "egg")

@@ -9,7 +9,8 @@ from typing import Any
 from tamp.pddlstream import PDDLProblem, from_gen_fn, from_test
 from tamp.pddlstream.problem import bind
 from tamp.planner.assembly import random_streams
-from tamp.symbolic.algorithms.adaptive import Adaptive
+from tamp.symbolic.algorithms.adaptive import plan_adaptively, start_adaptive
+from tamp.symbolic.algorithms.planning_run import Run
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system.deadline import Deadline
 
@@ -48,18 +49,18 @@ class World:
         places = count() if hole == "floor" else range(self.room)
         yield from (((hole, place),) for place in places)
 
-    def run(self, goal: tuple[Any, ...], fixed: tuple[str, ...] = ()) -> tuple[Adaptive, Outcome]:
+    def run(self, goal: tuple[Any, ...], fixed: tuple[str, ...] = ()) -> tuple[Run, Outcome]:
         init = [("Hole", "box"), ("Hole", "floor"), *(("Handle", peg, "knob") for peg in self.at if peg not in fixed)]
         for peg, place in self.at.items():
             init += [("Peg", peg), ("Spot", peg, place), ("At", peg, place), ("In", place, place[0])]
         functions = {"spot": from_gen_fn(self.spot), "free": from_test(lambda b, p, o, q: p != q)}
         task = bind(PDDLProblem(DOMAIN, {}, STREAMS, functions, init, goal)).task
-        run = Adaptive(task, random_streams(0), Deadline(20.0), lambda effort: None)
-        return run, run.solve().outcome
+        run = start_adaptive(task, random_streams(0), Deadline(20.0), lambda effort: None)
+        return run, plan_adaptively(run).outcome
 
 
-def left(run: Adaptive) -> set[Any]:
-    return {run.problem.values[name] for name in run.aside}
+def left(run: Run) -> set[Any]:
+    return {run.task.problem.values[name] for name in run.knowledge.excluded_objects}
 
 
 def test_what_stands_by_is_left_alone() -> None:
@@ -84,6 +85,6 @@ def test_what_is_the_only_way_is_found() -> None:
     world = World({"b0": ("floor", 0), "b1": ("floor", 1)}, room=2)
     run, outcome = world.run(("and", ("Weighed",), ("Stored", "b0", "floor")), fixed=("b0",))
     assert outcome is Outcome.SOLVED
-    assert world.asked == {"b1"} and not run.aside
+    assert world.asked == {"b1"} and not run.knowledge.excluded_objects
     run, outcome = world.run(("and", ("Weighed",), ("Stored", "b0", "floor")), fixed=("b0", "b1"))
     assert outcome is not Outcome.SOLVED

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tamp.symbolic.algorithms.experience.stream_statistics import Call, Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import Guess, Optimism
+from tamp.symbolic.algorithms.experience.stream_statistics import CallKey, Experience
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import stratify
 from tamp.symbolic.search.operators import Axiom, Facts, InstantiatedTask
 
-ELSEWHERE = "(elsewhere)"
+OTHER_STATE = "(elsewhere)"
 """The predicate of derived facts that say that a state is another one; no PDDL name looks like
 it."""
 
@@ -18,8 +18,8 @@ it."""
 NONE: Facts = frozenset()
 
 
-def elsewhere(
-    instantiated: InstantiatedTask, experience: Experience, optimism: Optimism
+def avoid_failing_states(
+    instantiated: InstantiatedTask, experience: Experience, optimistic: OptimisticFacts
 ) -> InstantiatedTask:
     """Require other states for everything that rests on calls which all failed in a state.
 
@@ -28,17 +28,17 @@ def elsewhere(
     Args:
         instantiated: The task.
         experience: The calls that failed, and the states in which they did.
-        optimism: Which calls certify what.
+        optimistic: Which calls certify what.
     """
-    if not experience.exact:
+    if not experience.failing_states:
         return instantiated
     axioms: list[Axiom] = []
-    others: dict[Call, Facts] = {}
-    for number, (call, (predicates, states)) in enumerate(experience.exact.items()):
+    others: dict[CallKey, Facts] = {}
+    for number, (call, (predicates, states)) in enumerate(experience.failing_states.items()):
         changing = sorted(
             one for one in instantiated.reachable | instantiated.initial if one[0] in predicates
         )
-        heads = [(ELSEWHERE, str(number), str(place)) for place in range(len(states))]
+        heads = [(OTHER_STATE, str(number), str(place)) for place in range(len(states))]
         others[call] = frozenset(heads)
         for head, state in zip(heads, states, strict=True):
             axioms += [Axiom(head, NONE, frozenset((one,))) for one in sorted(state)]
@@ -46,19 +46,22 @@ def elsewhere(
 
     needs: dict[Fact, Facts] = {}
     for fact in dict.fromkeys(
-        fact for guess in optimism.guesses if guess.call in others for fact in guess.certified
+        fact
+        for instance in optimistic.instances
+        if instance.call in others
+        for fact in instance.certified
     ):
-        makers = optimism.several.get(
-            fact, [optimism.makers[fact]] if fact in optimism.makers else []
+        producers = optimistic.alternatives.get(
+            fact, [optimistic.producers[fact]] if fact in optimistic.producers else []
         )
-        if not makers or any(maker.call not in others for maker in makers):
+        if not producers or any(producer.call not in others for producer in producers):
             continue  # known, or there is a call that has not failed in any state
-        if len(makers) == 1:
-            needs[fact] = others[makers[0].call]
+        if len(producers) == 1:
+            needs[fact] = others[producers[0].call]
             continue
-        head = (ELSEWHERE, *fact)
+        head = (OTHER_STATE, *fact)
         needs[fact] = frozenset((head,))
-        axioms += [Axiom(head, others[maker.call], NONE) for maker in makers]
+        axioms += [Axiom(head, others[producer.call], NONE) for producer in producers]
     if not needs:
         return instantiated
 
@@ -89,22 +92,22 @@ def elsewhere(
     )
 
 
-def choices(
-    optimism: Optimism, experience: Experience, facts: Facts, state: Facts
-) -> dict[Fact, Guess]:
+def choose_instances(
+    optimistic: OptimisticFacts, experience: Experience, facts: Facts, state: Facts
+) -> dict[Fact, OptimisticInstance]:
     """Choose a call for each fact that several certify: the first not known to fail in the state.
 
     Args:
-        optimism: Which calls certify what.
+        optimistic: Which calls certify what.
         experience: The calls that failed, and the states in which they did.
         facts: Those that something rests on.
         state: The fluent facts there.
     """
-    chosen: dict[Fact, Guess] = {}
-    for fact in sorted(facts & optimism.several.keys()):
-        for guess in optimism.several[fact]:
-            predicates, states = experience.exact.get(guess.call, ((), {}))
+    chosen: dict[Fact, OptimisticInstance] = {}
+    for fact in sorted(facts & optimistic.alternatives.keys()):
+        for instance in optimistic.alternatives[fact]:
+            predicates, states = experience.failing_states.get(instance.call, ((), {}))
             if frozenset(one for one in state if one[0] in predicates) not in states:
-                chosen[fact] = guess
+                chosen[fact] = instance
                 break
     return chosen

@@ -1,0 +1,216 @@
+"""The paper's networks in the paper's layout: published figure, ours, and the blind ceiling beside them.
+
+    tamp-learn generate on --layout paper --split train
+    tamp-learn generate on --layout paper --split test --count 2000
+    python -m benchmarks.paper_variants --relation on --variants mlp-bb gnn-bb
+
+Seeds of one variant train as one ensemble; what the results have is not trained again.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import mean
+from typing import Any, Literal
+
+import tyro
+
+from benchmarks.common import RESULTS, table
+from benchmarks.groundings.journal import Journal
+from grounding.dataset import Dataset, read_dataset
+from grounding.evaluate import evaluate
+from grounding.paper.runtime import PaperModel
+from grounding.weights import Weights, read_weights, write_weights
+from tamp.errors import InputError
+
+PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-bb": 0.77}, "inside": {"gnn-bb": 0.64}}
+"""MCA of the best variant of each relation (the paper, section V); "the others similar"."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to train one of the paper's networks.
+
+    Attributes:
+        model: Network and features.
+        scheme: What teaches the generator.
+        departures: What is done otherwise than in the paper.
+    """
+
+    model: str
+    scheme: str
+    departures: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its row's name."""
+        return " + ".join([f"{self.model} {self.scheme}", *self.departures])
+
+
+BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "both")]
+CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
+DEPARTED = [
+    Variant("mlp-bb", "discriminator", ("residual-turn",)),
+    Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
+    Variant("gnn-bb", "discriminator", ("mean-weights",)),
+    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
+    Variant("gnn-bb", "both", ("residual-turn", "mean-weights", "scaled-classifier")),
+]
+VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One measurement, one line of the results.
+
+    Attributes:
+        relation: "on" or "inside".
+        layout: Of the scenes.
+        variant: A Variant's name.
+        samples: Training scenes.
+        iterations: Of the classifier, and then of the generator.
+        seed: Of the training.
+        scenes, draws: Of the test.
+    """
+
+    relation: str
+    layout: str
+    variant: str
+    samples: int
+    iterations: int
+    seed: int
+    scenes: int
+    draws: int
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """All that tells it from another one, for the record."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to train and judge.
+
+    Attributes:
+        relation: on or inside.
+        variants: Models, of which all ways are taken, or whole names of rows; all by default.
+        seeds: Trainings of each.
+        iterations: Of the classifier, and then of the generator.
+        samples: Training scenes; all by default.
+        scenes: Test scenes at most.
+        draws: Poses a scene.
+        data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz.
+        weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it.
+        out: The results.
+    """
+
+    relation: Literal["on", "inside"] = "on"
+    variants: tuple[str, ...] = ()
+    seeds: int = 5
+    iterations: int = 30_000
+    samples: int | None = None
+    scenes: int = 2000
+    draws: int = 9
+    data: Path = Path("data")
+    weights: Path = Path("weights/paper")
+    out: Path = RESULTS / "paper_variants.jsonl"
+
+
+def main(options: Options) -> None:
+    """Train and judge what is missing, print the table."""
+    journal = Journal(options.out, Case)
+    wanted = [
+        variant for variant in VARIANTS if not options.variants or {variant.name, variant.model} & set(options.variants)
+    ]
+    train_data = read_dataset(options.data / f"{options.relation}_paper_train.npz")
+    test = read_dataset(options.data / f"{options.relation}_paper_test.npz")
+    for variant in wanted:
+        for case in journal.missing(_cases(options, variant, train_data, test)):
+            weights = _weights(options, variant, case, train_data)
+            started = time.process_time()
+            found = evaluate(PaperModel(weights), test, case.scenes, 0, draws=case.draws)
+            journal.add(case, **asdict(found), judged_s=time.process_time() - started)
+            print(f"{case.variant}, seed {case.seed}: {found.published:.3f}", file=sys.stderr, flush=True)
+
+    lines = [line for variant in wanted for line in journal.found(_cases(options, variant, train_data, test))]
+    if lines:
+        table([*_rows(options.relation, lines)], f"{options.relation}, the paper's layout")
+
+
+def _cases(options: Options, variant: Variant, train_data: Dataset, test: Dataset) -> list[Case]:
+    samples = options.samples or len(train_data)
+    scenes = min(options.scenes, len(test))
+    layout = str(train_data.card.get("layout"))
+    return [
+        Case(options.relation, layout, variant.name, samples, options.iterations, seed, scenes, options.draws)
+        for seed in range(options.seeds)
+    ]
+
+
+def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> Weights:
+    """Read the weights of a case, or train those of all seeds that have none."""
+    paths = [_path(options, variant, case.samples, seed) for seed in range(options.seeds)]
+    missing = [seed for seed, path in enumerate(paths) if not path.is_file()]
+    if missing:
+        from grounding.paper.training import train
+
+        encoder = None
+        if variant.model.endswith("pc"):
+            encoder = read_weights(options.weights / f"{options.relation}_encoder.safetensors")
+        trained = train(
+            data,
+            variant.model,
+            variant.scheme,
+            sizes=[case.samples] * len(missing),
+            seeds=missing,
+            iterations=options.iterations,
+            departures=variant.departures,
+            encoder=encoder,
+            state=paths[missing[0]].with_suffix(".state"),
+            progress=lambda line: print(f"{variant.name}: {line}", file=sys.stderr, flush=True),
+        )
+        for seed, weights in zip(missing, trained, strict=True):
+            write_weights(paths[seed], weights)
+        paths[missing[0]].with_suffix(".state").unlink(missing_ok=True)
+
+    return read_weights(paths[case.seed])
+
+
+def _path(options: Options, variant: Variant, samples: int, seed: int) -> Path:
+    words = [options.relation, variant.model, variant.scheme, *variant.departures]
+    return options.weights / f"{'_'.join(words)}_{samples}_{options.iterations}_{seed}.safetensors"
+
+
+def _rows(relation: str, lines: Sequence[Mapping[str, Any]]) -> list[dict[str, object]]:
+    """One row a variant: means over the seeds, their least and largest beside the first one."""
+    rows: list[dict[str, object]] = []
+    for name in dict.fromkeys(line["config"]["variant"] for line in lines):
+        same = [line for line in lines if line["config"]["variant"] == name]
+        here = [line["published"] for line in same]
+        published = PUBLISHED[relation].get(name.split()[0]) if "+" not in name else None
+        rows.append(
+            {
+                "variant": name,
+                "seeds": len(same),
+                "in the paper": "-" if published is None else f"{published:.2f}",
+                "published oracle": f"{mean(here):.3f} ({min(here):.3f}-{max(here):.3f})",
+                "at 6.3 cm": f"{mean(line['published_scaled'] for line in same):.3f}",
+                "MCA": f"{mean(line['mca'] for line in same):.3f}",
+                "settled": f"{mean(line['settled'] for line in same):.3f}",
+                "classifier": f"{mean(line['accuracy'] for line in same):.3f}",
+                "blind ceiling": f"{same[0]['blind_published']:.3f} / {same[0]['blind_mca']:.3f}",
+            }
+        )
+    return rows
+
+
+if __name__ == "__main__":
+    try:
+        main(tyro.cli(Options, description=(__doc__ or "").splitlines()[0]))
+    except InputError as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,1 @@
+"""Relations learned from a few demonstrations, measured against true geometry."""

@@ -1,0 +1,206 @@
+"""Classical planning beside Fast Downward (lama-first) and pyperplan: CPU time and cost, in pairs, one after the other.
+
+    python -m benchmarks.side_by_side [TASK ...] --repeats 5
+    python -m benchmarks.side_by_side --folder TASKS --peers VENV      # NAME.domain.pddl with NAME.problem.pddl
+
+The peers come from pinned wheels, into an environment of their own that is made where it is missing. Our time is that
+of reading, instantiating and searching, in a process whose kernels are loaded; of a peer's process the CPU time of its
+smallest task is taken off: start-up counts on neither side. Ratios are medians of pairs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from statistics import median
+
+import tyro
+
+from benchmarks.classical_domains import GENERATORS, Task, problem
+from benchmarks.common import record, table
+
+PINS = ("up-fast-downward==1.0.0", "pyperplan==2.1")
+
+SIZES = {
+    "blocks": 40, "logistics": 40, "depot": 10, "gripper": 50, "satellite": 20, "rovers": 20, "miconic": 40,
+    "conditions": 300,
+}  # fmt: skip
+"""Tasks that are made, and their sizes; the least of gripper tells what a peer's start-up takes."""
+
+OURS = """
+import json, sys, time
+from tamp.planner.pddl_only.problem import load_symbolic
+from tamp.planner.pddl_only.solve import solve_symbolic
+from tamp.symbolic.search.heuristics.loops import selection as kernels
+from tamp.symbolic.search.packed import compiled
+seconds, seed, *names = sys.argv[1:]
+kernels.load()
+rows = []
+for domain, problem in [names[:2], names[2:]]:
+    began = time.process_time()
+    found = solve_symbolic(load_symbolic(domain, problem), max_time=float(seconds))
+    rows.append({"cpu_s": time.process_time() - began, "cost": found.cost if found.solved else None,
+                 "expanded": found.expanded})
+print(json.dumps(rows[1]))
+"""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to run.
+
+    Attributes:
+        tasks: Some of those that are made, or of the folder's; all by default.
+        folder: Tasks of one's own, instead of those that are made.
+        peers: The environment with the peers.
+        pyperplan: Run pyperplan (FF, greedy) as well; it takes its time.
+        repeats: Pairs of each task.
+        seconds: Budget of one run.
+    """
+
+    tasks: tyro.conf.Positional[tuple[str, ...]] = ()
+    folder: Path | None = None
+    peers: Path = field(default_factory=lambda: Path(tempfile.gettempdir()) / "tamp-peers")
+    pyperplan: bool = False
+    repeats: int = 3
+    seconds: float = 60.0
+
+
+def conditions(size: int) -> Task:
+    """One action asks for `size` facts, each of which takes an action of its own."""
+    names = [f"s{i}" for i in range(size)]
+    needs = " ".join(f"(up {name})" for name in names)
+    domain = f"""(define (domain conditions) (:predicates (switch ?s) (up ?s) (done)) (:constants {" ".join(names)})
+      (:action flip :parameters (?s) :precondition (switch ?s) :effect (up ?s))
+      (:action end :parameters () :precondition (and {needs}) :effect (done)))"""
+    return domain, problem("conditions", "", [f"(switch {name})" for name in names], ["(done)"])
+
+
+def made(folder: Path, name: str, size: int) -> Path:
+    """Write a task into the folder; return its path without the endings."""
+    domain, task = conditions(size) if name == "conditions" else GENERATORS[name](size, Random(0))
+    path = folder / f"{name}-{size}"
+    Path(f"{path}.domain.pddl").write_text(domain, encoding="utf-8")
+    Path(f"{path}.problem.pddl").write_text(task, encoding="utf-8")
+    return path
+
+
+def files(path: Path) -> list[str]:
+    """The two files of a task."""
+    return [f"{path}.{kind}.pddl" for kind in ("domain", "problem")]
+
+
+def spent(words: list[str], seconds: float, folder: str) -> tuple[float, str]:
+    """Run a command in a folder; return the CPU time of it and its children, and what it said."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    try:
+        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, timeout=10 * seconds)
+        said = done.stdout + done.stderr
+    except subprocess.TimeoutExpired:
+        said = ""
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, said
+
+
+def lama(options: Options, path: Path) -> dict[str, object]:
+    """Run Fast Downward's lama-first; the cost is that of its plan."""
+    script = next(options.peers.glob("lib/python*/site-packages/up_fast_downward/downward/fast-downward.py"))
+    limit = f"{int(options.seconds)}s"
+    words = [str(options.peers / "bin" / "python"), str(script), "--overall-time-limit", limit, "--alias", "lama-first"]
+    with tempfile.TemporaryDirectory() as folder:
+        seconds, said = spent([*words, *files(path)], options.seconds, folder)
+    return {"cpu_s": seconds, "cost": number("Plan cost", said), "expanded": number("Expanded", said)}
+
+
+def pyperplan(options: Options, path: Path) -> dict[str, object]:
+    """Run pyperplan's greedy search with FF; actions cost one."""
+    words = [str(options.peers / "bin" / "pyperplan"), "-H", "hff", "-s", "gbf", *files(path)]
+    with tempfile.TemporaryDirectory() as folder:
+        seconds, said = spent(words, options.seconds, folder)
+    return {
+        "cpu_s": seconds,
+        "cost": number("Plan length", said),
+        "expanded": number("Nodes expanded|nodes expanded", said),
+    }
+
+
+def number(word: str, said: str) -> float | None:
+    """The first number after a word in what a planner printed; None without it."""
+    found = re.search(rf"(?:{word})\D*?(\d+)", said)
+    return float(found.group(1)) if found else None
+
+
+def ours(options: Options, path: Path, least: Path) -> dict[str, object]:
+    """Plan in a process that has planned the least task before."""
+    words = [sys.executable, "-c", OURS, str(options.seconds), "0", *files(least), *files(path)]
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def install(peers: Path) -> None:
+    """Make the environment with the peers, where it is missing."""
+    if not (peers / "bin" / "pyperplan").exists():
+        subprocess.run([sys.executable, "-m", "venv", str(peers)], check=True)
+        subprocess.run([str(peers / "bin" / "pip"), "install", "-q", *PINS], check=True)
+
+
+def compared(options: Options, path: Path, least: Path) -> dict[str, object]:
+    """Run the pairs of a task: the row of the table."""
+    peers = {"lama": lama, **({"pyperplan": pyperplan} if options.pyperplan else {})}
+    rows: dict[str, list[dict[str, object]]] = {"ours": [], **{name: [] for name in peers}}
+    for turn in range(options.repeats):
+        runs = {"ours": lambda: ours(options, path, least)}
+        for name, run in peers.items():
+            runs[name] = lambda run=run: {"start_s": run(options, least)["cpu_s"], **run(options, path)}
+        for name in sorted(runs, reverse=bool(turn % 2)):
+            rows[name].append(runs[name]())
+            config = {"task": path.name, "planner": name, "time_s": options.seconds, "pins": PINS}
+            record("side_by_side.jsonl", seed=0, config=config, turn=turn, **rows[name][-1])
+
+    mine = [float(str(row["cpu_s"])) for row in rows["ours"]]
+    cost = rows["ours"][0]["cost"]
+    line: dict[str, object] = {"task": path.name, "ours [s]": median(mine), "cost": cost or float("nan")}
+    for name in peers:
+        theirs = [max(0.005, float(str(row["cpu_s"])) - float(str(row["start_s"]))) for row in rows[name]]
+        dear = rows[name][0]["cost"]
+        line |= {
+            f"{name} [s]": median(theirs),
+            f"{name} cost": dear or float("nan"),
+            f"{name} ratio": median(a / b for a, b in zip(mine, theirs, strict=True)),
+            f"{name} cost ratio": float(str(cost)) / float(str(dear)) if cost and dear else float("nan"),
+        }
+    return line
+
+
+def main(options: Options) -> None:
+    """Run all, print the table."""
+    install(options.peers)
+    with tempfile.TemporaryDirectory() as folder:
+        least = made(Path(folder), "gripper", 1)
+        if options.folder is None:
+            paths = [made(Path(folder), name, SIZES[name]) for name in options.tasks or SIZES]
+        else:
+            ending = ".problem.pddl"
+            found = sorted(path for path in options.folder.glob(f"*{ending}"))
+            paths = [path.with_name(path.name.removesuffix(ending)) for path in found]
+            paths = [path for path in paths if not options.tasks or path.name in options.tasks]
+        lines = [compared(options, path, least) for path in paths]
+    table(lines, "Side by side: CPU seconds without start-up, medians; ratios of pairs")
+    ratios = [float(str(line["lama ratio"])) for line in lines]
+    costs = [
+        float(str(line["lama cost ratio"])) for line in lines if line["lama cost ratio"] == line["lama cost ratio"]
+    ]
+    print(f"against lama-first: time {median(ratios):.2f} (most {max(ratios):.2f}), cost {median(costs or [0]):.2f}")
+
+
+if __name__ == "__main__":
+    main(tyro.cli(Options, description=(__doc__ or "").splitlines()[0]))

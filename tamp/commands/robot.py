@@ -1,0 +1,216 @@
+"""The command `tamp-robot`."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from tamp.errors import InputError
+from tamp.system.command_line import as_command
+from tamp.system.options import Above, OneOf, check_rules, read_command
+from tamp.system.progress import Progress, say
+
+if TYPE_CHECKING:
+    from tamp.robots.make import Wanted
+
+DRIVES = ("omnidirectional", "differential", "fixed")
+
+
+@dataclass(frozen=True)
+class Make:
+    """Make a robot's folder from a URDF, for `robot: {model: FOLDER}` in a problem and --robot.
+
+    The arm is the chain of joints between two links. A parallel gripper of ours is bolted to its
+    tip, in place of whatever hangs there, unless --gripper names the two sliding finger joints of
+    the URDF's own. docs/adding-a-robot.md goes through it.
+
+    Exit status: 0 made, 2 bad input.
+    """
+
+    urdf: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="URDF")]
+    """A URDF, or a robot's name in example-robot-data, or pybullet_data/..."""
+    out: Annotated[Path, tyro.conf.arg(metavar="FOLDER")]
+    """The folder to make; its name is the robot's."""
+    arm: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="BASE TIP")] = None
+    """The links that the arm begins and ends with; asked for where the file leaves a choice."""
+    base: Annotated[str, tyro.conf.arg(metavar="NAME"), OneOf("drive", DRIVES)] = "omnidirectional"
+    """omnidirectional, differential (turns on the spot, drives straight), or fixed."""
+    gripper: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="LEFT RIGHT")] = None
+    """The sliding finger joints of the URDF's own gripper."""
+    axis: Annotated[str | None, tyro.conf.arg(metavar="AXIS")] = None
+    """The tip's axis along which our gripper points: x, -x, y, -y, z or -z; else that of the last
+    joint, out of the arm."""
+    opening: Annotated[
+        float | None, tyro.conf.arg(metavar="M"), Above(0.0, "--opening {value} is not positive")
+    ] = None
+    """The gripper's largest opening, metres; ours opens 0.085."""
+    force: Annotated[
+        float, tyro.conf.arg(metavar="N"), Above(0.0, "--force {value} is not positive")
+    ] = 50.0
+    """With which each finger presses, newtons."""
+    payload: Annotated[
+        float | None, tyro.conf.arg(metavar="KG"), Above(0.0, "--payload {value} is not positive")
+    ] = None
+    """The most that the arm lifts, kilograms."""
+    mount: Annotated[
+        tuple[float, float, float, float] | None, tyro.conf.arg(metavar="X Y Z YAW")
+    ] = None
+    """Where the URDF's root is on the base, metres and radians."""
+    height: Annotated[float, tyro.conf.arg(metavar="M")] = 0.0
+    """How high a fixed arm is bolted to something, metres; such as a table's height."""
+    home: Annotated[tuple[float, ...] | None, tyro.conf.arg(metavar="Q")] = None
+    """The arm's carrying configuration, one number a joint; else one is looked for."""
+    stands: Annotated[tuple[str, ...], tyro.conf.arg(metavar="JOINT=VALUE")] = ()
+    """Where joints stand that are no part of the arm; else as near to 0 as they get."""
+    quiet: bool = False
+    """No progress."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """Check a robot's folder: its files, home, inverse kinematics, and frames against pybullet's.
+
+    Exit status: 0 sound, 2 not.
+    """
+
+    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+    """A shipped robot's name, or a folder."""
+
+
+@as_command()
+def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
+    """Exit with 0 when the robot is made or sound, 2 for bad input."""
+    kinds = {"make": Make, "check": Check}
+    words = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    options = read_command(kinds, "tamp-robot", words)
+    check_rules(options)
+    if isinstance(options, Check):
+        _check(options.robot)
+        return 0
+    shown.quiet = options.quiet
+    _make(options, shown)
+    return 0
+
+
+def _make(options: Make, shown: Progress) -> None:
+    began = time.monotonic()
+    _check_out(options.out)
+    from tamp.geometric.loading.robot_folder import read_robot
+    from tamp.robots.check import against_physics, against_urdf, check_home, check_reach, solved
+    from tamp.robots.make import make
+    from tamp.robots.write import write_folder
+
+    wanted = _wanted(options)
+    made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
+    check_reach(made.table["counts"], made.table["heights"], made.robot)
+    off = against_urdf(made.robot, made.description, made.arm, wanted.tip)
+    out = options.out.absolute()
+    write_folder(out, made.robot, made.covers, made.table, made.masses, options.urdf)
+    robot = read_robot(out)
+    shown.news("checks against pybullet")
+    physics = against_physics(robot)
+    check_home(robot)
+    share = solved(robot)
+    shown.end()
+    seconds = time.monotonic() - began
+    kinds = ", ".join(f"{joint.name} ({joint.kind})" for joint in robot.joints)
+    hulls = sum(len(link.parts) for link in robot.links)
+    pairs = len(robot.links) * (len(robot.links) - 1) // 2 - len(robot.allowed)
+    say(f"{options.out}: {robot.name}, {len(robot.joints)} joints: {kinds}")
+    say(f"  {hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}")
+    say(f"  frames differ from pinocchio's by {off:.1g}, from pybullet's by {physics:.1g}")
+    say(f"  inverse kinematics finds {share:.1%} of reachable poses")
+    say(f"  {seconds:.0f} s. In a problem: robot: {{model: {options.out}, base: [x, y, yaw]}}")
+
+
+def _wanted(options: Make) -> Wanted:
+    from tamp.robots.make import Wanted
+
+    base, tip = options.arm or _asked(options.urdf)
+    return Wanted(
+        urdf=options.urdf,
+        base=base,
+        tip=tip,
+        out=options.out.absolute(),
+        drive=options.base,
+        fingers=options.gripper,
+        opening=options.opening,
+        force=options.force,
+        payload=math.inf if options.payload is None else options.payload,
+        mount=options.mount,
+        axis=options.axis,
+        height=options.height,
+        home=options.home,
+        fixed=_fixed(options.stands),
+    )
+
+
+def _asked(urdf: str) -> tuple[str, str]:
+    """Take root and tip of a URDF with one chain; else say which there are."""
+    from tamp.robots.arm import tips
+    from tamp.robots.description import find_urdf, read_description
+
+    description = read_description(find_urdf(urdf))
+    ends = tips(description)
+    if len(ends) == 1:
+        return description.root, ends[0]
+    shown = ", ".join(f"--arm {description.root} {end}" for end in ends[:8])
+    raise InputError(
+        f"the URDF branches: {len(ends)} chains end somewhere", file=description.file,
+        remedy=f"Say which is the arm: {shown}" if ends else "It has no joint that moves",
+    )  # fmt: skip
+
+
+def _fixed(words: Sequence[str]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            raise InputError(
+                f"--stands {word}: JOINT=VALUE is expected, in radians or metres"
+            ) from None
+    return found
+
+
+def _check_out(out: Path) -> None:
+    """Refuse a folder that is something else, before minutes are spent."""
+    if out.exists() and not (out / "robot.yaml").is_file():
+        raise InputError(
+            "it exists and is no robot's folder", file=out, remedy="Choose another place with --out"
+        )
+
+
+def _check(name: str) -> None:
+    from tamp.geometric.loading.robots import find_robot, load_robot
+    from tamp.geometric.robot.reachability import Reachability
+    from tamp.geometric.robot.spheres import link_covers
+    from tamp.robots.check import against_physics, check_home, solved
+
+    robot = load_robot(find_robot(name))
+    Reachability(robot)
+    link_covers(robot)
+    check_home(robot)
+    off = against_physics(robot)
+    share = solved(robot)
+    if share < 0.98:
+        raise InputError(f"inverse kinematics finds {share:.1%} of reachable poses only",
+                         file=robot.folder)  # fmt: skip
+    say(f"{robot.name}: {len(robot.joints)} joints, {robot.drive} base, sound")
+    say(f"  frames differ from pybullet's by {off:.1g}; inverse kinematics finds {share:.1%}")
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return f"[{', '.join(f'{value:.3g}' for value in values)}]"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

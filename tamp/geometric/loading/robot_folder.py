@@ -1,0 +1,246 @@
+"""A robot's folder: robot.yaml says what the robot is, geometry.npz has the links' hulls."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.geometric.loading.yaml_file import read_yaml
+from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.robot.robot import DRIVES, MARGIN, Link, Robot
+from tamp.geometric.robot.urdf import Joint
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Hull, Part
+
+ROBOT_FILE, GEOMETRY_FILE = "robot.yaml", "geometry.npz"
+VERSION = "1"
+KINDS = ("revolute", "continuous", "prismatic")
+FULL_TURN = 2 * math.pi
+"""A continuous joint's range in plans is one turn to either side, radians."""
+
+_TOP = ("format", "version", "urdf", "made_from", "base", "arm", "gripper", "allowed")
+_BASE = ("drive", "link", "box", "velocity", "acceleration")
+_ARM = ("foot", "mount", "home", "payload", "locked_joint", "joints")
+_JOINT = ("link", "kind", "origin", "range", "velocity", "acceleration", "effort")
+_GRIPPER = ("kind", "hand", "mount", "tool", "opening", "force", "speed", "fingers")
+
+
+def read_robot(folder: Path) -> Robot:
+    """Read a robot from its folder.
+
+    Raises:
+        InputError: A file is missing, damaged or of another version, or says what cannot be, with
+            the line.
+    """
+    file = folder / ROBOT_FILE
+    if not file.is_file():
+        raise InputError(f"no robot: {ROBOT_FILE} is missing", file=folder)
+    root = read_yaml(file)
+    top = root.mapping()
+    _check_format(root, top)
+    top = root.mapping(_TOP, required=("format", "version", "urdf", "base", "arm", "gripper"))
+
+    base = top["base"].mapping(_BASE, required=_BASE)
+    arm = top["arm"].mapping(_ARM, required=("foot", "mount", "home", "joints"))
+    gripper = top["gripper"].mapping(_GRIPPER, required=_GRIPPER)
+    gripper["kind"].text(("parallel",), "kind of gripper")
+
+    entries = {
+        name: node.mapping(_JOINT, required=_JOINT)
+        for name, node in arm["joints"].mapping().items()
+    }
+    if not entries:
+        raise arm["joints"].error("an arm needs a joint")
+    joints = tuple(_joint(name, entry) for name, entry in entries.items())
+    names = tuple(joint.name for joint in joints)
+    locked = arm["locked_joint"].text(names, "joint") if "locked_joint" in arm else None
+    fingers = _fingers(gripper)
+
+    roles = {node.text(): node for node in (base["link"], arm["foot"], gripper["hand"])}
+    chain = [base["link"].text(), arm["foot"].text(), *(joint.child for joint in joints)]
+    chain += [gripper["hand"].text(), *(finger.child for finger in fingers)]
+    if len(roles) != 3 or len(set(chain)) != len(chain):
+        raise root.error("two parts of the robot have a link of one name")
+
+    robot = Robot(
+        name=folder.name,
+        links=_links(folder, chain, _box(base["box"])),
+        base=chain[0],
+        foot=chain[1],
+        hand=gripper["hand"].text(),
+        T_base_arm=_pose(arm["mount"]),
+        joints=joints,
+        T_flange_hand=_pose(gripper["mount"]),
+        T_hand_tool=_pose(gripper["tool"]),
+        fingers=fingers,
+        lower=tuple(_lower(joint) for joint in joints),
+        upper=tuple(_upper(joint) for joint in joints),
+        velocity=base["velocity"].numbers(3, positive=True) + _each(entries, "velocity"),
+        acceleration=base["acceleration"].numbers(3, positive=True)
+        + _each(entries, "acceleration"),
+        home=arm["home"].numbers(len(joints)),
+        opening=gripper["opening"].number(positive=True),
+        allowed=_allowed(top["allowed"], chain) if "allowed" in top else frozenset(),
+        urdf=_urdf(top["urdf"], folder),
+        folder=folder,
+        drive=base["drive"].text(DRIVES, "drive"),
+        locked=None if locked is None else names.index(locked),
+        effort=_each(entries, "effort"),
+        force=gripper["force"].number(positive=True),
+        payload=arm["payload"].number(positive=True) if "payload" in arm else math.inf,
+    )
+    _check_home(robot, arm["home"])
+    return robot
+
+
+def _check_format(root: Node, top: Mapping[str, Node]) -> None:
+    if "format" not in top or top["format"].text() != "tamp-robot":
+        raise root.error("not a robot: it does not say 'format: tamp-robot'")
+    version = top["version"].text() if "version" in top else "none"
+    if version != VERSION:
+        where = top.get("version", root)
+        raise where.error(
+            f"version {version} of a robot's folder is not known, only {VERSION}",
+            remedy="Make it again with this tamp's tamp-robot",
+        )
+
+
+def _check_home(robot: Robot, node: Node) -> None:
+    for joint, q, low, high in zip(robot.joints, robot.home, robot.lower, robot.upper, strict=True):
+        if not low <= q <= high:
+            raise node.error(f"{joint.name} = {q:g} is not within [{low:.5g}, {high:.5g}]")
+
+
+def _joint(name: str, entry: Mapping[str, Node]) -> Joint:
+    kind = entry["kind"].text(KINDS, "kind of joint")
+    low, high = entry["range"].numbers(2)
+    least = 2 * (MARGIN if kind != "prismatic" else MARGIN / 10)
+    if kind != "continuous" and not high - low > least:
+        raise entry["range"].error(f"the lower limit {low:g} is not below the upper {high:g}")
+    return Joint(
+        name, kind, "", entry["link"].text(), _pose(entry["origin"]), (0.0, 0.0, 1.0), low, high,
+        entry["velocity"].number(positive=True),
+    )  # fmt: skip
+
+
+def _lower(joint: Joint) -> float:
+    if joint.kind == "continuous":
+        return -FULL_TURN
+    return joint.lower + (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+
+
+def _upper(joint: Joint) -> float:
+    if joint.kind == "continuous":
+        return FULL_TURN
+    return joint.upper - (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+
+
+def _each(entries: Mapping[str, Mapping[str, Node]], key: str) -> tuple[float, ...]:
+    return tuple(entry[key].number(positive=True) for entry in entries.values())
+
+
+def _fingers(gripper: Mapping[str, Node]) -> tuple[Joint, Joint]:
+    entries = gripper["fingers"].mapping()
+    if len(entries) != 2:
+        raise gripper["fingers"].error(f"a parallel gripper has two fingers, not {len(entries)}")
+    speed, opening = gripper["speed"].number(positive=True), gripper["opening"].number()
+    found: list[Joint] = []
+    for name, node in entries.items():
+        entry = node.mapping(("link", "origin", "axis"), required=("link", "origin", "axis"))
+        x, y, z = entry["axis"].numbers(3)
+        hand, link, origin = gripper["hand"].text(), entry["link"].text(), _pose(entry["origin"])
+        found.append(
+            Joint(name, "prismatic", hand, link, origin, (x, y, z), 0.0, opening / 2, speed)
+        )
+    return found[0], found[1]
+
+
+def _pose(node: Node) -> Pose:
+    entries = node.mapping(("xyz", "quaternion"), required=("xyz", "quaternion"))
+    x, y, z = entries["xyz"].numbers(3)
+    a, b, c, d = entries["quaternion"].numbers(4)
+    if abs(math.hypot(a, b, c, d) - 1.0) > 1e-6:
+        raise entries["quaternion"].error("its norm is not 1")
+    return Pose((x, y, z), (a, b, c, d))
+
+
+def _box(node: Node) -> Part:
+    entries = node.mapping(("size", "at"), required=("size", "at"))
+    length, width, height = entries["size"].numbers(3, positive=True)
+    x, y, z = entries["at"].numbers(3)
+    return Part(Box((length, width, height)), Pose((x, y, z)))
+
+
+def _links(folder: Path, names: list[str], base: Part) -> tuple[Link, ...]:
+    """Make the links of their hulls."""
+    hulls = _hulls(folder / GEOMETRY_FILE)
+    for name in hulls:
+        if name not in names:
+            raise InputError(
+                f"it has hulls of '{name}', which is no link", file=folder / GEOMETRY_FILE
+            )
+    return (
+        Link(names[0], (base,)),
+        *(Link(name, tuple(map(Part, hulls.get(name, ())))) for name in names[1:]),
+    )
+
+
+def _hulls(file: Path) -> dict[str, list[Hull]]:
+    """Read the hulls of each link, in order."""
+    found: dict[str, list[Hull]] = {}
+    try:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
+            for key in arrays.files:
+                name, _, what = key.rpartition("/")
+                if what == "vertices":
+                    vertices, faces = arrays[key], arrays[f"{name}/faces"]
+                    vertices.flags.writeable = faces.flags.writeable = False
+                    found.setdefault(name.rpartition("/")[0], []).append(Hull(vertices, faces))
+    except FileNotFoundError:
+        raise InputError(f"no robot: {GEOMETRY_FILE} is missing", file=file.parent) from None
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        what = " ".join(str(error).split())
+        raise InputError(
+            f"damaged: {what}", file=file, remedy="Make the robot again with tamp-robot"
+        ) from None
+    return found
+
+
+def _allowed(node: Node, names: list[str]) -> frozenset[tuple[str, str]]:
+    """Read lines of names: the first of each with all others of it."""
+    pairs: set[tuple[str, str]] = set()
+    for line in node.items():
+        words = line.text().split()
+        for word in words:
+            if word not in names:
+                raise line.error(f"unknown link '{word}'", found=word, choices=names)
+        pairs |= {(min(words[0], other), max(words[0], other)) for other in words[1:]}
+    return frozenset(pairs)
+
+
+def _urdf(node: Node, folder: Path) -> Path:
+    """Find the description: a file of the folder, or of an installed package, whose name comes
+    first.
+    """
+    text = node.text()
+    inside = folder / text
+    if inside.is_file():
+        return inside
+    package, _, path = text.partition("/")
+    # Found without importing: pybullet prints at import.
+    spec = importlib.util.find_spec(package) if package.isidentifier() else None
+    if spec is not None and spec.origin is not None:
+        file = Path(spec.origin).parent / path
+        if file.is_file():
+            return file
+    wheel = {"pybullet_data": "pybullet"}.get(package)
+    raise node.error(
+        f"the robot '{folder.name}' needs {text}, which is not there",
+        remedy=f"pip install {wheel}" if wheel else "Make it again with tamp-robot",
+    )

@@ -1,0 +1,89 @@
+"""Numerical inverse kinematics of an arm of any number and kind of joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tamp.geometric.robot.chain import Chain
+from tamp.geometric.robot.numerical_kernels import damped_least_squares
+from tamp.geometric.scene.pose import Array
+
+SEEDS = 128
+"""Starts after which a pose counts as out of reach, one that lies beyond the arm's length at once:
+of poses within reach one in a thousand needs more than 30."""
+
+LOOKED = 48
+"""Starts that are gone through for further solutions once there is one."""
+
+MOST = 24
+"""Solutions that are looked for, at most."""
+
+BEYOND = 1e-3
+"""Metres that are added to the arm's length, for rounding."""
+
+
+class Numerical:
+    """Solutions by damped least squares from many starts.
+
+    After Levenberg and Marquardt, with damping that falls with the error (Sugihara, "Solvability-
+    unconcerned inverse kinematics by the Levenberg-Marquardt method", T-RO 2011), and joints at a
+    limit frozen. The first start is the middle of the joints' ranges, the others are spread over
+    them by Halton's sequence: the same pose gives the same solutions.
+    """
+
+    def __init__(self, chain: Chain) -> None:
+        self._chain = chain
+        spread = np.array([_halton(index, len(chain.lower)) for index in range(1, SEEDS)])
+        self._spread = np.concatenate([np.full((1, len(chain.lower)), 0.5), spread])
+        # A joint that turns freely begins within half a turn of home.
+        wide = chain.upper - chain.lower > 2 * np.pi
+        self._low = np.where(wide, np.maximum(chain.home - np.pi, chain.lower), chain.lower)
+        self._high = np.where(wide, np.minimum(chain.home + np.pi, chain.upper), chain.upper)
+        self._centre, self._length = _length(chain)
+
+    def solve(
+        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
+    ) -> Array:
+        """Solve as `ArmIK.solve` says; at most MOST solutions, each found from another start."""
+        chain = self._chain
+        if float(np.linalg.norm(T_base_tool[:3, 3] - self._centre)) > self._length:
+            return np.empty((0, len(chain.lower)))
+        spread = self._spread
+        if rng is not None:
+            spread = (spread + rng.random(len(chain.lower))) % 1.0
+        seeds = self._low + spread * (self._high - self._low)
+        target = np.ascontiguousarray(T_base_tool, dtype=float)
+        most = MOST if enough is None else enough
+        looked = LOOKED if enough is None else SEEDS
+        found, count = damped_least_squares(*chain.arrays, chain.home, target, seeds, looked, most)
+        return found[:count]
+
+
+def _length(chain: Chain) -> tuple[Array, float]:
+    """Return a point in the base's frame and the tool's greatest distance from it, metres, bounded
+    from above by the lengths of the links.
+    """
+    reach = float(np.linalg.norm(chain.T_flange_tool[:3, 3])) + BEYOND
+    for index in range(len(chain.origins)):
+        if index > 0:
+            reach += float(np.linalg.norm(chain.origins[index, :3, 3]))
+        if chain.slides[index]:
+            reach += float(max(abs(chain.lower[index]), abs(chain.upper[index])))
+    return chain.origins[0, :3, 3].copy(), reach
+
+
+PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
+"""The bases of Halton's sequence, one a joint."""
+
+
+def _halton(index: int, count: int) -> list[float]:
+    """Return the point of that index of Halton's sequence in [0, 1)^count."""
+    point: list[float] = []
+    for joint in range(count):
+        base, value, scale, rest = PRIMES[joint % len(PRIMES)], 0.0, 1.0, index
+        while rest:
+            scale /= base
+            value += scale * (rest % base)
+            rest //= base
+        point.append(value)
+    return point

@@ -1,0 +1,1 @@
+"""Making robots: from a URDF to a robot's folder."""

@@ -1,0 +1,143 @@
+"""A robot's folder against second opinions: the URDF it was made from, and a physics engine."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+# Its wheel lives behind a .pth that pyright does not run.
+import pinocchio  # pyright: ignore[reportMissingImports]
+
+from tamp.errors import InputError
+from tamp.geometric.robot.chain import Chain
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import RobotStart, Room, Scene
+from tamp.robots.arm import Arm
+from tamp.robots.description import Description
+from tamp.robots.self_collision import home_collision
+from tamp.simulation.physics import World
+from tamp.simulation.silence import silence
+
+STATES = 100
+"""Configurations in which frames are compared."""
+
+OFF = 2e-5
+"""Metres, and entries of a rotation, by which frames may differ: right angles are made exact."""
+
+POSES = 500
+"""Reachable poses for which inverse kinematics is asked."""
+
+FLOOR, TABLE = 0.02, 0.75
+"""Metres: heights of what an arm should reach at least one of, with the hand down or forward."""
+
+
+def against_urdf(robot: Robot, description: Description, arm: Arm, tip: str) -> float:
+    """Compare the tip by pinocchio's reading of the URDF with ours; return the largest difference.
+
+    Raises:
+        InputError: They differ: this is a fault of ours, and such a robot is not written.
+    """
+    with silence():  # it remarks on links without inertia
+        model = pinocchio.buildModelFromUrdf(str(description.file))
+    data = model.createData()
+    frames = {name: model.getFrameId(name) for name in (arm.groups[0].name, tip)}
+    chain, rng, worst = Chain.of(robot), np.random.default_rng(0), 0.0
+
+    for _ in range(STATES):
+        q = rng.uniform(chain.lower, chain.upper)
+        full = pinocchio.neutral(model)
+        for joint, value in zip(robot.joints, q, strict=True):
+            index = model.joints[model.getJointId(joint.name)]
+            if index.nq == 2:  # a continuous joint is its cosine and sine there
+                full[index.idx_q : index.idx_q + 2] = math.cos(value), math.sin(value)
+            else:
+                full[index.idx_q] = value
+        pinocchio.framesForwardKinematics(model, data, full)
+        foot, end = (data.oMf[number].homogeneous for number in frames.values())
+        T = np.linalg.inv(foot) @ end
+        worst = max(worst, float(np.abs(T - _tip(robot, arm, q)).max()))
+    if worst > OFF:
+        raise InputError(
+            f"our kinematics of the arm differ by {worst:.2g} from pinocchio's",
+            file=description.file,
+        )
+    return worst
+
+
+def _tip(robot: Robot, arm: Arm, q: Array) -> Array:
+    """Compute T_foot_tip by the joints as the robot's folder has them."""
+    T = np.eye(4)
+    for joint, value in zip(robot.joints, q, strict=True):
+        motion = np.eye(4)
+        if joint.kind == "prismatic":
+            motion[2, 3] = value
+        else:
+            cos, sin = math.cos(value), math.sin(value)
+            motion[:2, :2] = [[cos, -sin], [sin, cos]]
+        T = T @ joint.origin.matrix @ motion
+    return T @ arm.T_last_tip.matrix
+
+
+def against_physics(robot: Robot) -> float:
+    """Compare all links' frames with pybullet's reading of the folder's URDF; return the largest
+    difference.
+
+    Raises:
+        InputError: They differ.
+    """
+    scene = Scene(
+        "check", {}, RobotStart(robot.name, (0.0, 0.0, 0.0), None), Room((-1, 1), (-1, 1))
+    )
+    kinematics, rng, worst = Kinematics(robot), np.random.default_rng(0), 0.0
+    with World(scene, robot) as world:
+        for _ in range(STATES):
+            base = rng.uniform(-1.0, 1.0, 3)
+            q = rng.uniform(np.array(robot.lower), np.array(robot.upper))
+            opening = float(rng.uniform(0.0, robot.opening))
+            world.set_robot(base, q, opening)
+            ours = kinematics.link_poses(np.concatenate([base, q]), opening)
+            for name, T in world.link_poses().items():
+                worst = max(worst, float(np.abs(T - ours[name]).max()))
+    if worst > 10 * OFF:
+        raise InputError(f"our kinematics differ by {worst:.2g} from pybullet's", file=robot.folder)
+    return worst
+
+
+def solved(robot: Robot) -> float:
+    """Return the share of reachable poses that inverse kinematics finds."""
+    ik, kinematics, rng = ArmIK(robot), Kinematics(robot), np.random.default_rng(1)
+    lower, upper = np.array(robot.lower), np.array(robot.upper)
+    found = 0
+    for _ in range(POSES):
+        found += len(ik.solve(kinematics.arm_tool(rng.uniform(lower, upper)), enough=1)) > 0
+    return found / POSES
+
+
+def check_home(robot: Robot) -> None:
+    """Refuse a robot that meets itself at home.
+
+    Raises:
+        InputError: Which links meet.
+    """
+    hit = home_collision(robot, robot.home)
+    if hit is not None:
+        raise InputError(f"at home {hit[0]} and {hit[1]} meet", file=robot.folder)
+
+
+def check_reach(counts: Array, heights: Array, robot: Robot) -> None:
+    """Refuse an arm whose table has no place at a height where things stand.
+
+    Raises:
+        InputError: It reaches neither the floor nor any table.
+    """
+    reached = heights[counts.reshape(len(heights), -1).any(axis=1)]
+    if not len(reached) or reached.min() > TABLE + 0.5:
+        least = f"nothing under {reached.min():.2f} m" if len(reached) else "nothing"
+        raise InputError(
+            f"the arm of {robot.name} reaches {least}: neither the floor nor any table",
+            remedy="Mount it lower with --mount, or --height",
+        )

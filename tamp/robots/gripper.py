@@ -1,0 +1,188 @@
+"""Grippers that a robot is made with: one of ours, bolted to the arm's tip, or the URDF's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tamp.errors import InputError
+from tamp.geometric.robot.urdf import Joint
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Hull
+from tamp.robots.arm import Arm
+from tamp.robots.convex import hull_of
+
+AXES = ("x", "-x", "y", "-y", "z", "-z")
+"""Of the arm's tip, along which a gripper can point."""
+
+TIP = 0.0094
+"""Metres by which the finger tips reach beyond the tool's origin."""
+
+PALM = (0.05, 0.13, 0.06)
+"""Edge lengths of our gripper's palm, metres: across, along the fingers' way, out of the arm."""
+
+FINGER = (0.02, 0.014, 0.055)
+"""The same of each finger."""
+
+WIDEST = 0.2
+"""Metres: the largest opening that our gripper can be made with."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gripper:
+    """A parallel gripper.
+
+    Attributes:
+        hand: The palm's hulls in the hand's frame.
+        fingers: The left and the right finger's prismatic joint, 0 where they meet.
+        finger_hulls: Hulls of each in its frame.
+        T_tip_hand: The hand in the arm's tip.
+        T_hand_tool: The tool in the hand: z out of it, y the closing direction.
+        opening: The largest, metres.
+        force: Newtons with which each finger presses.
+        speed: Metres a second of each finger.
+        mass: Kilograms.
+    """
+
+    hand: tuple[Hull, ...]
+    fingers: tuple[Joint, Joint]
+    finger_hulls: tuple[tuple[Hull, ...], tuple[Hull, ...]]
+    T_tip_hand: Pose
+    T_hand_tool: Pose
+    opening: float
+    force: float
+    speed: float
+    mass: float = 0.9
+
+
+def two_fingers(opening: float, force: float, T_tip_hand: Pose) -> Gripper:
+    """Make our gripper: a box with two boxes as fingers, as wide as it opens.
+
+    Raises:
+        InputError: It could not close, or is wider than any.
+    """
+    if not 0.01 <= opening <= WIDEST:
+        raise InputError(
+            f"--opening {opening:g}: a gripper opens from 0.01 to {WIDEST:g} m",
+            remedy="Give its largest opening in metres",
+        )
+    across, along, out = PALM
+    along = max(along, opening + 4 * FINGER[1])
+    palm = _box((across, along, out), (0.0, 0.0, out / 2))
+
+    fingers: list[Joint] = []
+    hulls: list[tuple[Hull, ...]] = []
+    for name, side in (("left", 1.0), ("right", -1.0)):
+        centre = (0.0, side * FINGER[1] / 2, FINGER[2] / 2)
+        hulls.append((_box(FINGER, centre),))
+        fingers.append(
+            Joint(f"{name}_finger_joint", "prismatic", "hand", f"{name}_finger",
+                  Pose((0.0, 0.0, out)), (0.0, side, 0.0), 0.0, opening / 2, 0.05)
+        )  # fmt: skip
+    tool = Pose((0.0, 0.0, out + FINGER[2] - TIP))
+    return Gripper(
+        (palm,), (fingers[0], fingers[1]), (hulls[0], hulls[1]), T_tip_hand, tool, opening, force,
+        0.05,
+    )  # fmt: skip
+
+
+def outward_axis(arm: Arm) -> str:
+    """Find the axis of the tip that points out of the arm: that about which the last joint turns,
+    away from the joints before.
+    """
+    T, origins = np.eye(4), []
+    for joint in arm.joints:
+        T = T @ joint.origin.matrix
+        origins.append(T[:3, 3])
+    tip = T @ arm.T_last_tip.matrix
+    out = T[:3, 2]
+    before = [origin for origin in reversed(origins) if abs((tip[:3, 3] - origin) @ out) > 1e-3]
+    sign = 1.0 if not before or (tip[:3, 3] - before[0]) @ out > 0 else -1.0
+    inside = tip[:3, :3].T @ (out * sign)
+    number = int(np.argmax(np.abs(inside)))
+    return AXES[2 * number + (inside[number] < 0)]
+
+
+def along(axis: str) -> Pose:
+    """Return a hand whose z is an axis of the tip.
+
+    Raises:
+        InputError: It is no axis.
+    """
+    if axis not in AXES:
+        raise InputError(f"--axis: unknown axis '{axis}'", found=axis, choices=AXES)
+    number = AXES.index(axis)
+    z = np.eye(3)[number // 2] * (-1.0 if number % 2 else 1.0)
+    x = np.eye(3)[(number // 2 + 1) % 3]
+    T = np.eye(4)
+    T[:3, 0], T[:3, 1], T[:3, 2] = x, np.cross(z, x), z
+    return Pose() if axis == "z" else Pose.from_matrix(T)
+
+
+def own_fingers(
+    joints: tuple[Joint, Joint],
+    hand: tuple[Hull, ...],
+    finger_hulls: tuple[tuple[Hull, ...], tuple[Hull, ...]],
+    T_tip_hand: Pose,
+    opening: float | None,
+    force: float,
+) -> Gripper:
+    """Make a gripper of two prismatic joints of the URDF, whose frames are given in the hand's.
+
+    The closing direction is that of the joints, the tool's z points from the hand to the fingers,
+    and its origin is between the pads, TIP before the tips.
+
+    Raises:
+        InputError: The fingers do not move towards each other, or have no shape.
+    """
+    first, second = (np.array(joint.origin.rotation @ np.array(joint.axis)) for joint in joints)
+    names = " and ".join(joint.name for joint in joints)
+    if first @ second > -0.99:
+        raise InputError(
+            f"the fingers {names} do not move towards each other: the gripper cannot close",
+            remedy="Name two prismatic joints, or leave --gripper out for one of ours",
+        )
+    corners = [
+        np.concatenate([joint.origin.apply(hull.vertices) for hull in hulls])
+        for joint, hulls in zip(joints, finger_hulls, strict=True)
+        if hulls
+    ]
+    if len(corners) != 2:
+        raise InputError(f"the fingers {names} have no collision shapes")
+    gap = float((corners[0] @ first).min() + (corners[1] @ second).min())
+    if gap < -0.002:
+        raise InputError(
+            f"the fingers {names} are {-1000 * gap:.1f} mm in each other at 0: the gripper cannot "
+            "close"
+        )
+    widest = min(joint.upper for joint in joints) * 2 if opening is None else opening
+    if not widest > 0.0:
+        raise InputError(f"the fingers {names} cannot open: their upper limit is 0")
+
+    closing = first / np.linalg.norm(first)
+    both = np.concatenate(corners)
+    out = both.mean(axis=0) - np.concatenate([hull.vertices for hull in hand]).mean(axis=0)
+    out -= (out @ closing) * closing
+    out = np.eye(3)[int(np.argmax(np.abs(out)))] * np.sign(out[int(np.argmax(np.abs(out)))])
+    middle = sum((joint.origin.matrix[:3, 3] for joint in joints), np.zeros(3)) / 2
+    T = np.eye(4)
+    T[:3, 0], T[:3, 1], T[:3, 2] = np.cross(closing, out), closing, out
+    T[:3, 3] = middle + out * (float((both @ out).max()) - TIP - float(middle @ out))
+    speed = min(joint.velocity or 0.05 for joint in joints)
+    return Gripper(
+        hand, joints, finger_hulls, T_tip_hand, Pose.from_matrix(_orthogonal(T)), widest, force,
+        min(speed, 0.1),
+    )  # fmt: skip
+
+
+def _box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> Hull:
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return hull_of(signs * np.array(size) / 2 + np.array(centre), "gripper")
+
+
+def _orthogonal(T: Array) -> Array:
+    u, _, v = np.linalg.svd(T[:3, :3])
+    fixed = T.copy()
+    fixed[:3, :3] = u @ v
+    return fixed

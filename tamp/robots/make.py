@@ -1,0 +1,277 @@
+"""Make a robot's folder from a URDF."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tamp.errors import InputError
+from tamp.geometric.robot.robot import MARGIN, Link, Robot
+from tamp.geometric.robot.urdf import Joint
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Hull, Part
+from tamp.robots.arm import Arm, find_arm
+from tamp.robots.base import choose_base
+from tamp.robots.convex import Solid, joined, pieces, solids
+from tamp.robots.description import Description, find_urdf, read_description
+from tamp.robots.gripper import Gripper, along, outward_axis, own_fingers, two_fingers
+from tamp.robots.hand import find_hand
+from tamp.robots.home import home
+from tamp.robots.reach_table import table
+from tamp.robots.self_collision import allowed_pairs, home_collision, misjudged
+from tamp.robots.spheres import cover
+
+PER_SECOND = 2.0
+"""A joint's acceleration as a multiple of its velocity, 1/s, where nobody says more."""
+
+Told = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The choices that a robot is made by.
+
+    Attributes:
+        urdf: As `description.find_urdf` takes it.
+        base, tip: The links between which the arm is; no base means the robot's root.
+        out: The folder that is made.
+        drive: One of `robot.DRIVES`.
+        fingers: Two prismatic joints of the URDF's own gripper; without them ours is bolted to
+            the tip.
+        opening: The gripper's largest, metres.
+        force: With which each finger presses, newtons.
+        payload: Kilograms.
+        mount: Where the arm's root is on the base: x, y, z in metres and yaw in radians.
+        axis: Of the tip, along which our gripper points: x, -x, y, ...; None finds it.
+        height: Metres at which an arm that does not drive is bolted to something.
+        home: Its carrying configuration.
+        fixed: Where joints stand that are no part of the arm.
+    """
+
+    urdf: str
+    tip: str
+    out: Path
+    base: str | None = None
+    drive: str = "omnidirectional"
+    fingers: tuple[str, str] | None = None
+    opening: float | None = None
+    force: float = 50.0
+    payload: float = math.inf
+    mount: tuple[float, float, float, float] | None = None
+    axis: str | None = None
+    height: float = 0.0
+    home: tuple[float, ...] | None = None
+    fixed: Mapping[str, float] = field(default_factory=dict[str, float])
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A robot before it is written: with its sphere covers, table and masses."""
+
+    robot: Robot
+    covers: Mapping[tuple[str, int], tuple[Array, float]]
+    table: Mapping[str, Array]
+    masses: Mapping[str, float]
+    description: Description
+    arm: Arm
+    warnings: tuple[str, ...]
+
+
+def make(wanted: Wanted, told: Told) -> Made:
+    """Make a robot; `told` hears of each step and the share of it that is done.
+
+    Raises:
+        InputError: What is wrong with the URDF or the choices, and what to do.
+    """
+    told("reading the URDF", 0.0)
+    file = find_urdf(wanted.urdf)
+    description = read_description(file)
+    base = wanted.base or description.root
+    arm = find_arm(description, base, wanted.tip, wanted.fixed, cut=True)
+
+    told("hulls", 0.0)
+    meshes = {group.name: solids(group.elements, group.name) for group in arm.groups}
+    if not any(meshes.values()):
+        raise InputError(
+            "the arm has no collision shapes", file=file,
+            remedy="Give its links <collision> elements; their <visual> meshes often do",
+        )  # fmt: skip
+    gripper = _gripper(description, wanted, arm)
+    robot = _robot(wanted, arm, gripper, meshes, file)
+    robot, warnings = _refined(robot, meshes, told)
+
+    allowed = allowed_pairs(robot, lambda done: told("pairs of links that can meet", done))
+    robot = replace(robot, allowed=allowed)
+
+    told("a home configuration", 0.0)
+    robot = replace(robot, home=_home(robot, wanted))
+    covers = _covers(robot, told)
+    reach = table(robot, lambda done: told("from where the arm reaches what", done))
+
+    groups = {group.name: group.mass for group in arm.groups}
+    shared = {robot.hand: gripper.mass * 0.7}
+    shared |= {finger.child: gripper.mass * 0.15 for finger in robot.fingers}
+    return Made(robot, covers, reach, groups | shared, description, arm, warnings)
+
+
+def _robot(
+    wanted: Wanted, arm: Arm, gripper: Gripper, meshes: Mapping[str, Sequence[Solid]], file: Path
+) -> Robot:
+    """Put base, arm and gripper together, without knowing yet which links can meet."""
+    names = {group.name for group in arm.groups}
+    renamed = _unused(gripper, names)
+    foot = arm.groups[0]
+    links = [
+        Link(group.name, _parts(joined([h for one in meshes[group.name] for h in one.hulls],
+                                       group.name)))
+        for group in arm.groups
+    ]  # fmt: skip
+    box, T_base_arm, velocity, acceleration = choose_base(
+        wanted.drive, wanted.height, wanted.mount, arm, links[0]
+    )
+
+    fingers = (renamed[1], renamed[2])
+    links += [
+        Link(renamed[0], _parts(gripper.hand)),
+        *(
+            Link(finger.child, _parts(hulls))
+            for finger, hulls in zip(fingers, gripper.finger_hulls, strict=True)
+        ),
+    ]
+
+    base = "base" if "base" not in {link.name for link in links} else "tamp_base"
+    lower = tuple(_bound(joint, joint.lower, 1.0) for joint in arm.joints)
+    upper = tuple(_bound(joint, joint.upper, -1.0) for joint in arm.joints)
+    return Robot(
+        name=wanted.out.name,
+        links=(Link(base, (box,)), *links),
+        base=base,
+        foot=foot.name,
+        hand=renamed[0],
+        T_base_arm=T_base_arm,
+        joints=arm.joints,
+        T_flange_hand=arm.T_last_tip @ gripper.T_tip_hand,
+        T_hand_tool=gripper.T_hand_tool,
+        fingers=fingers,
+        lower=lower,
+        upper=upper,
+        velocity=(*velocity, *arm.velocity),
+        acceleration=(*acceleration, *(PER_SECOND * speed for speed in arm.velocity)),
+        home=tuple((low + high) / 2 for low, high in zip(lower, upper, strict=True)),
+        opening=gripper.opening,
+        allowed=frozenset(),
+        urdf=file,
+        folder=wanted.out,
+        drive=wanted.drive,
+        effort=arm.effort,
+        force=gripper.force,
+        payload=wanted.payload,
+    )
+
+
+def _bound(joint: Joint, limit: float, inwards: float) -> float:
+    if joint.kind == "continuous":
+        return -inwards * 2 * math.pi
+    return limit + inwards * (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+
+
+def _unused(gripper: Gripper, names: set[str]) -> tuple[str, Joint, Joint]:
+    """Give the gripper's links and joints names that the arm has not."""
+    hand = gripper.fingers[0].parent
+    mark = "gripper_" if names & {hand, *(one.child for one in gripper.fingers)} else ""
+    left, right = (
+        replace(one, name=mark + one.name, parent=mark + hand, child=mark + one.child)
+        for one in gripper.fingers
+    )
+    return mark + hand, left, right
+
+
+def _parts(hulls: Sequence[Hull]) -> tuple[Part, ...]:
+    return tuple(map(Part, hulls))
+
+
+def _gripper(description: Description, wanted: Wanted, arm: Arm) -> Gripper:
+    if wanted.fingers is None:
+        opening = 0.085 if wanted.opening is None else wanted.opening
+        return two_fingers(opening, wanted.force, along(wanted.axis or outward_axis(arm)))
+    known = tuple(description.joints)
+    found: list[Joint] = []
+    for name in wanted.fingers:
+        if name not in description.joints:
+            raise InputError(f"the gripper: unknown joint '{name}'", file=description.file,
+                             found=name, choices=known)  # fmt: skip
+        if description.joints[name].kind != "prismatic":
+            raise InputError(
+                f"the gripper: joint '{name}' turns, only fingers that slide are known",
+                file=description.file,
+                remedy="Leave --gripper out: one of ours is bolted to the tip",
+            )
+        found.append(description.joints[name])
+    if found[0].parent != found[1].parent:
+        raise InputError("the fingers hang on two links", file=description.file)
+    return _own(description, wanted, found[0], found[1])
+
+
+def _own(description: Description, wanted: Wanted, left: Joint, right: Joint) -> Gripper:
+    """Take the URDF's own gripper: what hangs on the tip, but for the fingers, is the hand, in the
+    tip's frame.
+    """
+    hand, joints, fingers = find_hand(description, wanted.tip, (left, right), wanted.fixed)
+    hulls = [
+        joined([h for one in solids(group.elements, group.name) for h in one.hulls], group.name)
+        for group in (hand, *fingers)
+    ]
+    return own_fingers(joints, hulls[0], (hulls[1], hulls[2]), Pose(), wanted.opening, wanted.force)
+
+
+def _refined(
+    robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told
+) -> tuple[Robot, tuple[str, ...]]:
+    """Decompose the links whose hulls meet much more often than they do."""
+    known = {name: some for name, some in meshes.items() if some}
+    wrong = misjudged(robot, known, lambda done: told("hulls against meshes", done))
+    links: list[Link] = []
+    for link in robot.links:
+        if link.name in wrong:
+            told(f"convex pieces of {link.name}", 0.0)
+            hulls = [hull for one in known[link.name] for hull in pieces(one, link.name)]
+            link = Link(link.name, _parts(joined(hulls, link.name)))
+        links.append(link)
+    return replace(robot, links=tuple(links)), ()
+
+
+def _home(robot: Robot, wanted: Wanted) -> tuple[float, ...]:
+    if wanted.home is None:
+        length = sum(math.hypot(*joint.origin.position) for joint in robot.joints[1:])
+        length += math.hypot(*robot.T_flange_hand.position)
+        return home(robot, length)
+    if len(wanted.home) != len(robot.joints):
+        raise InputError(f"--home: {len(robot.joints)} numbers are expected, one a joint, not "
+                         f"{len(wanted.home)}")  # fmt: skip
+    for joint, q, low, high in zip(
+        robot.joints, wanted.home, robot.lower, robot.upper, strict=True
+    ):
+        if not low <= q <= high:
+            raise InputError(f"--home: {joint.name} = {q:g} is not within [{low:.4g}, {high:.4g}]")
+    hit = home_collision(robot, wanted.home)
+    if hit is not None:
+        raise InputError(f"--home: {hit[0]} and {hit[1]} meet there")
+    return wanted.home
+
+
+def _covers(robot: Robot, told: Told) -> dict[tuple[str, int], tuple[Array, float]]:
+    found: dict[tuple[str, int], tuple[Array, float]] = {}
+    parts = [
+        (link.name, number, part.shape)
+        for link in robot.links
+        for number, part in enumerate(link.parts)
+        if isinstance(part.shape, Hull)
+    ]
+    for done, (name, number, hull) in enumerate(parts):
+        told("spheres around the links", done / len(parts))
+        spheres = cover(hull)
+        if spheres is not None:
+            found[name, number] = spheres
+    return found

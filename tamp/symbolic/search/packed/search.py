@@ -1,0 +1,224 @@
+"""Lazy search by the compiled loop: the same states in the same order as `lazy`, the same plan."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from tamp.symbolic.search.expansion import (
+    AUDIT_AFTER_STATES,
+    Plan,
+    Reason,
+    SearchLimitReached,
+    SearchSpace,
+)
+from tamp.symbolic.search.heuristics.goal_price import GoalPrice
+from tamp.symbolic.search.heuristics.landmarks import Landmarks
+from tamp.symbolic.search.heuristics.relaxation import Relaxation
+from tamp.symbolic.search.open_lists import PREFERRED_BOOST
+from tamp.symbolic.search.packed import loops
+from tamp.symbolic.search.packed.packing import pack_relaxation, pack_task
+from tamp.symbolic.search.successors import State, Successors
+
+KINDS = {"ff": 0, "landmarks": 1}
+"""The heuristics that the compiled loop knows, by their numbers."""
+
+LOOK_AROUND, MOST_ENTRIES = 100, 2_000_000
+"""States, and numbers that describe the task for each of them, after which it is asked whether the
+time is up: some hundredths of a second."""
+
+UNLIMITED = 1 << 62
+
+FIRST_NODES, FIRST_ENTRIES = 2_000, 40_000
+"""Room for states and entries to begin with; doubled as needed."""
+
+
+def fits(names: Sequence[str], successors: Successors) -> bool:
+    """Check that the compiled loop knows the heuristics, and has all guards at hand."""
+    return all(name in KINDS for name in names) and successors.lists_guards
+
+
+def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Plan | None:
+    """Search as `lazy.lazy` does."""
+    return PackedSearch(search, names, weight).plan()
+
+
+class Stalled(Exception):
+    """Says that a search has expanded as many states as it was to."""
+
+
+class PackedSearch:
+    """A search under way: its arrays, and what stops the loop now and then.
+
+    Args:
+        search: The task, the limits, and the counts, which this one adds to.
+        names: The heuristics.
+        weight: Of the estimates; infinite is greedy search.
+        random: Shuffles operators that look alike; 0 keeps to their order. The older of equal
+            states then comes first, the younger otherwise.
+        achievers: Whether operators that reach a landmark for the first time are preferred too.
+    """
+
+    def __init__(
+        self,
+        search: SearchSpace,
+        names: Sequence[str],
+        weight: float,
+        random: int = 0,
+        achievers: bool = False,
+    ) -> None:
+        from tamp.symbolic.search.packed import compiled
+
+        self._compiled = compiled
+        self._search, self._weight = search, weight
+        s, kinds = search.successors, len(names)
+        marks = Landmarks(s) if "landmarks" in names else None
+        self._possible = marks is None or marks.possible
+
+        self._arena = arena = compiled.Arena(loops.SIZES + 4 * kinds, kinds)
+        numbers = [KINDS[name] for name in names]
+        self._t = t = pack_task(s, numbers, arena.integers, arena.reals)
+        relaxation = Relaxation(s, steps=True)
+        self._r = r = pack_relaxation(s, relaxation, marks, arena.integers, arena.reals)
+        self._x = arena.scratch(t, r)
+
+        entries = max(FIRST_ENTRIES, 4 * len(s.operators))
+        self._space, self._ints, self._reals = arena.begin(t, r, FIRST_NODES, entries)
+        self._goal_price = GoalPrice(s)
+        self._goal_cost = math.inf
+        self._seen = 0, 0
+        self._pace = max(1, min(LOOK_AROUND, MOST_ENTRIES // (1 + s.entries)))
+        self._begin(kinds)
+        self._ints[loops.RANDOM], self._ints[loops.ACHIEVERS] = random, achievers
+
+    def _begin(self, kinds: int) -> None:
+        """Set the counters, and put the initial state into the usual list of each heuristic."""
+        space, ints, reals, limit = self._space, self._ints, self._reals, self._search.limit
+        ints[loops.GOAL_NODE], ints[loops.BOOST] = -1, PREFERRED_BOOST
+        ints[loops.LIMIT] = UNLIMITED if limit is None else limit
+        reals[:kinds] = math.inf
+
+        reals[space.entry_cost], ints[space.entry_parent] = 0.0, -1
+        ints[space.entry_operator], ints[loops.ENTRIES] = -1, 1
+        for k in range(kinds):
+            place = k * space.entries
+            reals[space.keys + place] = ints[space.ties + place] = ints[space.items + place] = 0
+            ints[loops.SIZES + k] = 1
+
+    @property
+    def expanded(self) -> int:
+        """Return how many states this search itself has expanded."""
+        return int(self._ints[loops.EXPANDED])
+
+    def plan(self, until: int = UNLIMITED) -> Plan | None:
+        """Run the loop until there is a plan, or nothing is left, or a limit is reached.
+
+        Args:
+            until: Expanded states after which the search pauses; it can go on later.
+
+        Raises:
+            Stalled: So many are expanded.
+        """
+        search = self._search
+        if not self._possible:
+            search.evaluated = 1
+            s = search.successors
+            return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
+        while True:
+            n = self._ints
+            n[loops.UNTIL] = self._until(until)
+            why = self._compiled.RUN(
+                n, self._reals, self._t, self._r, self._x, self._space, self._weight, search.below
+            )
+            self._count()
+            if why == loops.EXHAUSTED:
+                return None
+            if why == loops.FOUND:
+                return self._extract(int(n[loops.GOAL_NODE]))
+            if why == loops.GOAL:
+                if self._take_goal(int(n[loops.AT])):
+                    return self._extract(int(n[loops.AT]))
+            elif why == loops.LIMITED:
+                raise SearchLimitReached(Reason.LIMIT)
+            elif why == loops.GROW:
+                self._grow()
+            else:
+                self._look_around()
+                if self.expanded >= until:
+                    raise Stalled
+
+    def _count(self) -> None:
+        """Add to the counts of all searches what this one has done since."""
+        expanded, evaluated = self.expanded, int(self._ints[loops.EVALUATED])
+        self._search.expanded += expanded - self._seen[0]
+        self._search.evaluated += evaluated - self._seen[1]
+        self._seen = expanded, evaluated
+
+    def _until(self, most: int) -> int:
+        """Return after how many expanded states the loop is to stop."""
+        until = min(most, self.expanded + self._pace)
+        if self.expanded < AUDIT_AFTER_STATES:
+            until = min(until, AUDIT_AFTER_STATES)
+        return until
+
+    def _look_around(self) -> None:
+        search = self._search
+        if search.expanded == AUDIT_AFTER_STATES and search.audit is not None and search.audit():
+            raise SearchLimitReached(Reason.UNSOLVABLE)
+        if search.deadline is not None and search.deadline.passed:
+            raise SearchLimitReached(Reason.TIME)
+
+    def _grow(self) -> None:
+        """Double the room for states, for entries, or for both."""
+        space, n = self._space, self._ints
+        made = int(n[loops.NODES]), int(n[loops.ENTRIES])
+        nodes, entries = space.nodes, space.entries
+        if made[0] + 1 >= nodes // 2:
+            nodes *= 2
+        if made[1] + len(self._search.successors.operators) >= entries // 2:
+            entries *= 2
+        self._space, self._ints, self._reals = self._arena.grow(
+            self._t, self._r, (space, n, self._reals), nodes, entries, made
+        )
+
+    def _take_goal(self, node: int) -> bool:
+        """Take a goal state at once where its goal is free; else have it wait for a cheaper one."""
+        cost, price = (
+            float(self._reals[self._space.cost + node]),
+            self._goal_price(self._state(node)),
+        )
+        if price == 0.0:
+            return True
+        if cost + price < self._goal_cost:
+            self._goal_cost = cost + price
+            key = price if self._weight == math.inf else self._goal_cost
+            self._compiled.PUSH_GOAL(
+                self._ints, self._reals, self._t, self._space, node, self._goal_cost, key
+            )
+        return False
+
+    def _state(self, node: int) -> State:
+        words = self._t.words
+        state, place = 0, self._space.states + node * words
+        for w, word in enumerate(self._ints[place : place + words].tolist()):
+            state |= (word & (1 << 64) - 1) << 64 * w
+        return state
+
+    def _extract(self, node: int) -> Plan:
+        """Extract the plan to a state, without the actions that it does not need."""
+        space, ints, t, x = self._space, self._ints, self._t, self._x
+        numbers: list[int] = []
+        while ints[space.parent + node] >= 0:
+            numbers.append(int(ints[space.operator + node]))
+            node = int(ints[space.parent + node])
+
+        # the open lists are needed no longer: there is room in them
+        plan, kept = space.ties, space.items
+        ints[plan : plan + len(numbers)] = numbers[::-1]
+        ints[x.rooms : x.rooms + t.words] = ints[t.initial : t.initial + t.words]
+        count, cost = self._compiled.ELIMINATE(
+            ints, self._reals, t, x, x.rooms, plan, kept, len(numbers)
+        )
+        operators = self._search.successors.operators
+        steps = ints[kept : kept + count].tolist()
+        return Plan(tuple(operators[i] for i in steps), float(cost))

@@ -1,0 +1,62 @@
+"""Selection of the loop: plain Python at first, the compiled one once it pays.
+
+Both find the same plans, so the choice is about time alone.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import zlib
+from pathlib import Path
+
+LOAD_THRESHOLD = 2_000_000
+"""Entries of relaxed tasks, over all states that plain Python evaluated in this process, before the
+compiled loop is loaded: about as long as loading takes."""
+
+COMPILE_THRESHOLD = 20_000_000
+"""Entries before it is compiled, where that has not been done: half as long as compiling takes,
+since nobody's time is spent on that."""
+
+PATIENCE = 50
+"""States after which a search in plain Python asks whether to begin anew in the compiled loop."""
+
+FOLDER = Path(__file__).resolve().parent
+SOURCES = ("basics", "estimates", "states", "loops")
+KEPT = ("run", "eliminate")
+
+
+class _Meter:
+    """A meter of what plain Python has gone through in this process."""
+
+    entries = 0
+    enough: int | None = None
+
+
+_METER = _Meter()
+
+
+def digest() -> str:
+    """Return what names compiled loops: their sources' hash."""
+    sources = b"".join((FOLDER / f"{name}.py").read_bytes() for name in SOURCES)
+    return f"{zlib.crc32(sources):08x}"
+
+
+def compiled_before() -> bool:
+    """Check that numba's cache beside the sources has all loops, made of these sources."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return False
+    made = digest()
+    return all(any((FOLDER / "__pycache__").glob(f"*.{name}_{made}-*.nbi")) for name in KEPT)
+
+
+def pays(entries: int) -> bool:
+    """Check whether the compiled loop pays, after so much more work in plain Python."""
+    _METER.entries += entries
+    if "tamp.symbolic.search.packed.compiled" in sys.modules:
+        return True
+    if _METER.entries <= LOAD_THRESHOLD:
+        return False
+    if _METER.enough is None:
+        _METER.enough = LOAD_THRESHOLD if compiled_before() else COMPILE_THRESHOLD
+    return _METER.entries > _METER.enough

@@ -1,0 +1,54 @@
+"""The timeline of a robot alone: each joint goes through its range, one after the other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import RobotStart, Room, Scene
+from tamp.view.timeline import ShownAction, Timeline
+
+SIDE = 1.5
+"""Half the side of the room in which it stands, metres."""
+
+SECONDS = 4.0
+"""That a joint takes through its range and back."""
+
+
+def robot_timeline(robot: Robot, model: str) -> Timeline:
+    """Make the timeline: at home, each joint of the arm down to its lower limit, up to its upper
+    one and back; then the fingers close and open.
+    """
+    start = RobotStart(model, (0.0, 0.0, 0.0), None)
+    scene = Scene(robot.name, {}, start, Room((-SIDE, SIDE), (-SIDE, SIDE)))
+    home = np.array([0.0, 0.0, 0.0, *robot.home, robot.opening])
+    actions: list[ShownAction] = []
+    times: list[float] = [0.0]
+    rows: list[Array] = [home]
+
+    def go(name: str, column: int, values: tuple[float, ...], where: str) -> None:
+        began = times[-1]
+        for number, value in enumerate(values, start=1):
+            row = home.copy()
+            row[column] = value
+            times.append(began + SECONDS * number / len(values))
+            rows.append(row)
+        actions.append(ShownAction(name, (), began, times[-1], where))
+
+    limits = zip(robot.joints, robot.lower, robot.upper, robot.home, strict=True)
+    for index, (joint, low, high, middle) in enumerate(limits):
+        unit = "m" if joint.kind == "prismatic" else "rad"
+        go(joint.name, 3 + index, (low, middle, high, middle), f"{low:.2f} to {high:.2f} {unit}")
+    widest = robot.opening
+    go("fingers", len(home) - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
+    return Timeline(scene, robot, tuple(actions), np.array(times), np.array(rows), {})
+
+
+def described(robot: Robot) -> str:
+    """Describe a robot in a line."""
+    parts = sum(len(link.parts) for link in robot.links)
+    return (
+        f"{robot.name} · {len(robot.joints)} joints · {robot.drive} base · {parts} convex parts · "
+        f"the fingers open {1000 * robot.opening:.0f} mm"
+    )

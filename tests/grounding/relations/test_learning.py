@@ -1,0 +1,154 @@
+"""Learning from a few demonstrations: what is learned, what is refused, what is warned of."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.relations.geometry import pick, situations, trouble
+from benchmarks.relations.measure import Case, accuracy, holding, measured, steady
+from benchmarks.relations.relations import RELATIONS, put, scenes, shown
+from grounding.relations.asking import questions
+from grounding.relations.committee import fit
+from grounding.relations.demonstration_file import Demonstration, demonstrations_of
+from grounding.relations.evidence import gather
+from grounding.relations.learner import learn, trained
+from grounding.relations.situation import joined, situation_of
+from grounding.relations.variety import missing, unvaried
+from grounding.relations.words import explanations
+from tamp.errors import InputError
+from tests.grounding.relations.shown import write_demos
+
+
+@pytest.fixture(scope="module")
+def demos(tmp_path_factory: pytest.TempPathFactory) -> list[Demonstration]:
+    return list(demonstrations_of("left_of", [write_demos(tmp_path_factory.mktemp("demos"))]))
+
+
+@pytest.mark.parametrize("name", ["upright", "stack", "left_of_other", "between"])
+def test_twenty_labels_are_enough_on_unseen_bodies(name: str) -> None:
+    found = measured(Case(name, 10, 10, seed=1))
+    assert float(found["classifier"]) > 0.85 and float(found["proposals"]) > 0.85
+
+
+def test_more_labels_are_no_worse() -> None:
+    rng = np.random.default_rng(3)
+    good, bad = shown("set_cup", 80, True, rng), shown("set_cup", 80, False, rng)
+    every = joined([situations(good), situations(bad)])
+    committee, generator = trained(every, np.arange(160) < 80, rng)
+    assert accuracy(committee, "set_cup", rng) > 0.93
+    assert holding(generator, "set_cup", rng)[0] > 0.9
+
+
+def test_several_proposals_differ_and_hold() -> None:
+    rng = np.random.default_rng(0)
+    good, bad = shown("next_to", 10, True, rng), shown("next_to", 10, False, rng)
+    _, generator = trained(joined([situations(good), situations(bad)]), np.arange(20) < 10, rng)
+    s = put("next_to", scenes("next_to", 6, rng, test=True), rng)
+    faces: set[int] = set()
+    for row in range(6):
+        one = pick(s, [row])
+        R, p = generator.propose(situations(one), 16, rng, steady(one, 0))
+        many = pick(s, [row] * len(R))
+        many["R"][:, 0], many["p"][:, 0] = R, p
+        assert len(R) == 16 and (RELATIONS["next_to"].holds(many) & (trouble(many) < 0.002)).mean() > 0.8
+        apart = np.abs(p[:, None] - p).max(axis=2) + 10 * np.abs(R[:, None] - R).max(axis=(2, 3))
+        assert (apart + np.eye(16)).min() > 1e-3
+        faces |= {*np.abs(R[:, 2]).argmax(axis=1).tolist()}
+    assert len(faces) > 1  # turned as you like: on other sides, too
+
+
+def test_the_same_seed_learns_the_same(demos: list[Demonstration]) -> None:
+    one, other = (learn("left_of", demos, np.random.default_rng(5)) for _ in range(2))
+    assert (one.committee.low == other.committee.low).all() and one.held_out == other.held_out
+    assert (one.generator.shown.place == other.generator.shown.place).all()
+
+
+def test_what_was_learned_is_said_in_words(demos: list[Demonstration]) -> None:
+    learned = learn("left_of", demos, np.random.default_rng(0))
+    said = explanations(learned.committee, ("cup", "plate"))
+    assert any("gap left of plate seen from the front" in one for one in said)
+    assert all(one.endswith("turned as you like") for one in said) and 1 <= len(said) <= 3
+    assert learned.held_out is not None and learned.held_out.mean > 0.85 and not learned.cannot_tell
+
+
+def test_a_situation_with_both_labels_is_refused_with_both_places(tmp_path: Path) -> None:
+    folder = write_demos(tmp_path, good=4, bad=4)
+    text = (
+        (folder / "left_of_000.yaml")
+        .read_text()
+        .replace("goal: (left_of cup plate)", "goal: (not (left_of cup plate))")
+    )
+    (folder / "left_of_900.yaml").write_text(text)
+    with pytest.raises(InputError, match=r"same situation: .*left_of_000.yaml.* and .*left_of_900.yaml"):
+        learn("left_of", list(demonstrations_of("left_of", [folder])), np.random.default_rng(0))
+
+
+def test_labels_at_random_are_refused(demos: list[Demonstration]) -> None:
+    refused = 0
+    for seed in range(4):
+        labels = np.random.default_rng(seed).permutation([one.holds for one in demos])
+        mixed = [
+            Demonstration(one.scene, one.arguments, bool(label), one.source)
+            for one, label in zip(demos, labels, strict=True)
+        ]
+        with contextlib.suppress(InputError):
+            assert learn("left_of", mixed, np.random.default_rng(0)).cannot_tell
+            continue
+        refused += 1
+    assert refused >= 3
+    with pytest.raises(InputError, match="cannot be learned from these labels"):
+        learn("left_of", mixed, np.random.default_rng(0))
+
+
+def test_one_label_alone_only_proposes(demos: list[Demonstration]) -> None:
+    positive = [one for one in demos if one.holds][:5]
+    learned = learn("left_of", positive, np.random.default_rng(0))
+    assert "shown only where it holds" in learned.cannot_tell and learned.held_out is None
+    with pytest.raises(InputError, match="holds in none of 10 demonstrations"):
+        learn("left_of", [one for one in demos if not one.holds], np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(
+    ("fixed", "key", "words"),
+    [
+        ({"height": 0.7}, "height", "all surfaces were 0.7 m high"),
+        ({"yaw": 0.4}, "yaw", "all furniture was turned the same way"),
+        ({"cup": 0.04}, "size of 0", "cup was always 8 x 8 x 8 cm large"),
+    ],
+)
+def test_what_is_not_varied_is_warned_of(fixed: dict[str, float], key: str, words: str, tmp_path: Path) -> None:
+    found = list(demonstrations_of("left_of", [write_demos(tmp_path, good=6, bad=6, **fixed)]))
+    every = joined([situation_of(one.scene, one.arguments) for one in found])
+    holds = np.array([one.holds for one in found])
+    warned = dict(unvaried(every, holds, ("cup", "plate")))
+    assert words in warned[key] and "size of 1" not in warned
+    assert not missing(holds)
+
+
+def test_varied_demonstrations_are_not_warned_of(demos: list[Demonstration]) -> None:
+    every = joined([situation_of(one.scene, one.arguments) for one in demos])
+    assert unvaried(every, np.array([one.holds for one in demos]), ("cup", "plate")) == []
+
+
+def test_lazy_heights_cost_nothing_and_one_yaw_is_warned_of() -> None:
+    found = measured(Case("left_of_other", 10, 10, 0, "height"))
+    assert float(found["classifier"]) > 0.85 and "height" in str(found["warned"])
+    found = measured(Case("left_of_front", 10, 10, 0, "yaw"))
+    assert "yaw" in str(found["warned"]).split()
+
+
+def test_questions_are_about_what_is_disputed() -> None:
+    rng = np.random.default_rng(0)
+    good, bad = (situations(shown("left_of_front", count, holds, rng)) for count, holds in ((4, True), (3, False)))
+    evidence = gather(good, bad, rng)
+    committee = fit(evidence)
+    sure = situations(shown("left_of_front", 30, False, rng, test=True))
+    pool = joined([sure, situations(shown("left_of_front", 30, True, rng, test=True))])
+    rows = questions(evidence, committee, pool, 5)
+    assert len({*rows.tolist()}) == 5
+    doubt = 1 - np.abs(2 * committee.predict(pool) - 1)
+    assert doubt[rows].mean() > doubt.mean()

@@ -1,0 +1,153 @@
+"""What cannot become a robot: one clear error each, and nothing written."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tamp
+from tamp.commands.robot import main
+from tamp.errors import InputError
+from tests.robots.urdf import SIX, arm_text
+
+BRANCH = """
+<link name="second"/><link name="third"/>
+<joint name="b1" type="revolute"><parent link="foot"/><child link="second"/><limit lower="-1" upper="1"/></joint>
+<joint name="b2" type="revolute"><parent link="second"/><child link="third"/><limit lower="-1" upper="1"/></joint>
+"""
+FINGERS = """
+<link name="left"><collision><geometry><box size="0.02 0.02 0.05"/></geometry></collision></link>
+<link name="right"><collision><geometry><box size="0.02 0.02 0.05"/></geometry></collision></link>
+<joint name="l" type="prismatic"><parent link="tool"/><child link="left"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="0.04"/></joint>
+<joint name="r" type="{kind}"><parent link="tool"/><child link="right"/><axis xyz="{axis}"/>
+<limit lower="0" upper="0.04"/></joint>
+"""
+ARM = ("--arm", "foot", "tool")
+
+
+def changed(number: int, kind: str | None = None, limits: str | None = None):
+    joint = SIX[number]
+    new = (joint[0], kind or joint[1], *joint[2:4], joint[4] if limits is None else limits)
+    return (*SIX[:number], new, *SIX[number + 1 :])
+
+
+CASES = {
+    "no-file": (None, ARM, r"no such file"),
+    "no-xml": ("this is no XML", ARM, r"arm.urdf.*syntax error"),
+    "no-robot": ("<model/>", ARM, r"not a URDF"),
+    "unknown-link": (arm_text(), ("--arm", "foot", "tol"), r"unknown link 'tol'.*Did you mean 'tool'"),
+    "other-branch": (arm_text(extra=BRANCH), ("--arm", "second", "tool"), r"'tool' does not hang on 'second'"),
+    "branches": (arm_text(extra=BRANCH), (), r"branches: 2 chains.*--arm foot tool"),
+    "no-limits": (arm_text(changed(1, limits="")), ARM, r"joint 'lift' has no limits.*<limit"),
+    "swapped": (arm_text(changed(1, limits="3 -3")), ARM, r"'lift': its limits 3 and -3 are swapped"),
+    "floating": (arm_text(changed(1, kind="floating")), ARM, r"floating joints"),
+    "unknown-kind": (arm_text(changed(1, kind="rotary")), ARM, r"unknown type 'rotary'"),
+    "no-shapes": (
+        arm_text().replace("<collision>", "<visual>").replace("</collision>", "</visual>"), ARM,
+        r"no collision shapes.*<collision>",
+    ),
+    "lost-mesh": (
+        arm_text().replace('<box size="0.12 0.12 0.1"/>', '<mesh filename="lost.stl"/>'), ARM, r"'lost.stl', which",
+    ),
+    "broken-mesh": (
+        arm_text().replace('<box size="0.12 0.12 0.1"/>', '<mesh filename="broken.stl"/>'), ARM, r"broken.stl",
+    ),
+    "too-high": (arm_text(), (*ARM, "--base", "fixed", "--height", "9"), r"reaches nothing.*nor any table"),
+    "wide": (arm_text(), (*ARM, "--opening", "3"), r"opens from 0.01 to 0.2 m"),
+    "fingers-unknown": (arm_text(), (*ARM, "--gripper", "l", "r"), r"unknown joint 'l'"),
+    "fingers-turn": (
+        arm_text(extra=FINGERS.format(kind="revolute", axis="0 1 0")), (*ARM, "--gripper", "l", "r"), r"'r' turns",
+    ),
+    "fingers-part": (
+        arm_text(extra=FINGERS.format(kind="prismatic", axis="0 1 0")), (*ARM, "--gripper", "l", "r"),
+        r"do not move towards each other: the gripper cannot close",
+    ),
+    "fingers-overlap": (
+        arm_text(extra=FINGERS.format(kind="prismatic", axis="0 -1 0")), (*ARM, "--gripper", "l", "r"),
+        r"in each other at 0: the gripper cannot close",
+    ),
+    "home-count": (arm_text(), (*ARM, "--home", "0", "0"), r"--home: 6 numbers are expected"),
+    "home-limits": (arm_text(), (*ARM, "--home", "9", "0", "0", "0", "0", "0"), r"--home: pan = 9 is not within"),
+    "stands": (arm_text(), (*ARM, "--stands", "x"), r"--stands x: JOINT=VALUE"),
+    "stands-unknown": (arm_text(), (*ARM, "--stands", "x=1"), r"unknown joint 'x'"),
+    "drive": (arm_text(), (*ARM, "--base", "flying"), r"unknown drive 'flying'.*omnidirectional"),
+    "two-roots": (arm_text(extra='<link name="alone"/>'), ARM, r"several roots: foot, alone"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_bad_urdf_is_one_clear_error(
+    name: str, quick: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, options, says = CASES[name]
+    file, out = tmp_path / "arm.urdf", tmp_path / "made" / "arm"
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing\nfacet normal\n")
+    if text is not None:
+        file.write_text(text, encoding="utf-8")
+    assert main(["make", str(file), "--out", str(out), "--quiet", *options]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ") and error.count("\n") == 1 and "Traceback" not in error
+    assert re.search(says, error), error
+    assert not (tmp_path / "made").exists() or not list((tmp_path / "made").iterdir())
+
+
+def test_another_folder_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "letter.txt").write_text("dear")
+    (tmp_path / "arm.urdf").write_text(arm_text())
+    assert main(["make", str(tmp_path / "arm.urdf"), *ARM, "--out", str(tmp_path / "mine")]) == 2
+    assert "no robot's folder" in capsys.readouterr().err
+    assert (tmp_path / "mine" / "letter.txt").read_text() == "dear"
+
+
+def yaml(old: str, new: str):
+    def change(folder: Path) -> None:
+        file = folder / "robot.yaml"
+        text = file.read_text()
+        assert old in text
+        file.write_text(text.replace(old, new, 1))
+
+    return change
+
+
+DAMAGED = {
+    "version": (yaml("version: 1", "version: 7"), r"robot.yaml:3: version: version 7 .*only 1.*Make it again"),
+    "format": (yaml("format: tamp-robot", "format: other"), r"not a robot"),
+    "drive": (yaml("drive: differential", "drive: hover"), r"unknown drive 'hover'"),
+    "home": (yaml("home: [", "home: [99, "), r"home: expected 6 numbers, found 7"),
+    "key": (yaml("  foot:", "  feet:"), r"unknown key 'feet'. Choices: foot, mount"),
+    "pair": (yaml("allowed:\n  - base", "allowed:\n  - bass"), r"unknown link 'bass'"),
+    "no-geometry": (lambda folder: (folder / "geometry.npz").unlink(), r"geometry.npz is missing"),
+    "cut-geometry": (
+        lambda folder: (folder / "geometry.npz").write_bytes((folder / "geometry.npz").read_bytes()[:5000]),
+        r"geometry.npz: damaged.*Make the robot again",
+    ),
+    "no-yaml": (lambda folder: (folder / "robot.yaml").unlink(), r"has no robot.yaml"),
+    "no-table": (lambda folder: (folder / "reachability.npz").unlink(), r"reachability table is missing"),
+    "cut-table": (
+        lambda folder: (folder / "reachability.npz").write_bytes(b"PK"), r"reachability.npz: damaged",
+    ),
+    "wrong-table": (
+        lambda folder: np.savez(folder / "reachability.npz", heights=np.zeros(3)), r"reachability.npz: damaged",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_a_damaged_folder_is_one_clear_error_before_planning(name: str, driving: Path, tmp_path: Path) -> None:
+    change, says = DAMAGED[name]
+    folder = tmp_path / "boxes"
+    shutil.copytree(driving, folder)
+    change(folder)
+    with pytest.raises(InputError, match=says):
+        tamp.load_problem("one_object", robot=folder)
+
+
+def test_an_unknown_robot_names_the_known_ones() -> None:
+    with pytest.raises(InputError, match=r"unknown robot 'pnada_mobile'.*Did you mean 'panda_mobile'"):
+        tamp.load_problem("one_object", robot="pnada_mobile")

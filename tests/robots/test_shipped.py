@@ -1,0 +1,54 @@
+"""Every robot that comes with tamp plans, is judged sound, and carries its plan out in physics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tamp
+from tamp.execution.execute import Circumstances, execute
+from tamp.geometric.loading.robots import ROBOTS, SHIPPED
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.plan.open import open_plan
+from tamp.robots.check import against_physics
+from tamp.robots.self_collision import home_collision
+from tamp.verification.verify import verify
+
+
+def problem_for(name: str, size: str) -> str:
+    return f"bench_{size}" if ROBOTS[name]().drive == "fixed" else size
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_its_frames_are_pybullets_and_home_is_free(name: str) -> None:
+    robot = ROBOTS[name]()
+    assert robot.name == name
+    assert against_physics(robot) < 1e-5
+    assert home_collision(robot, robot.home) is None
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_reachable_poses_are_solved(name: str) -> None:
+    robot = ROBOTS[name]()
+    ik, kinematics, rng = ArmIK(robot), Kinematics(robot), np.random.default_rng(0)
+    missed = 0
+    for _ in range(300):
+        T = kinematics.arm_tool(rng.uniform(robot.lower, robot.upper))
+        missed += len(ik.solve(T, enough=1)) == 0
+    assert missed <= 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("size", ["one_object", "four_objects"])
+def test_it_solves_a_problem_that_is_judged_and_carried_out(name: str, size: str, tmp_path: Path) -> None:
+    solution = tamp.solve(tamp.load_problem(problem_for(name, size), robot=name), max_time=60.0, seed=0)
+    assert solution.solved
+    plan = tmp_path / "plan.json"
+    tamp.write_plan(solution, plan)
+    report = verify(plan)
+    assert report.holds, report.text()
+    assert execute(open_plan(plan), Circumstances(grasp="constraint")).reached

@@ -1,0 +1,199 @@
+"""The compiled loop of lazy search finds what the plain one finds, states counted, ties included."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import tamp.symbolic.search.search as search_module
+from benchmarks.classical_domains import GENERATORS
+from tamp.symbolic.pddl.parser import parse_domain, parse_task
+from tamp.symbolic.search.instantiation.instantiator import instantiate
+from tamp.symbolic.search.operators import InstantiatedTask
+from tamp.symbolic.search.packed import restarts, selection
+from tamp.symbolic.search.packed import search as packed_search
+from tamp.symbolic.search.packed.packing import pairs_of, signed, words_of
+from tamp.symbolic.search.search import Result, search
+from tests.symbolic.search.interpreter import Interpreter
+from tests.symbolic.search.test_prices import instances, random_prices
+from tests.symbolic.search.test_random_tasks import random_task
+
+WAYS = (
+    ("greedy", "ff"),
+    ("greedy", "ff+landmarks"),
+    ("greedy", "landmarks"),
+    ("wastar", "ff"),
+    ("wastar", "landmarks+ff"),
+)
+
+
+STALL = 10**9
+"""No restarts: those are the compiled loop's alone."""
+
+
+def told(result: Result) -> tuple[object, ...]:
+    plan = None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
+    return plan, result.reason, result.expanded, result.evaluated
+
+
+def compare(monkeypatch: pytest.MonkeyPatch, instantiated: InstantiatedTask, price: dict, **options: object) -> Result:
+    """Search in both loops, and once from the one into the other."""
+    monkeypatch.setattr(restarts, "STALLED", STALL)
+    monkeypatch.setattr(search_module, "STALLED", STALL)
+    results: list[Result] = []
+    for pays in (lambda entries: False, lambda entries: True, lambda entries: entries > 0):
+        monkeypatch.setattr(selection, "pays", pays)
+        results.append(search(instantiated, price=price, **options))  # pyright: ignore[reportArgumentType]
+    assert told(results[0]) == told(results[1]) == told(results[2])
+    return results[0]
+
+
+@pytest.mark.parametrize("block", range(10))
+def test_random_tasks_with_random_prices(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negation, derived predicates, conditional effects, prices of operators, guards and goals."""
+    plans = 0
+    for seed in range(40 * block, 40 * block + 40):
+        rng = Random(seed)
+        instantiated = instantiate(random_task(rng))
+        static = frozenset().union(
+            *(o.static for o in instantiated.operators), *(a.static for a in instantiated.axioms)
+        )
+        price = random_prices(rng, static) if seed % 2 else {}
+        name, heuristic = WAYS[seed % len(WAYS)]
+        limit = rng.choice((None, None, 3, 20))
+        weight = rng.choice((1.0, 2.5, 5.0))
+        found = compare(monkeypatch, instantiated, price, search=name, heuristic=heuristic, limit=limit, weight=weight)
+        plans += found.plan is not None
+    assert plans >= 10
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("name", ["greedy", "wastar"])
+def test_guards_of_all_kinds(seed: int, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Guards with prices and without, listed and lazy; a limit of the cost."""
+    _, prices, listed, assumed = instances(seed)
+    for instantiated in (listed, assumed):
+        found = compare(monkeypatch, instantiated, prices, search=name)
+        if name == "wastar" and found.plan is not None:
+            compare(monkeypatch, instantiated, prices, search=name, below=float(len(found.plan.operators)))
+
+
+SIZES = {"blocks": 9, "logistics": 6, "gripper": 8, "rovers": 4, "satellite": 5, "depot": 4, "miconic": 6, "network": 6}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_classical_tasks(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whole and broken costs; arrays that have to grow on the way."""
+    monkeypatch.setattr(packed_search, "FIRST_NODES", 3)
+    monkeypatch.setattr(packed_search, "FIRST_ENTRIES", 5)
+    domain, problem = GENERATORS[name](SIZES[name], Random(3))
+    instantiated = instantiate(parse_task(problem, parse_domain(domain)))
+    for way in (("greedy", "ff+landmarks"), ("wastar", "ff")):
+        found = compare(monkeypatch, instantiated, {}, search=way[0], heuristic=way[1], limit=3000)
+        assert found.expanded > 5
+
+
+def test_broken_costs_and_dear_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What no bucket is for: a cost that is no whole number, and one above all buckets."""
+    domain, problem = GENERATORS["rovers"](3, Random(1))
+    for length in ("0.5", "9000"):
+        changed = problem.replace("(= (length w0 w1) ", f"(= (length w0 w1) {length} ; ", 1)
+        assert changed != problem
+        lines = [line if length not in line else line.replace(" ; ", ")\n;", 1) for line in changed.split("\n")]
+        instantiated = instantiate(parse_task("\n".join(lines), parse_domain(domain)))
+        compare(monkeypatch, instantiated, {}, search="greedy", heuristic="ff+landmarks")
+
+
+def test_audits_and_limits_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    domain, problem = GENERATORS["depot"](8, Random(1))
+    instantiated = instantiate(parse_task(problem, parse_domain(domain)))
+    found = compare(monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", limit=700)
+    assert found.expanded == 700 and found.plan is None
+    asked: list[int] = []
+
+    def audit() -> bool:
+        asked.append(1)
+        return True
+
+    found = compare(monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", audit=audit)
+    assert found.expanded == 500 and found.plan is None and asked
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_words_are_those_of_the_state(seed: int) -> None:
+    rng = Random(seed)
+    one, other = rng.getrandbits(200) & rng.getrandbits(200), rng.getrandbits(200) & rng.getrandbits(130)
+    rebuilt = [0, 0]
+    for w, a, b in pairs_of(one, other):
+        for k, word in enumerate((a, b)):
+            assert -(1 << 63) <= word < 1 << 63
+            rebuilt[k] |= (word & (1 << 64) - 1) << 64 * w
+    assert rebuilt == [one, other]
+    assert sum((word & (1 << 64) - 1) << 64 * w for w, word in enumerate(words_of(one, 4))) == one
+    assert signed((1 << 64) - 1) == -1
+
+
+def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(selection.sys.modules, "tamp.symbolic.search.packed.compiled", raising=False)
+    for kept, enough in ((False, selection.COMPILE_THRESHOLD), (True, selection.LOAD_THRESHOLD)):
+        monkeypatch.setattr(selection, "_METER", selection._Meter())
+        monkeypatch.setattr(selection, "compiled_before", lambda kept=kept: kept)
+        assert not selection.pays(enough)
+        assert selection.pays(1)
+
+
+def test_only_what_was_made_of_these_sources_counts_as_compiled(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    (tmp_path / "__pycache__").mkdir()
+    for name in selection.SOURCES:
+        (tmp_path / f"{name}.py").write_text(name)
+    monkeypatch.setattr(selection, "FOLDER", tmp_path)
+    for name in selection.KEPT:
+        assert not selection.compiled_before()
+        (tmp_path / "__pycache__" / f"x.{name}_{selection.digest()}-7.py311.nbi").write_text("")
+    assert selection.compiled_before()
+    (tmp_path / f"{selection.SOURCES[0]}.py").write_text("another")
+    assert not selection.compiled_before()
+
+
+def test_luby_numbers() -> None:
+    assert [restarts.luby(k) for k in range(1, 16)] == [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]
+
+
+@pytest.mark.parametrize("heuristic", ["ff+landmarks", "ff"])
+def test_a_search_that_stalls_begins_anew_and_finds_a_plan(heuristic: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same seed gives the same plan, whichever loop it begins in; it holds by the book."""
+    for module in (restarts, search_module):
+        monkeypatch.setattr(module, "STALLED", 50)
+    monkeypatch.setattr(restarts, "UNIT", 200)
+    domain, problem = GENERATORS["depot"](8, Random(1))
+    task = parse_task(problem, parse_domain(domain))
+    instantiated = instantiate(task)
+    found: dict[tuple[int, bool], Result] = {}
+    for seed, packed in ((0, False), (0, True), (1, True), (2, True)):
+        monkeypatch.setattr(selection, "pays", lambda entries, packed=packed: packed)
+        found[seed, packed] = result = search(instantiated, search="greedy", heuristic=heuristic, seed=seed)
+        assert result.plan is not None
+        steps = [(operator.name, operator.arguments) for operator in result.plan.operators]
+        assert Interpreter(task).run(steps) == result.plan.cost
+    assert found[0, False].plan == found[0, True].plan
+    assert found[0, True].expanded > 50
+
+
+def test_restarts_prove_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (restarts, search_module):
+        monkeypatch.setattr(module, "STALLED", 2)
+    monkeypatch.setattr(restarts, "UNIT", 3)
+    seen = 0
+    for seed in range(150):
+        instantiated = instantiate(random_task(Random(seed)))
+        monkeypatch.setattr(selection, "pays", lambda entries: True)
+        packed = search(instantiated, search="greedy", heuristic="ff+landmarks")
+        plain = search(instantiated, search="greedy", heuristic="ff+landmarks", limit=10**6)
+        assert (packed.plan is None, packed.reason) == (plain.plan is None, plain.reason)
+        seen += packed.expanded > 2
+    assert seen >= 5
