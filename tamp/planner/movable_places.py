@@ -178,7 +178,7 @@ def circle(goal: Formula, scene: Scene) -> tuple[str, ...]:
 
 
 def _back_to(start: str, below: dict[str, set[str]]) -> tuple[str, ...]:
-    waiting = [(start,)]
+    waiting: list[tuple[str, ...]] = [(start,)]
     seen: set[str] = set()
     while waiting:
         chain = waiting.pop()

@@ -158,6 +158,7 @@ class _Maker:
             for name in (body, *self._load):
                 self.stays[name].append(PoseInterval(clock, False, tool @ self.stays[name][-1].T))
             self._load = ()
+
         columns = PARTS[segment.part]
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
@@ -166,6 +167,7 @@ class _Maker:
             row[-1] = opening
             self.times.append(clock + float(time))
             self.rows.append(row)
+
         if segment.attach is not None and segment.attach.body in self._names:
             hold, now = segment.attach, self.times[-1]
             self.stays[self._names[hold.body]].append(PoseInterval(now, True, hold.T_tool_body))
