@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import replace
+from itertools import permutations
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem
@@ -120,8 +121,9 @@ def _wanted(goal: Formula, domain: Domain) -> Iterator[tuple[str | None, str | N
             body, place = (None if term.startswith("?") else term for term in atom.terms)
             yield body, place
         elif atom.predicate in domain.derived_predicates:
-            # What a rule of the user's own asks for is not looked through.
-            yield None, None
+            # A rule of the user's own is not looked through: any two of its arguments are meant.
+            terms = [None if term.startswith("?") else term for term in atom.terms]
+            yield from permutations(terms, 2)
 
 
 def _atoms(formula: Formula) -> Iterator[Atom]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +13,13 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Scene
 from tamp.plan.write import plan_text
 from tamp.planner.problem import Problem, load_problem
 from tamp.planner.solve import solve
 from tamp.symbolic.algorithms.result import Outcome
+from tamp.system.files import shipped
 from tamp.verification.verify import verify
 
 HEAD = """\
@@ -202,3 +205,43 @@ def test_pairs_are_those_that_the_goal_names(problem_of: Callable[..., Problem])
     assert pairs("(on cube base)") == {("cube", "base")}
     assert pairs("(on cube table)") == set()
     assert pairs("(exists (?o - movable) (on ?o base))") == {("cube", "base"), ("tiny", "base"), ("can", "base")}
+
+
+class Beside:
+    """Proposes places on the body below, one beside its middle."""
+
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: np.random.Generator) -> list[Pose]:
+        below = scene.bodies[arguments[1]].pose
+        shifts = rng.uniform(-0.005, 0.005, size=(count, 2))
+        return [below @ Pose((float(x), float(y), 0.0615)) for x, y in shifts]
+
+
+def test_a_relation_of_ones_own_on_a_movable_body(tmp_path: Path) -> None:
+    folder = shipped("domains")
+    domain, streams = ((folder / f"carriers{end}").read_text() for end in (".pddl", ".streams.pddl"))
+    domain = domain.replace(
+        "    ; what follows\n",
+        "    (crowns ?o - movable ?p - pose ?below - movable ?pb - pose)\n    ; what follows\n"
+        "    (crowned ?o - movable ?below - movable)\n",
+    ).replace(
+        "  (:derived (loaded",
+        "  (:derived (crowned ?o - movable ?below - movable) (exists (?p - pose ?pb - pose)\n"
+        "    (and (crowns ?o ?p ?below ?pb) (at-pose ?o ?p) (at-pose ?below ?pb))))\n  (:derived (loaded",
+    )
+    streams = streams.rstrip()[:-1] + (
+        "  (:stream sample-crowned :inputs (?o ?below ?pb)\n"
+        "    :domain (and (stackable ?o ?below ?below) (pose ?below ?pb)) :fluents (at-pose) :outputs (?p)\n"
+        "    :certified (and (pose ?o ?p) (sampled ?o ?p) (borne ?o ?p ?below ?pb) (crowns ?o ?p ?below ?pb))))\n"
+    )
+    (tmp_path / "own.pddl").write_text(domain)
+    (tmp_path / "own.streams.pddl").write_text(streams)
+    file = tmp_path / "own.yaml"
+    file.write_text(f"{HEAD.replace('carriers', 'own.pddl')}{TOWER}goal: (crowned cube base)\n")
+
+    solution = solve(load_problem(file, groundings={"crowned": Beside()}), max_time=30.0, seed=0)
+    assert solution.outcome is Outcome.SOLVED, solution.explanation
+    document = json.loads(plan_text(solution))
+    assert steps(document)[-1] == "place-on cube"
+    assert steps(document)[0] == "pick can"
+    report = verify(document)
+    assert report.holds, report.text()

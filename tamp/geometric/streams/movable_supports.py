@@ -95,9 +95,6 @@ def _placements(
         yield refusal
         return
 
-    under = footing(context, below, below_pose)
-    here = _corners(region, T_world_region)
-
     def judge(proposal: Placement | Pose) -> Pose | Rejection:
         if isinstance(proposal, Pose):
             snapped = snap_to_region(faces, proposal, region, T_world_region)
@@ -110,20 +107,31 @@ def _placements(
         if isinstance(pose, Rejection):
             return pose
 
-        centre = pose.apply(centre_of_mass(context.scene.bodies[body])[None])[0, :2]
-        if min(inside(centre, polygon) for polygon in under) < MARGIN:
-            what = f"would tip {below}, or what that stands on"
-            return Rejection(what, kind=RejectionKind.UNSTABLE, bodies=(below,))
-
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
             return Rejection.hits(hit)
-        context.footings[body, pose] = (*under, here, base(context, body, pose))
-        return pose
+        return stood_on(context, body, pose, region, below, below_pose)
 
     mixture = context.mixtures[relation]
     at = {below: below_pose}
     yield from draw(context, relation, mixture, (body, region.name), judge, call, at)
+
+
+def stood_on(
+    context: Context, body: str, pose: Pose, region: Surface | Cavity, below: str, below_pose: Pose
+) -> Pose | Rejection:
+    """Return a pose at rest in a place of a movable body that is at a pose, or say that this would
+    tip; what may stand on the body there is kept for `footing`.
+    """
+    under = footing(context, below, below_pose)
+    centre = pose.apply(centre_of_mass(context.scene.bodies[body])[None])[0, :2]
+    if min(inside(centre, polygon) for polygon in under) < MARGIN:
+        what = f"would tip {below}, or what that stands on"
+        return Rejection(what, kind=RejectionKind.UNSTABLE, bodies=(below,))
+
+    here = _corners(region, below_pose @ region.pose)
+    context.footings[body, pose] = (*under, here, base(context, body, pose))
+    return pose
 
 
 def _no_room(
