@@ -31,6 +31,7 @@ class Options:
         grasps: friction, constraint.
         disturb: Disturbances; with one the plan is mended (--replan), and without any it is not.
         replan: Mend the plan without a disturbance as well.
+        engines: Names of physics engines.
         time: Budget of planning, seconds.
         jobs: Runs at a time.
         out: The name of the file under benchmarks/results.
@@ -42,12 +43,13 @@ class Options:
     grasps: tuple[str, ...] = ("constraint", "friction")
     disturb: tuple[str, ...] = ()
     replan: bool = False
+    engines: tuple[str, ...] = ("pybullet",)
     time: float = 30.0
     jobs: Annotated[int, tyro.conf.arg(aliases=["-j"])] = 1
     out: str = "execution.jsonl"
 
 
-def run(name: str, seed: int, grasp: str, disturb: str | None, options: Options) -> dict[str, Any]:
+def run(name: str, seed: int, grasp: str, disturb: str | None, engine: str, options: Options) -> dict[str, Any]:
     """Plan once and carry it out once. Times in seconds."""
     import tamp
     from tamp.commands.solve import registry
@@ -59,7 +61,8 @@ def run(name: str, seed: int, grasp: str, disturb: str | None, options: Options)
         return {"outcome": "no plan", "explanation": list(solution.explanation)}
     with tempfile.TemporaryDirectory() as folder:
         file = tamp.write_plan(solution, Path(folder) / "plan.json")
-        chosen = Chosen(grasp, disturb is not None or options.replan, disturb, seed, options.time)
+        mends = disturb is not None or options.replan
+        chosen = Chosen(grasp, mends, disturb, seed, options.time, engine=engine)
         done = carry_out(file, chosen, registry())
     return {
         "outcome": "reached" if done.reached else "explained" if done.explanation else "not reached",
@@ -80,33 +83,37 @@ def run(name: str, seed: int, grasp: str, disturb: str | None, options: Options)
 def main(options: Options) -> None:
     rows: list[dict[str, Any]] = []
     seeds = range(options.first, options.first + options.seeds)
-    cases = [(name, grasp, what) for name in options.problems for grasp in options.grasps
-             for what in options.disturb or (None,)]  # fmt: skip
+    cases = [(name, grasp, what, engine) for name in options.problems for grasp in options.grasps
+             for what in options.disturb or (None,) for engine in options.engines]  # fmt: skip
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-        for name, grasp, what in cases:
+        for name, grasp, what, engine in cases:
             began = time.monotonic()
-            futures = [pool.submit(run, name, seed, grasp, what, options) for seed in seeds]
+            futures = [pool.submit(run, name, seed, grasp, what, engine, options) for seed in seeds]
             results = []
             for seed, future in zip(seeds, futures, strict=True):
                 result = future.result()
                 results.append(result)
-                config = {"problem": name, "grasp": grasp, "disturb": what, "replan": options.replan}
+                config = {
+                    "problem": name, "grasp": grasp, "disturb": what, "replan": options.replan, "engine": engine,
+                }  # fmt: skip
                 record(options.out, seed=seed, config=config, **result)
                 if result["outcome"] != "reached":
                     story = [result.get("disturbance"), *result["explanation"], result.get("kinds")]
-                    print(f"  {name} {grasp} seed {seed} {result['outcome']}: {'; '.join(str(s) for s in story if s)}")
-            rows.append(_row(name, grasp, what, results))
-            print(f"{name} {grasp} {what or ''}: {time.monotonic() - began:.0f} s", flush=True)
+                    said = "; ".join(str(one) for one in story if one)
+                    print(f"  {name} {grasp} {engine} seed {seed} {result['outcome']}: {said}")
+            rows.append(_row(name, grasp, what, engine, results))
+            print(f"{name} {grasp} {what or ''} {engine}: {time.monotonic() - began:.0f} s", flush=True)
     table(rows, "carried out in physics")
 
 
-def _row(name: str, grasp: str, what: str | None, results: list[dict[str, Any]]) -> dict[str, Any]:
+def _row(name: str, grasp: str, what: str | None, engine: str, results: list[dict[str, Any]]) -> dict[str, Any]:
     counts = Counter(result["outcome"] for result in results)
     low, high = wilson(counts["reached"], len(results))
     kinds = sum((Counter(result.get("kinds", {})) for result in results), Counter())
     return {
         "problem": Path(name).stem,
         "grasp": grasp,
+        "engine": engine,
         "disturbance": what or "",
         "reached": f"{counts['reached']} of {len(results)}",
         "95 %": f"{100 * low:.0f}-{100 * high:.0f}",

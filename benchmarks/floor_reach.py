@@ -22,7 +22,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import load_problem
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 
 HEIGHT = 0.5
 """From where bodies are dropped, metres above the floor,"""
@@ -56,7 +56,7 @@ def dropped(context: Context, name: str, rng: np.random.Generator) -> Pose:
     turned: Array = np.array([x, y, z, w]) / np.linalg.norm([x, y, z, w])
     start = Pose((0.0, 0.0, HEIGHT), (float(turned[0]), float(turned[1]), float(turned[2]), float(turned[3])))
     body = context.scene.bodies[name]
-    with World(replace(context.scene, bodies={name: body}), dynamic=True) as world:
+    with open_world(replace(context.scene, bodies={name: body}), dynamic=True) as world:
         world.place(name, start.matrix)
         world.step(SECONDS)
         return Pose.from_matrix(world.pose(name))

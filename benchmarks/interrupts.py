@@ -102,6 +102,7 @@ def commands(folder: Path) -> list[list[str]]:
         ["tamp-execute", plan],
         ["tamp-export", plan],
         ["tamp-view", plan, "--no-browser"],
+        ["tamp-demo", "upright(o)", "--no-open", "--out", str(folder / "shown")],
         ["tamp-view", plan, "--video", str(folder / "film.gif")],
         ["tamp-bench", "run", "--problems", "one_object", "--seeds", "40", "--jobs", "2", "--out", "bench.jsonl"],
         ["tamp-bench", "run", "--problems", "one_object", "--seeds", "9", "--ray", "local", "--out", "ray.jsonl"],

@@ -26,7 +26,7 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Box, Scene
 from tamp.geometric.values import Grasp
 from tamp.planner.timed_trajectories import Segment
-from tamp.simulation.physics import World
+from tamp.simulation.physics import BulletWorld
 
 RATE = 240
 """Steps a second of the simulation."""
@@ -65,7 +65,7 @@ class Options:
     out: str = "replay_in_physics.jsonl"
 
 
-class Player(World):
+class Player(BulletWorld):
     """A scene under gravity with a robot on motors."""
 
     def __init__(self, scene: Scene, robot: Robot, force: float) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 from dataclasses import asdict, replace
 from functools import partial
@@ -26,6 +25,7 @@ from grounding.arguments import (
 from grounding.certainty import cannot_tell
 from grounding.cli_files import (
     check_out,
+    commit,
     encoder_file,
     mesh_files,
     read_data,
@@ -166,7 +166,7 @@ def _encoder(chosen: Encoder, show: Show) -> None:
         "seed": chosen.seed,
         "iterations": args.iterations,
         "validation Chamfer distance": score,
-        "commit": _commit(),
+        "commit": commit(),
     }
     write_weights(out, Weights(arrays, card))
     print(f"{out} written, validation Chamfer distance {score:.3e}")
@@ -191,7 +191,7 @@ def _train(chosen: Train, show: Show) -> None:
         iterations=chosen.iterations,
         encoder=encoder,
         state=out.with_suffix(".state"),
-        commit=_commit(),
+        commit=commit(),
     )
     check(chosen.relation, chosen.model, args)
     read = [*with_card(chosen.data or data_file(chosen.relation, "train")), *with_card(encoder)]
@@ -272,22 +272,6 @@ def _meshes(chosen: Generate | Explore) -> MeshFolder | None:
 
 def _missing(error: ImportError) -> InputError:
     return InputError(f"training needs {error.name}", remedy=install_command("learn"))
-
-
-def _commit() -> str:
-    """Return the commit of the checkout that this runs from; empty outside one."""
-    folder = Path(__file__).resolve().parent
-    try:
-        said = subprocess.run(
-            ["git", "rev-parse", "--short", "HEAD"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    except OSError:
-        return ""
-    return said.stdout.strip()
 
 
 def _show(text: str, *, last: bool = False, shown: Progress) -> None:

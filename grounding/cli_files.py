@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from pathlib import Path
 
 from grounding.arguments import Explore, Generate, data_file
@@ -59,3 +60,19 @@ def check_out(out: Path, form: str, read: list[Path], state: Path | None = None)
 def encoder_file(relation: str) -> Path:
     """Return the default path of a relation's encoder."""
     return Path("weights") / f"{relation}_encoder.safetensors"
+
+
+def commit() -> str:
+    """Return the commit of the checkout that this runs from; empty outside one."""
+    folder = Path(__file__).resolve().parent
+    try:
+        said = subprocess.run(
+            ["git", "rev-parse", "--short", "HEAD"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    except OSError:
+        return ""
+    return said.stdout.strip()

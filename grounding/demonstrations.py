@@ -17,7 +17,7 @@ from grounding.scenes import LabelledScene, SampledScene, Scenes, free, resting
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.stability.placement import resting_pose
-from tamp.simulation.drop import Drops
+from tamp.simulation.drops import Drops
 
 Kinds = Mapping[str, float]
 

@@ -17,7 +17,7 @@ from grounding.model import Model
 from grounding.oracles import NEAR, ItemOf, Verdict, paper_verdicts, settled
 from grounding.paper.blind import blind_ceiling
 from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 NOTHING = "nothing proposed"
 """What is counted where a model knows of no pose."""
@@ -86,7 +86,7 @@ def evaluate(
     published = np.zeros(2)
     items = ItemOf()
 
-    with Drops() as drops:
+    with open_drops() as drops:
         for done, index in enumerate(order):
             situation = data[int(index)].situation
             started = time.perf_counter()

@@ -35,7 +35,8 @@ from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import GROWTH
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.simulation.drop import Drops
+from tamp.simulation.drops import Drops
+from tamp.simulation.engines import open_drops
 
 STAYED, RESTED = "stayed", "came to rest"
 """How a relation can come to hold: the body stayed where it was put, or it fell and lies where it
@@ -284,4 +285,4 @@ def moved(pose: Array, rng: Random) -> Array:
 @lru_cache(maxsize=2)
 def _explorer(relation: str, weights: Path | None, folder: MeshFolder | None) -> Explorer:
     model = None if weights is None else load_model(weights)
-    return Explorer(Scenes(relation, "train", folder), Drops(), model)
+    return Explorer(Scenes(relation, "train", folder), open_drops(), model)

@@ -24,7 +24,7 @@ from grounding.paper.scenes import paper_supports
 from grounding.scenes import LabelledScene
 from grounding.supports import Support, household_supports
 from tamp.errors import InputError
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 LAYOUTS = {"household": DemonstrationGenerator, "paper": PaperDemonstrations}
 """Who lays scenes out: densely, on small and odd pieces, any face down; or as the paper's code."""
@@ -119,4 +119,4 @@ def kinds_of(relation: str, count: int) -> list[str]:
 def _maker(
     relation: str, split: str, folder: MeshFolder | None, layout: str
 ) -> DemonstrationGenerator | PaperDemonstrations:
-    return LAYOUTS[layout](relation, split, Drops(), folder)
+    return LAYOUTS[layout](relation, split, open_drops(), folder)

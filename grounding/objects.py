@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from grounding.bullet_objects import bullet_objects
 from grounding.household import SHAPES, YCB
 from grounding.mesh_folder import MeshFolder, read_folder, unusable
-from tamp.geometric.loading.meshes import find_mesh, load_mesh
 from tamp.geometric.scene.scene import Part
 
 SPLITS = ("train", "test")
@@ -54,17 +54,10 @@ def object_templates(
 
     if split == "test":
         found |= YCB
-    paths = {
-        f"random_{number:03d}": f"random_urdfs/{number:03d}/{number:03d}.urdf"
-        for number in RANDOM[split]
-    }
-    found |= {
-        name: load_mesh(find_mesh(f"pybullet_data/{path}", Path())).parts
-        for name, path in paths.items()
-    }
-    for path, scale in MESHES[split].items():
-        mesh = load_mesh(find_mesh(f"pybullet_data/{path}", Path()), (scale, scale, scale))
-        found[Path(path).stem] = mesh.parts
+    kept = bullet_objects()
+    names = [f"random_{number:03d}" for number in RANDOM[split]]
+    names += [Path(path).stem for path in MESHES[split]]
+    found |= {name: kept[name] for name in names}
 
     if folder is not None:
         found |= read_folder(folder).templates

@@ -12,7 +12,7 @@ from grounding.body_geometry import BodyGeometry
 from grounding.relation_scene import Placed, Region, RelationScene, gap
 from grounding.separation import Obstacles, separations
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.drop import Drops, Item
+from tamp.simulation.drops import Drops, Item
 
 NEAR = 0.03
 """`on`: the lowest point is this near to the surface (the paper's tolerance), metres."""

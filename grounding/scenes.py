@@ -28,7 +28,7 @@ from grounding.relation_scene import Placed, RelationScene, gap, near
 from grounding.separation import Obstacles, separations
 from grounding.supports import Support, scaled_region, support_templates
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.drop import Item
+from tamp.simulation.drops import Item
 
 OTHERS = {"train": (5, 9), "test": (5, 15)}
 """Bodies in a scene beside the arguments and the other support."""

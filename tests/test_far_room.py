@@ -12,7 +12,7 @@ from tamp.geometric.loading.load import load_scene
 from tamp.plan.write import plan_document
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.verification.verify import verify
 
 FLAT = """\
@@ -44,7 +44,7 @@ def test_a_plan_far_from_the_origin_holds(tmp_path: Path, x: float, y: float) ->
 
 def test_the_floor_is_under_the_room(tmp_path: Path) -> None:
     scene = load_scene(scene_at(tmp_path, 500.0, -300.0)).scene
-    with World(scene, dynamic=True) as world:
+    with open_world(scene, dynamic=True) as world:
         before = world.pose("can")
         world.step(1.0)
         after = world.pose("can")

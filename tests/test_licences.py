@@ -16,6 +16,9 @@ from packaging.utils import canonicalize_name
 from tamp.system.distribution import DISTRIBUTION
 
 ROOT = Path(__file__).resolve().parent.parent
+LISTED = (3, 11)
+"""The Python whose packages are listed; later ones lack some."""
+
 ALLOWED = re.compile(
     r"\b(MIT|BSD|0BSD|Apache|PSF|Python Software Foundation|ISC|Zlib|BSL-1\.0|MPL|Mozilla|CC0|Unlicense|HPND)\b", re.I
 )
@@ -67,7 +70,12 @@ def page() -> str:
         "Written by `python tests/test_licences.py`; a test keeps it true. `solve` is what running needs, `dev`",
         "what testing adds. No package is GPL or LGPL. Some wheels carry libraries that are, unchanged from PyPI:",
         "GCC's runtime in numpy and scipy (GPL with the exception that allows every program; libquadmath",
-        "is LGPL), libiconv in lxml (LGPL).",
+        "is LGPL), libiconv in lxml (LGPL). The list is that of Python 3.11; later ones have no pybullet, and torch",
+        "only where it is asked for.",
+        "",
+        "What comes with tamp from others, each with its licence beside it: the Panda's description and meshes",
+        "(`tamp/geometric/robot/assets/franka_panda`, Apache 2.0), the mug (`problems/assets/objects`, zlib), and the",
+        "convex parts of pybullet_data's objects that data are made with (`grounding/assets`, zlib).",
         "",
         "| package | for | licence |",
         "|---|---|---|",
@@ -86,7 +94,19 @@ def test_no_package_has_a_licence_that_binds_ours() -> None:
 
 
 def test_the_list_is_current() -> None:
-    assert (ROOT / "docs" / "licences.md").read_text(encoding="utf-8") == page()
+    written = (ROOT / "docs" / "licences.md").read_text(encoding="utf-8")
+    if sys.version_info[:2] == LISTED:
+        assert written == page()
+    else:
+        assert {line for line in page().splitlines() if line.startswith("|")} <= {*written.splitlines()}
+
+
+def test_data_of_others_come_with_their_licences() -> None:
+    panda = ROOT / "tamp" / "geometric" / "robot" / "assets" / "franka_panda"
+    assert "Apache License" in (panda / "LICENSE.txt").read_text(encoding="utf-8")
+    assert "Changed:" in (panda / "NOTICE.txt").read_text(encoding="utf-8")
+    for folder, names in (("problems/assets/objects", "mug"), ("grounding/assets", "bullet_objects")):
+        assert "Bullet" in (ROOT / folder / f"{names}.LICENSE.txt").read_text(encoding="utf-8")
 
 
 def test_constraints_pin_exactly_what_is_installed() -> None:
@@ -97,7 +117,10 @@ def test_constraints_pin_exactly_what_is_installed() -> None:
     }
     packages = closure(DISTRIBUTION, frozenset({"dev"}))
     installed = {name: package.version.partition("+")[0] for name, package in packages.items()}  # torch 2.13.0+cpu
-    assert installed == pins
+    if sys.version_info[:2] == LISTED:
+        assert installed == pins
+    else:
+        assert installed.items() <= pins.items()
 
 
 if __name__ == "__main__":

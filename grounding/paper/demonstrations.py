@@ -18,7 +18,7 @@ from grounding.relation_scene import Placed
 from grounding.scenes import LabelledScene, SampledScene, free
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.drop import Drops
+from tamp.simulation.drops import Drops
 
 SHIFT_M: Mapping[str, tuple[float, float]] = {"on": (0.10, 0.25), "inside": (0.05, 0.20)}
 """How far "above" and "sunken" are from rest, metres."""

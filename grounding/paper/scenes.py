@@ -28,7 +28,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.furniture import FURNITURE, Options
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Part, Surface
-from tamp.simulation.drop import Item
+from tamp.simulation.drops import Item
 
 OBJECT_COUNT = {"train": (5, 9), "test": (5, 15)}
 """Bodies in a scene, argument 1 among them, the two pieces of furniture not."""

@@ -16,7 +16,8 @@ from grounding.relations.scenes import Example, loaded, made, otherwise
 from grounding.separation import Obstacles, separations
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.drop import Drops, Item
+from tamp.simulation.drops import Drops, Item
+from tamp.simulation.engines import open_drops
 
 SECONDS = 1.5
 """For how long a body may fall."""
@@ -63,7 +64,7 @@ def candidates(
         near: Share of those that are changed after they were proposed.
     """
     found: list[Candidate] = []
-    with Drops() as drops:
+    with open_drops() as drops:
         for row in range(count):
             example = examples[row % len(examples)]
             bodies = made(example, rng)

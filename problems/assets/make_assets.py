@@ -1,7 +1,7 @@
-"""Make the meshes that come with tamp: `python problems/assets/make_assets.py`. They are ours, and CC0.
+"""Make the meshes of bottle and bowl that come with tamp: `python problems/assets/make_assets.py`. They are ours, and CC0.
 
 It also computes the convex pieces of every mesh that a shipped problem uses: nobody shall wait for them at first use.
-Both meshes are solids of revolution (the bottle squeezed into an oval), standing on z = 0 around the z axis, in metres.
+Both, the bottle and the bowl, are solids of revolution (the bottle squeezed into an oval), standing on z = 0 around the z axis, in metres.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ OBJECTS = Path(__file__).resolve().parent / "objects"
 SHIPPED = [
     ("objects/mustard_bottle.obj", (1.0, 1.0, 1.0)),
     ("objects/bowl.obj", (1.0, 1.0, 1.0)),
-    ("pybullet_data/objects/mug_col.obj", (0.85, 0.85, 0.85)),
+    ("objects/mug_col.obj", (0.85, 0.85, 0.85)),
 ]
 Profile = list[tuple[float, float]]
 

@@ -47,3 +47,8 @@ def learn() -> NoReturn:
 def robot() -> NoReturn:
     """Run tamp-robot."""
     guarded("tamp.commands.robot")
+
+
+def demo() -> NoReturn:
+    """Run tamp-demo."""
+    guarded("grounding.demonstrate.command")

@@ -20,7 +20,7 @@ REACHED, NOT_REACHED = 0, 1
 
 @dataclass(frozen=True)
 class Execute:
-    """Carry out a plan file in physics (pybullet) and say for each action how it went, and what of
+    """Carry out a plan file in physics and say for each action how it went, and what of
     the goal holds.
 
     Motors follow the plan's trajectories, fingers close with force and friction, bodies have mass.
@@ -33,6 +33,8 @@ class Execute:
     """The plan file that tamp-solve wrote."""
     grasp: Annotated[str, tyro.conf.arg(metavar="NAME")] = "friction"
     """friction, or constraint: a fixed joint holds what the fingers close on."""
+    engine: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="")] = None
+    """pybullet or mujoco; without it pybullet where it is installed, mujoco elsewhere."""
     replan: bool = False
     """After an action that came out differently, keep the rest of the plan if it still holds, else
     plan anew from what is seen."""
@@ -75,6 +77,7 @@ def main(shown: Progress, arguments: Sequence[str], registry: Callable[[], Regis
         given.time,
         given.problem,
         given.sampler,
+        given.engine,
     )
     done = carry_out(given.plan, options, registry())
     shown.end()

@@ -125,6 +125,8 @@ def _make(options: Make, shown: Progress) -> None:
     pairs = len(robot.links) * (len(robot.links) - 1) // 2 - len(robot.allowed)
     say(f"{options.out}: {robot.name}, {len(robot.joints)} joints: {kinds}")
     say(f"  {hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}")
+    for warning in made.warnings:
+        say(f"  {warning}")
     say(f"  frames differ from pinocchio's by {off:.1g}, from pybullet's by {physics:.1g}")
     say(f"  inverse kinematics finds {share:.1%} of reachable poses")
     say(f"  {seconds:.0f} s. In a problem: robot: {{model: {options.out}, base: [x, y, yaw]}}")

@@ -24,7 +24,7 @@ class Verify:
 
     Its facts are judged by PDDL's semantics, its limits by the robot's maker.
 
-    Its motions are judged by pybullet's kinematics and collision detection.
+    Its motions are judged by a physics engine's kinematics and collision detection.
     """
 
     plan: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PLAN")]
@@ -41,6 +41,9 @@ class Verify:
     ] = ()
     """What says whether a relation of your own holds: FILE.py, which is run, or FILE.safetensors;
     without it the relation is taken on trust, and the verdict says so."""
+    engine: Annotated[str | None, tyro.conf.arg(metavar="NAME", help_behavior_hint="")] = None
+    """pybullet, mujoco, or both: then mujoco decides, and the report says what pybullet sees
+    otherwise. Without it pybullet where it is installed, mujoco elsewhere."""
     strict: bool = False
     """Do not accept a verdict that rests on what could not be checked: a relation on trust, another
     domain or other streams than the problem's."""
@@ -68,6 +71,7 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
         options.domain,
         streams=options.streams,
         classifiers=classifiers,
+        engine=options.engine,
     )
     shown.end()
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.errors import InputError
+from tamp.execution.circumstances import Circumstances
 from tamp.execution.disturbance import DISTURBANCES
-from tamp.execution.execute import Circumstances, execute
+from tamp.execution.execute import execute
 from tamp.execution.goal import classifiers_of
 from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.relations import named_classifiers
@@ -21,6 +22,7 @@ from tamp.geometric.samplers.python_file import given_by_files
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.plan.open import Stored, open_plan
 from tamp.planner.solve import ALGORITHMS
+from tamp.simulation.engines import engine
 
 
 @dataclass(frozen=True)
@@ -34,19 +36,22 @@ class Options:
     time: float = 30.0
     problem: Path | None = None
     sampler: tuple[str, ...] = ()
+    engine: str | None = None
 
 
 def check(options: Options) -> None:
     """Refuse names that nobody knows before time is spent on a plan.
 
     Raises:
-        InputError: An unknown grasp or disturbance; a time that is not positive.
+        InputError: An unknown grasp or disturbance; an engine that is unknown or not installed; a
+            time that is not positive.
     """
     if options.grasp not in GRASPS:
         raise InputError(f"unknown grasp '{options.grasp}'", found=options.grasp, choices=GRASPS)
     if options.disturb is not None and options.disturb not in DISTURBANCES:
         what = f"unknown disturbance '{options.disturb}'"
         raise InputError(what, found=options.disturb, choices=DISTURBANCES)
+    engine(options.engine)
     if not options.time > 0.0:
         raise InputError(f"--time: the time must be positive, not {options.time:g}")
 
@@ -78,6 +83,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         seed=abs(options.seed),
         classifiers=classifiers_of(registry),
         own=named_classifiers(stored, names, objects, registry, chosen),
+        engine=options.engine,
     )
     return execute(stored, circumstances)
 

@@ -19,7 +19,7 @@ from tamp.execution.motor_commands import Player
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part
 from tamp.plan.read import PlanFile, Segment
-from tamp.simulation.actuated import Actuated
+from tamp.simulation.actuation import Actuated
 
 OBSTACLE = "obstacle"
 """What a blocking body is called."""
@@ -39,14 +39,15 @@ TRIES = 100
 
 @dataclass(frozen=True)
 class Happening:
-    """The circumstances of a disturbance: the world, the player of segments, what is expected, and
-    randomness.
+    """The circumstances of a disturbance: the world, the player of segments, what is expected,
+    randomness, and the engine's name.
     """
 
     world: Actuated
     player: Player
     expected: Expected
     rng: Generator
+    engine: str | None = None
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ def _puts(segments: tuple[Segment, ...]) -> bool:
 def _move(now: Happening) -> str:
     """Slide a body to another place on what it stands on."""
     world, rng = now.world, now.rng
-    with Room(world) as room:
+    with Room(world, now.engine) as room:
         for name in rng.permutation(room.untouched):
             T = world.pose(name)
             for _ in range(TRIES):
@@ -173,7 +174,7 @@ def _slip(now: Happening) -> str:
 def _remove(now: Happening) -> str:
     """Remove a body that is not in the hand."""
     world = now.world
-    with Room(world) as room:
+    with Room(world, now.engine) as room:
         choices = room.untouched
     if not choices:
         return "nothing could be taken away"
@@ -195,7 +196,7 @@ def _block(now: Happening) -> str:
 
     height = OBSTACLE_SIZE[2]
 
-    with Room(world) as room:
+    with Room(world, now.engine) as room:
         for index in now.rng.permutation(len(wanted)):
             pose = wanted[int(index)][0]
             body = next(

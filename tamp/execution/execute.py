@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
+from tamp.execution.circumstances import Circumstances
 from tamp.execution.deviation import Deviation, Seen, deviations
 from tamp.execution.disturbance import Happening, Scheduled, schedule
 from tamp.execution.expected import Expected
@@ -17,15 +18,15 @@ from tamp.execution.monitoring import Watch
 from tamp.execution.motor_commands import CLOSING, Player
 from tamp.execution.observation import Observer, Truth
 from tamp.execution.pauses import without_pauses
-from tamp.execution.relations import Named, own_relations
+from tamp.execution.relations import own_relations
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
-from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.pose import Array
 from tamp.plan.open import Stored
 from tamp.plan.read import PlanFile, TimedAction
 from tamp.plan.sources import plan_hashes, source_file, unquoted
-from tamp.simulation.actuated import Actuated
+from tamp.simulation.actuation import Actuated
+from tamp.simulation.engines import default_engine, open_actuated
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tamp.verification.initial_state import apart
@@ -47,27 +48,6 @@ MOVED = (0.005, 0.09)
 """Metres and radians: a body that nobody handles and that moved less is not worth a line."""
 
 
-@dataclass(frozen=True)
-class Circumstances:
-    """The circumstances of an execution: how a plan is carried out.
-
-    Attributes:
-        grasp: "friction", or "constraint": the fingers bind what they close on.
-        replanner: Who plans anew on a deviation; nobody lets the plan go on as it is.
-        disturbance: What somebody does to the scene, one of DISTURBANCES.
-        seed: Of the disturbance and of planning anew.
-        classifiers: Relation to a classifier and its name, for their opinion of the goal.
-        own: The same of the user's own relations, which these decide.
-    """
-
-    grasp: str = "friction"
-    replanner: Replanner | None = None
-    disturbance: str | None = None
-    seed: int = 0
-    classifiers: Named = field(default_factory=dict[str, "tuple[str, Classifier]"])
-    own: Named = field(default_factory=dict[str, "tuple[str, Classifier]"])
-
-
 def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execution:
     """Carry out a plan.
 
@@ -76,9 +56,9 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
         circumstances: How; with friction and without replanning when not given.
 
     Raises:
-        InputError: An unknown grasp; a domain that is missing or malformed; a plan that moves for
-            hours, or out of the robot's ranges; a goal that needs a relation not to hold that has
-            no classifier.
+        InputError: An unknown grasp or engine, or one that is not installed; a domain that is
+            missing or malformed; a plan that moves for hours, or out of the robot's ranges; a goal
+            that needs a relation not to hold that has no classifier.
     """
     began = time.monotonic()
     chosen = circumstances or Circumstances()
@@ -87,10 +67,15 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
     plan, cut = without_pauses(stored.plan)
     stored = replace(stored, plan=plan)
     notes = (f"{cut:,.0f} s of pauses in the plan were left out",) if cut else ()
-    with Actuated(scene, stored.robot) as world, Observer(scene) as observer:
+    engine = chosen.engine or default_engine()
+    with (
+        open_actuated(scene, stored.robot, name=engine) as world,
+        Observer(scene, engine) as observer,
+    ):
         run = _Run(stored, chosen, world, observer)
         run.all()
-        return replace(run.result(), notes=notes, seconds=time.monotonic() - began)
+        seconds = time.monotonic() - began
+        return replace(run.result(), notes=notes, engine=engine, seconds=seconds)
 
 
 class _Run:
@@ -196,7 +181,9 @@ class _Run:
         )
 
     def _disturb(self, due: Scheduled) -> None:
-        self._event = due.happen(Happening(self._world, self._player, self._expected, self._rng))
+        self._event = due.happen(
+            Happening(self._world, self._player, self._expected, self._rng, self._chosen.engine)
+        )
 
     def _active(self, action: TimedAction) -> str | None:
         segments = action.segments

@@ -9,8 +9,8 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
-from tamp.simulation.actuated import Actuated
-from tamp.simulation.physics import World
+from tamp.simulation.actuation import Actuated
+from tamp.simulation.engines import open_world
 from tamp.simulation.shapes import body_points
 from tamp.verification.support_geometry import Supports
 
@@ -23,9 +23,9 @@ class Room:
     manager.
     """
 
-    def __init__(self, world: Actuated) -> None:
-        self._scene = world.scene
-        self._copy = World(world.scene)
+    def __init__(self, world: Actuated, engine: str | None = None) -> None:
+        self._scene, self._engine = world.scene, engine
+        self._copy = open_world(world.scene, name=engine)
         touched = {second for first, second in world.touches() if first in world.robot_links}
         for name in world.scene.movable:
             self._copy.place(name, _lifted(world.pose(name)))
@@ -56,7 +56,7 @@ class Room:
         scene = replace(
             self._scene, bodies=MappingProxyType({**self._scene.bodies, body.name: lifted})
         )
-        with World(scene) as world:
+        with open_world(scene, name=self._engine) as world:
             for name in self._scene.movable:
                 world.place(name, self._copy.pose(name))
             stand = Supports(world).stand(body.name)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tamp.simulation.actuated import Actuated
-from tamp.simulation.physics import FLOOR
+from tamp.simulation.actuation import Actuated
+from tamp.simulation.world import FLOOR
 
 EVERY = 4
 """Steps between two looks."""

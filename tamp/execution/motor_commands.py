@@ -12,7 +12,7 @@ from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.monitoring import EVERY, Watch
 from tamp.plan.read import Segment
-from tamp.simulation.actuated import RATE, Actuated
+from tamp.simulation.actuation import RATE, Actuated
 
 CLOSING = 0.9
 """The least that closing or opening takes, seconds: the fingers meet the body and come to rest."""

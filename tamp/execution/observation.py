@@ -12,7 +12,8 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Scene
-from tamp.simulation.physics import FLOOR, World
+from tamp.simulation.engines import open_world
+from tamp.simulation.world import FLOOR
 from tamp.symbolic.pddl.structs import Fact
 from tamp.verification.initial_state import apart
 from tamp.verification.support_geometry import Stand, Supports
@@ -52,9 +53,9 @@ class Observer:
     Use it as a context manager.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
-        self._world = World(scene)
+    def __init__(self, scene: Scene, engine: str | None = None) -> None:
+        self._scene, self._engine = scene, engine
+        self._world = open_world(scene, name=engine)
         self._supports = Supports(self._world)
         self._seen: dict[str, Array] = {}
 
@@ -68,7 +69,7 @@ class Observer:
         """Rebuild the observer when bodies were added or taken away."""
         if self._scene.bodies.keys() != scene.bodies.keys():
             self._world.close()
-            self.__init__(scene)
+            self.__init__(scene, self._engine)
 
     def see(self, poses: Mapping[str, Array], base: Array, held: str | None) -> Truth:
         """Observe the truth about movable bodies at their T_world_body (4, 4), the base (3,) and

@@ -84,6 +84,7 @@ class Execution:
             bodies, as it says.
         simulated: Seconds in physics.
         notes: What was not done as the plan says.
+        engine: The physics engine's name.
         seconds: Seconds that it took.
     """
 
@@ -100,6 +101,7 @@ class Execution:
     on_trust: tuple[str, ...] = ()
     simulated: float = 0.0
     notes: tuple[str, ...] = ()
+    engine: str = ""
     seconds: float = field(default=0.0, compare=False)
 
     @property

@@ -19,7 +19,7 @@ from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.robots.arm import Arm
 from tamp.robots.description import Description
 from tamp.robots.self_collision import home_collision
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.simulation.silence import silence
 
 STATES = 100
@@ -93,7 +93,7 @@ def against_physics(robot: Robot) -> float:
         "check", {}, RobotStart(robot.name, (0.0, 0.0, 0.0), None), Room((-1, 1), (-1, 1))
     )
     kinematics, rng, worst = Kinematics(robot), np.random.default_rng(0), 0.0
-    with World(scene, robot) as world:
+    with open_world(scene, robot) as world:
         for _ in range(STATES):
             base = rng.uniform(-1.0, 1.0, 3)
             q = rng.uniform(np.array(robot.lower), np.array(robot.upper))

@@ -100,9 +100,11 @@ def make(wanted: Wanted, told: Told) -> Made:
         )  # fmt: skip
     gripper = _gripper(description, wanted, arm)
     robot = _robot(wanted, arm, gripper, meshes, file)
-    robot, warnings = _refined(robot, meshes, told)
+    robot = _refined(robot, meshes, told)
 
-    allowed = allowed_pairs(robot, lambda done: told("pairs of links that can meet", done))
+    allowed, warnings = allowed_pairs(
+        robot, lambda done: told("pairs of links that can meet", done)
+    )
     robot = replace(robot, allowed=allowed)
 
     told("a home configuration", 0.0)
@@ -226,9 +228,7 @@ def _own(description: Description, wanted: Wanted, left: Joint, right: Joint) ->
     return own_fingers(joints, hulls[0], (hulls[1], hulls[2]), Pose(), wanted.opening, wanted.force)
 
 
-def _refined(
-    robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told
-) -> tuple[Robot, tuple[str, ...]]:
+def _refined(robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told) -> Robot:
     """Decompose the links whose hulls meet much more often than they do."""
     known = {name: some for name, some in meshes.items() if some}
     wrong = misjudged(robot, known, lambda done: told("hulls against meshes", done))
@@ -239,7 +239,7 @@ def _refined(
             hulls = [hull for one in known[link.name] for hull in pieces(one, link.name)]
             link = Link(link.name, _parts(joined(hulls, link.name)))
         links.append(link)
-    return replace(robot, links=tuple(links)), ()
+    return replace(robot, links=tuple(links))
 
 
 def _home(robot: Robot, wanted: Wanted) -> tuple[float, ...]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import ConvexHull
+from scipy.spatial.distance import cdist
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Hull
@@ -27,6 +28,9 @@ MOST_NODES = 300_000
 
 INSIDE = 0.01
 """Of the grid of candidates, metres; a thin hull's is finer."""
+
+MOST_CANDIDATES = 2000
+"""Centres that are tried, at most."""
 
 SAMPLES = 3000
 """Points on the surface that are to be covered."""
@@ -46,7 +50,7 @@ def cover(hull: Hull, most: int = LEAVES) -> tuple[Array, float] | None:
         return None
 
     samples = _surface(vertices, SAMPLES)
-    distances = np.linalg.norm(samples[:, None] - inside[None], axis=2)
+    distances = np.asarray(cdist(samples, inside), dtype=np.float64)
     low, high, best = 0.001, max(0.05, float(np.ptp(vertices, axis=0).max()) / 4), None
     for _ in range(HALVINGS):
         slack = (low + high) / 2
@@ -76,7 +80,7 @@ def _candidates(vertices: Array, normals: Array, offsets: Array) -> tuple[Array,
     """Return grid points inside the hull, and how deep they are."""
     for pitch in (INSIDE, INSIDE / 2, INSIDE / 4):
         size = np.ptp(vertices, axis=0)
-        pitch = max(pitch, float((np.prod(size) / 4000) ** (1 / 3)))
+        pitch = max(pitch, float((np.prod(size) / MOST_CANDIDATES) ** (1 / 3)))
         inside = _grid(vertices, pitch, 0.0)
         depths = _depth(inside, normals, offsets)
         inside, depths = inside[depths > 0.0], depths[depths > 0.0]

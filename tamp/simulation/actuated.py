@@ -1,4 +1,4 @@
-"""Physics of a scene under gravity with a robot on motors: what a plan is carried out in."""
+"""Physics in pybullet of a scene under gravity with a robot on motors."""
 
 from __future__ import annotations
 
@@ -10,18 +10,13 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.simulation.actuation import BASE_FORCE, NEAR, RATE, Actuated
 from tamp.simulation.fingers import Fingers, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
-from tamp.simulation.physics import World
+from tamp.simulation.physics import BulletWorld
 from tamp.simulation.shapes import link_frame
 from tamp.simulation.silence import silence
 from tamp.system.scratch import scratch_folder
-
-RATE = 240
-"""Steps a second."""
-
-BASE_FORCE = 2e4
-"""The most with which the base is driven, newtons and newton metres."""
 
 ROLLING = 0.001
 """Metres: rolling and spinning friction of bodies, without which a can that lies would never come
@@ -33,21 +28,9 @@ SLEEPY = 0.003
 computation until something touches it. With seven bodies at rest a step costs a quarter of what it
 costs otherwise."""
 
-NEAR = 0.004
-"""Metres from both fingers within which a body counts as between them."""
 
-
-class Actuated(World):
-    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
-    have mass and fall.
-
-    Attributes:
-        conf: What base and arm aim at, [x, y, yaw, q1..qn], shape (3 + n,), metres and radians.
-        opening: What the fingers aim at, metres between them.
-        squeezing: The fingers close instead, and press with their whole force on what they meet.
-        bound: The body that a fixed constraint binds to the hand, or None.
-        widest: The fingers' largest opening, metres.
-    """
+class BulletActuated(BulletWorld, Actuated):
+    """A world with gravity and a robot on motors in pybullet."""
 
     def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
         super().__init__(scene, None, dynamic=True)
@@ -114,11 +97,6 @@ class Actuated(World):
         self._fingers.drive(self.opening, self.squeezing, RATE)
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
-
-    def wait(self, seconds: float) -> None:
-        """Stand still and let time pass."""
-        for _ in range(round(seconds * RATE)):
-            self.tick()
 
     # What is
 

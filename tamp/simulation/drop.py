@@ -1,5 +1,4 @@
-"""Drop tests by the thousand: one engine, shapes made once, one body at a time let go among bodies
-that stand still.
+"""Drop tests in pybullet by the thousand: one client, shapes made once.
 
 Measured (tests/simulation/test_drop.py): compounds give the same distances as their pieces alone.
 """
@@ -8,50 +7,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Sphere
+from tamp.simulation.drops import STEP, Contact, Drops, Item
 from tamp.simulation.physics import HULL_PAD, load_bullet
 from tamp.simulation.shapes import centre_of_mass, obj
 from tamp.system.scratch import scratch_folder
 
-STEP = 1 / 240
-"""Seconds of one step of the engine."""
 
-
-@dataclass(frozen=True, eq=False)
-class Item:
-    """A rigid body by its geometry; keep and reuse it: the engine's shape is made once an item.
-
-    Args:
-        parts: Its convex parts in its own frame.
-        mass: Kilograms.
-        friction: Coulomb's coefficient.
-    """
-
-    parts: tuple[Part, ...]
-    mass: float = 0.3
-    friction: float = 0.5
-
-
-@dataclass(frozen=True)
-class Contact:
-    """The contact of argument and obstacle: the distance in metres, negative when they lie in each
-    other.
-    """
-
-    obstacle: int
-    distance: float
-
-
-class Drops:
-    """An engine for drop tests. Use it as a context manager."""
+class BulletDrops(Drops):
+    """Drop tests in pybullet."""
 
     def __init__(self) -> None:
         self._bullet = load_bullet()
@@ -71,10 +42,8 @@ class Drops:
         self._boxes: list[tuple[Array, Array]] = []
         self._body: tuple[int, Item] | None = None
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """Give the engine's memory back."""
         self._bullet.disconnect(physicsClientId=self.client)
 
     def set_up(self, body: Item, obstacles: Sequence[tuple[Item, Array]]) -> None:

@@ -1,18 +1,17 @@
 """Rigid-body simulation in pybullet: bodies and the robot in an engine of their own.
 
-Measured (tests/simulation/test_physics.py): distances of boxes, cylinders and spheres are exact;
-hulls are padded by 1 mm, added back here. (With a pad of zero, penetration is measured wrongly.)
+Measured (benchmarks/engine_distances.py): distances at faces are exact; edges and corners of boxes
+and cylinders are rounded, so that distances there come out up to 1.5 mm too large. Hulls are padded
+by 1 mm, added back here. (With a pad of zero, penetration is measured wrongly.)
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Self
 
 import numpy as np
 
@@ -23,23 +22,15 @@ from tamp.geometric.scene.scene import Body, Hull, Part, Scene
 from tamp.simulation.shapes import floor_under, half_extents, link_frame, mass_centre, obj
 from tamp.simulation.silence import silence
 from tamp.simulation.solid import Solid, arrays, described
+from tamp.simulation.world import FLOOR, World
 from tamp.system.scratch import scratch_folder
 
 HULL_PAD = 0.001
 """Metres by which Bullet pads a convex hull."""
 
-FLOOR = "floor"
 
-
-class World:
-    """The scene's bodies and its robot in a pybullet client without a window, a context manager.
-
-    Args:
-        scene: Its bodies, at their starts.
-        robot: The arm and hand of its URDF on its base; None leaves the robot out.
-        dynamic: Movable bodies have mass and fall, each one piece. Otherwise nothing moves by
-            itself, and each convex part is a piece of its own, which makes distances exact.
-    """
+class BulletWorld(World):
+    """The scene's bodies and its robot in a pybullet client without a window."""
 
     def __init__(self, scene: Scene, robot: Robot | None = None, *, dynamic: bool = False) -> None:
         self.scene, self.robot, self.dynamic = scene, robot, dynamic
@@ -58,12 +49,6 @@ class World:
             self._add_robot(robot)
         if dynamic:
             self._bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> None:
         """Give the engine's memory back."""
@@ -110,14 +95,6 @@ class World:
         states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
         return np.array(self._base_frames + [link_frame(state) for state in states])
 
-    def link_poses(self) -> dict[str, Array]:
-        """Return T_world_link (4, 4) of the links as they stand; the base's is on the floor."""
-        frames = self.link_frames().tolist()
-        return {
-            name: Pose((x, y, z), (qx, qy, qz, qw)).matrix
-            for name, (x, y, z, qx, qy, qz, qw) in zip(self.links, frames, strict=True)
-        }
-
     # What touches what
 
     def distance(self, first: Solid, second: Solid, reach: float = 0.02) -> float:
@@ -127,11 +104,6 @@ class World:
             first.handle, second.handle, reach, first.link, second.link, physicsClientId=self.client
         )  # fmt: skip
         return min((point[8] + pads for point in points), default=math.inf)
-
-    def body_distance(self, first: str, second: str, reach: float = 0.02) -> float:
-        """Compute the distance of two bodies as that of two solids."""
-        pairs = itertools.product(self.solids[first], self.solids[second])
-        return min((self.distance(a, b, reach) for a, b in pairs), default=math.inf)
 
     def rays(self, starts: Array, ends: Array) -> list[tuple[str | None, float]]:
         """Cast rays (n, 3), metres: the owner's name of each hit or None, and how far (0-1)."""

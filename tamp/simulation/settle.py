@@ -10,7 +10,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ def settle(scene: Scene, poses: Mapping[str, Pose], seconds: float = 2.0) -> dic
         seconds: Of simulated time.
     """
     settled = {}
-    with World(scene, dynamic=True) as world:
+    with open_world(scene, dynamic=True) as world:
         for name, pose in poses.items():
             world.place(name, pose.matrix)
         before = {name: world.pose(name) for name in scene.movable}

@@ -126,3 +126,38 @@ def _volume_and_centre(shape: Shape) -> tuple[float, Array]:
     volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], normals)) / 6
     volume = float(volumes.sum())
     return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume
+
+
+def inertia(parts: Iterable[Part], mass: float) -> Array:
+    """Compute the inertia of a body of uniform density about its centre of mass, in its own frame,
+    shape (3, 3), kg m2. Overlapping parts count twice.
+    """
+    total, moment, second = 0.0, np.zeros(3), np.zeros((3, 3))
+    for part in parts:
+        volume, centre = _volume_and_centre(part.shape)
+        turn, at = part.pose.rotation, part.pose.apply(centre[None])[0]
+        total += volume
+        moment += volume * at
+        second += turn @ _second_moment(part.shape) @ turn.T + volume * np.outer(at, at)
+    second = second / total - np.outer(moment, moment) / total**2
+    return mass * (np.trace(second) * np.eye(3) - second)
+
+
+def _second_moment(shape: Shape) -> Array:
+    """Integrate the outer products of places less the centre over a shape, (3, 3), m5."""
+    volume, centre = _volume_and_centre(shape)
+    if isinstance(shape, Box):
+        return volume * np.diag(np.square(shape.size)) / 12
+    if isinstance(shape, Cylinder):
+        across = shape.radius**2 / 4
+        return volume * np.diag([across, across, shape.height**2 / 12])
+    if isinstance(shape, Sphere):
+        return volume * np.eye(3) * shape.radius**2 / 5
+    corners = shape.vertices[shape.faces] - shape.vertices.mean(axis=0)
+    normals = np.cross(corners[:, 1], corners[:, 2])
+    volumes = np.abs(np.einsum("ij,ij->i", corners[:, 0], normals)) / 6
+    sums = corners.sum(axis=1)
+    about = np.einsum("m,mci,mcj->ij", volumes, corners, corners)
+    about += np.einsum("m,mi,mj->ij", volumes, sums, sums)
+    away = centre - shape.vertices.mean(axis=0)
+    return about / 20 - volume * np.outer(away, away)

@@ -1,4 +1,4 @@
-"""Collision shapes of rigid bodies and links, as pybullet describes them."""
+"""Collision shapes of rigid bodies and links, and how pybullet describes them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ class Solid:
 
     Attributes:
         owner: The body's or the link's name.
-        handle: The engine's number of the body, and `link` the one of the link in it.
+        handle: The engine's number of the body, and `link` the one of the link or the shape in it;
+            -1 for pybullet's first link, for all of MuJoCo's shapes.
         offset: T_owner_solid, shape (4, 4).
         centre, half: The box around it in the owner's frame, shape (3,) each, metres.
         pad: What the engine adds to its surface, metres.

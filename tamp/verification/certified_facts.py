@@ -12,7 +12,7 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import Hold, PlanFile
 from tamp.plan.violation import Violation
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.collision_sweep import TOLERANCE, Findings, Sweeper
 from tamp.verification.execution_state import Held

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.physics import Solid, World
+from tamp.simulation.solid import Solid
+from tamp.simulation.world import World
 from tamp.verification.execution_state import Held
 from tamp.verification.trajectory_sampling import Sampler
 

@@ -12,7 +12,7 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile
 from tamp.relations.observed import moved, scene_names
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.symbolic.pddl.relations import Relation, instances
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.initial_state import meant

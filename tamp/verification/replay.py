@@ -11,7 +11,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import ALIKE, CLOSE, Certified
 from tamp.verification.collision_sweep import Findings, Natural, Sweeper

@@ -29,6 +29,7 @@ class Report:
             they hold.
         other_files: Domain and streams by which was judged, where they are not the problem's.
         asked: How many answers each relation's classifier gave.
+        engine: The name of the engine that judged, or of the two.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Report:
     on_trust: tuple[str, ...] = ()
     other_files: tuple[str, ...] = ()
     asked: dict[str, int] = field(default_factory=dict[str, int])
+    engine: str = ""
 
     @property
     def holds(self) -> bool:
@@ -87,6 +89,7 @@ class Report:
             "on_trust": list(self.on_trust),
             "other_files": list(self.other_files),
             "asked": self.asked,
+            "engine": self.engine,
             "notes": self.notes,
             "seconds": self.seconds,
         }

@@ -9,7 +9,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import Hold, PlanFile, TimedAction
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain
 from tamp.verification.certified_facts import ALIKE, CLOSE
 from tamp.verification.execution_state import Course

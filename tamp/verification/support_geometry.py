@@ -8,8 +8,8 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Cavity, Surface
-from tamp.simulation.physics import World
 from tamp.simulation.shapes import body_points, mass_centre
+from tamp.simulation.world import World
 
 GAP = 0.010
 """Metres of air below a body that still count as resting: it will drop onto what is there."""

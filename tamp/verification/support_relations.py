@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from tamp.plan.read import PlanFile
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.verification.formulas import show
 from tamp.verification.initial_state import meant

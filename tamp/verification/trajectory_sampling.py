@@ -9,7 +9,8 @@ import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.physics import Solid, World
+from tamp.simulation.solid import Solid
+from tamp.simulation.world import World
 from tamp.verification.execution_state import Held
 from tamp.verification.makers_limits import limits_of
 

@@ -6,6 +6,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -19,7 +20,7 @@ from tamp.plan.robot_check import check_robot
 from tamp.plan.sources import check_files
 from tamp.plan.symbolic import is_symbolic
 from tamp.plan.violation import Violation
-from tamp.simulation.physics import World
+from tamp.simulation.engines import asked_engines, open_world
 from tamp.symbolic.pddl.parser import parse_goal
 from tamp.symbolic.pddl.structs import Domain, Formula
 from tamp.verification.certified_facts import Certified
@@ -38,6 +39,7 @@ from tamp.verification.trust import (
     other_files,
     trusted_relations,
 )
+from tamp.verification.two_engines import compared
 from tamp.verification.violation_log import Log
 
 NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
@@ -50,8 +52,9 @@ def verify(
     *,
     streams: str | Path | None = None,
     classifiers: Mapping[str, Classifier] = NO_CLASSIFIERS,
+    engine: str | None = None,
 ) -> Report:
-    """Replay a plan with PDDL's semantics and pybullet's kinematics and collision detection.
+    """Replay a plan with PDDL's semantics and an engine's kinematics and collision detection.
 
     Args:
         plan: A plan file, or its content.
@@ -60,12 +63,16 @@ def verify(
         streams: The streams' file, instead of the one that the plan names.
         classifiers: What says whether a relation of the user's own holds, by the relation; without
             it the plan's word is taken, and the report says so.
+        engine: One of ENGINES, or "both": then MuJoCo decides, and the report says what pybullet
+            sees otherwise. None takes the default.
 
     Raises:
         InputError: The plan file is malformed, or a file that it was made from is missing or
-            malformed; a classifier of a relation that there is not.
+            malformed; a classifier of a relation that there is not; an engine that is unknown or
+            not installed.
     """
     began = time.monotonic()
+    engines = asked_engines(engine)
     document = plan if isinstance(plan, dict) else Path(plan)
     if is_symbolic(document):
         if classifiers or streams is not None:
@@ -78,10 +85,11 @@ def verify(
 
     files = find_files(read_plan(document), problem, domain, streams)
     inputs = read_inputs(files, classifiers)
-    return _judge(inputs, began)
+    opinions = [_judge(inputs, name, began) for name in engines]
+    return opinions[0] if len(opinions) == 1 else compared(*opinions)
 
 
-def _judge(inputs: Inputs, began: float) -> Report:
+def _judge(inputs: Inputs, engine: str, began: float) -> Report:
     """Replay the plan; the time of the report counts from `began`, monotonic seconds."""
     plan, loaded, domain = inputs.files.plan, inputs.loaded, inputs.domain
     robot = load_robot(loaded.scene.robot.model)
@@ -94,7 +102,7 @@ def _judge(inputs: Inputs, began: float) -> Report:
     ]
 
     trusted: Counter[str] = Counter()
-    with World(loaded.scene, robot) as world:
+    with open_world(loaded.scene, robot, name=engine) as world:
         sweeper = Sweeper(world, robot)
         certified = Certified(plan, world, robot, sweeper, domain)
         stated = certified.known | inputs.decided | certifiable(plan, domain, inputs.streams)
@@ -110,7 +118,8 @@ def _judge(inputs: Inputs, began: float) -> Report:
         replay.run(inputs.goal)
         violations += log.violations
         known = certified.known | inputs.decided
-        return _report(inputs, violations, trusted, relations, replay, known, began)
+        report = _report(inputs, violations, trusted, relations, replay, known, began)
+        return replace(report, engine=engine)
 
 
 def _report(

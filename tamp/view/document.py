@@ -49,7 +49,8 @@ def _robot(timeline: Timeline) -> dict[str, Any]:
 
     return {
         "links": [
-            {"name": link.name, "meshes": _meshes(looks[link.name])} for link in _ordered(robot)
+            {"name": link.name, "meshes": packed_meshes(looks[link.name])}
+            for link in _ordered(robot)
         ],
         "T_base_arm": _matrix(robot.T_base_arm.matrix),
         "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
@@ -80,7 +81,7 @@ def _bodies(timeline: Timeline) -> list[dict[str, Any]]:
             "name": name,
             "movable": body.movable,
             "height": float(bounds(body.parts, Pose())[1][2]),
-            "meshes": _meshes(body_meshes(body)),
+            "meshes": packed_meshes(body_meshes(body)),
             "stays": [
                 {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)}
                 for stay in timeline.stays[name]
@@ -166,7 +167,8 @@ def _view(timeline: Timeline) -> dict[str, Any]:
     }
 
 
-def _meshes(meshes: tuple[Mesh, ...]) -> list[dict[str, Any]]:
+def packed_meshes(meshes: tuple[Mesh, ...]) -> list[dict[str, Any]]:
+    """Describe meshes as assets/draw.js reads them; one without faces is left out."""
     return [_mesh(mesh) for mesh in meshes if len(mesh.faces)]
 
 

@@ -8,9 +8,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tamp.errors import InputError
+from tamp.system.files import shipped
 
 PUBLIC = ("pybullet_data", "tamp", "grounding")
-"""Packages whose meshes anybody has."""
+"""Packages whose meshes anybody has, as those of shipped problems."""
 
 
 def check_inside(meshes: Iterable[Path], problem: Path) -> None:
@@ -36,4 +37,4 @@ def _public() -> list[Path]:
         for spec in found
         if spec is not None and spec.origin is not None
     ]
-    return folders
+    return [*folders, shipped("problems").resolve()]

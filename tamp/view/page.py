@@ -19,25 +19,35 @@ ASSETS = Path(__file__).resolve().parent / "assets"
 
 def page(document: Mapping[str, Any]) -> str:
     """Render the HTML page of a document from `page_document`."""
-    document = _harmless(dict(document))
+    document = harmless(dict(document))
     data = json.dumps(document, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     parts = {
         "@TITLE@": html.escape(str(document["title"])),
         "@STYLE@": _asset("page.css"),
-        "@SCRIPT@": f"{_asset('draw.js')}\n{_asset('page.js')}",
+        "@SCRIPT@": f"{drawing_script()}\n{_asset('page.js')}",
         "@DATA@": data.replace("<", "\\u003c"),  # so that no name ends the script element
     }
+    return filled(_asset("page.html"), parts)
+
+
+def filled(template: str, parts: Mapping[str, str]) -> str:
+    """Fill in the marks of a template, all at once: what is filled in may look like a mark."""
     marks = re.compile("|".join(parts))
-    return marks.sub(lambda mark: parts[mark[0]], _asset("page.html"))  # once: a name may be a mark
+    return marks.sub(lambda mark: parts[mark[0]], template)
 
 
-def _harmless(value: Any) -> Any:
+def drawing_script() -> str:
+    """Return the script that draws bodies, for any page of ours."""
+    return _asset("draw.js")
+
+
+def harmless(value: Any) -> Any:
     """Escape what hides or turns text around, in names out of files, in backslashes."""
     if isinstance(value, str):
         return printable(value)
     if isinstance(value, dict):
-        return {name: _harmless(inner) for name, inner in value.items()}
-    return [_harmless(inner) for inner in value] if isinstance(value, list | tuple) else value
+        return {name: harmless(inner) for name, inner in value.items()}
+    return [harmless(inner) for inner in value] if isinstance(value, list | tuple) else value
 
 
 def write_page(document: Mapping[str, Any], file: Path) -> None:

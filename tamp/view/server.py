@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import webbrowser
 from collections.abc import Callable
+from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 from tamp.errors import InputError
@@ -26,12 +27,32 @@ PATIENCE = 10.0
 """Seconds in which a request has to be told."""
 
 
-class PageServer(ThreadingHTTPServer):
-    """Answers with one page, whatever is asked of `/`. Use it as a context manager.
+@dataclass(frozen=True)
+class Reply:
+    """An answer to a browser.
+
+    Attributes:
+        content: Its body.
+        kind: Its media type.
+        status: HTTP's number.
+    """
+
+    content: bytes
+    kind: str = "text/html; charset=utf-8"
+    status: int = 200
+
+
+NOT_FOUND = Reply(b"not found\n", "text/plain", 404)
+
+
+class LocalServer(ThreadingHTTPServer):
+    """Answers browsers on this machine, one thread a request. Use it as a context manager.
+
+    A page from elsewhere, whose name was turned to us or which sends us something, is refused.
 
     Args:
-        content: The page.
         port: Where to listen; 0 takes any free port.
+        most: Bytes that a request may bring; 0 for a server that takes nothing.
 
     Raises:
         InputError: The port is taken, not allowed or none.
@@ -40,8 +61,8 @@ class PageServer(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = True
 
-    def __init__(self, content: bytes, port: int = 0) -> None:
-        self.content = content
+    def __init__(self, port: int = 0, most: int = 0) -> None:
+        self.most = most
         try:
             super().__init__((HOST, port), _Handler)
         except (OSError, OverflowError) as error:
@@ -50,6 +71,14 @@ class PageServer(ThreadingHTTPServer):
                 f"cannot listen on port {port}: {reason}",
                 remedy="Give another one with --port, or none: any free one is taken",
             ) from error
+
+    def get(self, path: str) -> Reply:
+        """Answer what a browser asks for by its path; subclasses have more to say."""
+        return NOT_FOUND
+
+    def post(self, path: str, content: bytes) -> Reply:
+        """Answer what a browser sends; subclasses have more to say."""
+        return NOT_FOUND
 
     @property
     def names(self) -> tuple[str, str]:
@@ -67,42 +96,97 @@ class PageServer(ThreadingHTTPServer):
         return f"http://{HOST}:{self.server_address[1]}/"
 
 
+class PageServer(LocalServer):
+    """Answers with one page, whatever is asked of `/`. Use it as a context manager.
+
+    Args:
+        content: The page.
+        port: Where to listen; 0 takes any free port.
+
+    Raises:
+        InputError: The port is taken, not allowed or none.
+    """
+
+    def __init__(self, content: bytes, port: int = 0) -> None:
+        self.content = content
+        super().__init__(port)
+
+    def get(self, path: str) -> Reply:
+        """Return the page, or not found."""
+        return Reply(self.content) if path in ("/", "/index.html") else NOT_FOUND
+
+
 class _Handler(BaseHTTPRequestHandler):
     timeout = PATIENCE
-    server: PageServer  # pyright: ignore[reportIncompatibleVariableOverride]
+    server: LocalServer  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def do_GET(self) -> None:
-        """Send the page, or not found."""
-        self._answer(body=True)
+        """Send what is asked for, or not found."""
+        if self._is_ours():
+            self._send(self.server.get(self.path.partition("?")[0]))
 
     def do_HEAD(self) -> None:
-        """Send the headers of the page without its content."""
-        self._answer(body=False)
+        """Send the headers of the answer without its content."""
+        if self._is_ours():
+            self._send(self.server.get(self.path.partition("?")[0]), body=False)
+
+    def do_POST(self) -> None:
+        """Take what a page of ours sends, and answer."""
+        if not self._is_ours():
+            return
+        if not self.server.most:
+            self.send_error(501, "nothing is taken here")
+            return
+
+        origin = self.headers.get("Origin", "").lower()
+        kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
+        if origin not in ("", *(f"http://{name}" for name in self.server.names)):
+            self.send_error(403, "sent by a page from elsewhere")
+            return
+        if kind != "application/json":  # no page from elsewhere may send this unasked
+            self.send_error(415, "only application/json is taken")
+            return
+
+        length = self.headers.get("Content-Length", "")
+        if not length.isdecimal() or len(length) > 12:
+            self.send_error(411, "how much is sent must be said")
+            return
+        if int(length) > self.server.most:
+            self.close_connection = True
+            self.send_error(413, "too much is sent")
+            return
+        self._send(self.server.post(self.path.partition("?")[0], self.rfile.read(int(length))))
 
     def log_message(self, format: str, *args: object) -> None:
         """Log nothing: the terminal is the user's."""
 
-    def _answer(self, body: bool) -> None:
-        if self.headers.get("Host", "").lower() not in self.server.names:
-            self.send_error(
-                421, "asked for by another name"
-            )  # a page from elsewhere whose name was turned to us
-            return
-        found = self.path.partition("?")[0] in ("/", "/index.html")
-        content = self.server.content if found else b"not found\n"
-        self.send_response(200 if found else 404)
-        self.send_header("Content-Type", "text/html; charset=utf-8" if found else "text/plain")
-        self.send_header("Content-Length", str(len(content)))
+    def _is_ours(self) -> bool:
+        """Refuse a page from elsewhere whose name was turned to us."""
+        if self.headers.get("Host", "").lower() in self.server.names:
+            return True
+        self.send_error(421, "asked for by another name")
+        return False
+
+    def _send(self, reply: Reply, body: bool = True) -> None:
+        self.send_response(reply.status)
+        self.send_header("Content-Type", reply.kind)
+        self.send_header("Content-Length", str(len(reply.content)))
         for name, value in HEADERS.items():
             self.send_header(name, value)
         self.end_headers()
         if body:
             with contextlib.suppress(ConnectionError):
-                self.wfile.write(content)
+                self.wfile.write(reply.content)
 
 
-def check_browser() -> None:
+def check_browser(
+    remedy: str = "Write a page with --html FILE or a picture with --png FILE, "
+    "or serve with tamp-view --no-browser",
+) -> None:
     """Refuse early when no browser can be opened.
+
+    Args:
+        remedy: What to do then.
 
     Raises:
         InputError: There is none.
@@ -110,11 +194,7 @@ def check_browser() -> None:
     try:
         webbrowser.get()
     except webbrowser.Error:
-        raise InputError(
-            "no browser was found to open",
-            remedy="Write a page with --html FILE or a picture with --png FILE, "
-            "or serve with tamp-view --no-browser",
-        ) from None
+        raise InputError("no browser was found to open", remedy=remedy) from None
 
 
 def serve(
@@ -127,9 +207,14 @@ def serve(
     """
     with PageServer(content, port) as server:
         say(f"{server.address} shows it until Ctrl-C.")
-        if unheard():  # nobody knows where the page is; the command says so
-            return
-        if browser:
-            webbrowser.open(server.address)
-        with contextlib.suppress(KeyboardInterrupt):
-            server.serve_forever()
+        serve_until_interrupted(server, browser)
+
+
+def serve_until_interrupted(server: LocalServer, browser: bool) -> None:
+    """Open the server's page, if that is wanted, and answer until interrupted."""
+    if unheard():  # nobody knows where the page is; the command says so
+        return
+    if browser:
+        webbrowser.open(server.address)
+    with contextlib.suppress(KeyboardInterrupt):
+        server.serve_forever()

@@ -150,7 +150,7 @@ CASES = [
     Case("nan-pose", "at: [0.2, 0.1]", "at: [.nan, 0.1]", r"not a finite number", 7),
     # Meshes
     Case("mesh-missing", CAN, MESH, r"no mesh file 'thing\.obj'", 7),
-    Case("mesh-typo", CAN, "{mesh: pybullet_data/duc.obj, on: table}", r"Did you mean 'pybullet_data/duck\.obj'", 7),
+    Case("mesh-typo", CAN, "{mesh: objects/mg.obj, on: table}", r"Did you mean 'objects/mug\.obj'", 7),
     Case("mesh-empty", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": ""}),
     Case("mesh-comment-only", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": "# nothing\n"}),
     Case("mesh-nan", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": TETRAHEDRON.replace("0.05 0 0", "nan 0 0")}),

@@ -288,7 +288,7 @@ def test_help_is_readable(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-view", "tamp-bench"]
+    "name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-demo", "tamp-view", "tamp-bench"]
 )
 def test_help_that_nobody_reads_is_no_error(name: str) -> None:
     ours, theirs = os.pipe()

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
+from tamp.execution.circumstances import Circumstances
 from tamp.execution.disturbance import DISTURBANCES, schedule
-from tamp.execution.execute import Circumstances, execute
+from tamp.execution.execute import execute
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Execution
 from tamp.plan.open import Stored

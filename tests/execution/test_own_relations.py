@@ -11,7 +11,8 @@ import pytest
 
 import tamp
 from tamp.commands import solve as cli
-from tamp.execution.execute import Circumstances, execute
+from tamp.execution.circumstances import Circumstances
+from tamp.execution.execute import execute
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
 from tamp.execution.observation import Observer, Truth

@@ -21,7 +21,7 @@ from grounding.train import train
 from grounding.weights import write_weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 
 @pytest.fixture(scope="module", params=["on", "inside"])
@@ -31,7 +31,7 @@ def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 def test_labels_are_what_happened(data: Dataset) -> None:
     items = ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for example in data:
             verdict = settled(example.situation, example.situation.body.matrix[None], drops, items)[0]
             assert (verdict is Verdict.HOLDS) == example.holds == (example.kind in (STAYED, RESTED))
@@ -52,7 +52,7 @@ def test_a_grounding_learned_from_it_proposes(tmp_path: Path) -> None:
     write_weights(path, weights)
     model, rng, held = load_model(path), np.random.default_rng(0), 0
     scenes, items = Scenes("on", "train"), ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for _ in range(12):
             situation = scenes.draw(rng).situation(np.eye(4))
             held += settled(situation, model.propose(situation, 1, rng), drops, items)[0] is Verdict.HOLDS
@@ -80,7 +80,7 @@ class Nowhere(Model):
 
 def test_a_bad_grounding_costs_no_more_than_its_half() -> None:
     model = Nowhere()
-    with Drops() as drops:
+    with open_drops() as drops:
         explorer = Explorer(Scenes("on", "train"), drops, model)
         made = explorer.make(True, np.random.default_rng(1))
     assert model.asked and made.holds and made.kind in (STAYED, RESTED)

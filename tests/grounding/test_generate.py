@@ -14,7 +14,7 @@ from grounding.generate import Job, generate, kinds_of
 from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
 from grounding.separation import Obstacles, separations
 from tamp.errors import InputError
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 
 @pytest.fixture(scope="module", params=["on", "inside"])
@@ -24,7 +24,7 @@ def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 def test_labels_are_what_physics_says(data: Dataset) -> None:
     items = ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for example in data:
             pose = example.situation.body.matrix[None]
             holds = settled(example.situation, pose, drops, items)[0] is Verdict.HOLDS
@@ -78,7 +78,7 @@ def test_a_damaged_data_set_is_refused(data: Dataset, tmp_path: Path) -> None:
 def test_separations_never_promise_too_much(data: Dataset) -> None:
     """They are lower bounds of the distances that the engine measures, and near to them for boxes."""
     compared, items = 0, ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for example in data:
             situation, pose = example.situation, example.situation.body.matrix
             drops.set_up(items(situation.body.form), [(items(o.form), o.matrix) for o in situation.others])

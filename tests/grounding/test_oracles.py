@@ -12,7 +12,7 @@ from grounding.oracles import ItemOf, Verdict, paper_oracle, paper_verdicts, set
 from grounding.relation_scene import Placed, Region, RelationScene
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 TABLE = BodyGeometry((Part(Box((0.8, 0.6, 0.4))),))
 BRICK = BodyGeometry((Part(Box((0.1, 0.06, 0.04))),))
@@ -81,7 +81,7 @@ def test_each_failure_has_its_name(relation: str, pose: np.ndarray, paper: Verdi
     situation = SCENES[relation]
     assert paper_verdicts(situation, pose[None]) == [paper]
     assert paper_oracle(situation, pose[None]).tolist() == [paper is Verdict.HOLDS]
-    with Drops() as drops:
+    with open_drops() as drops:
         assert settled(situation, pose[None], drops, ItemOf()) == [physics]
 
 

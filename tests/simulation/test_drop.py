@@ -6,14 +6,15 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part
-from tamp.simulation.drop import Drops, Item
+from tamp.simulation.drops import Item
+from tamp.simulation.engines import open_drops
 
 
 def test_a_box_stands_flat_and_falls_from_its_edge() -> None:
     table = Item((Part(Box((1.0, 1.0, 0.1)), Pose((0.0, 0.0, 0.45))),))
     box = Item((Part(Box((0.05, 0.05, 0.1))), Part(Box((0.1, 0.05, 0.02)), Pose((0.0, 0.0, -0.04)))))
     flat = Pose((0.0, 0.0, 0.551)).matrix
-    with Drops() as drops:
+    with open_drops() as drops:
         drops.set_up(box, [(table, np.eye(4))])
         (contact,) = drops.contacts(flat)
         assert contact.obstacle == 0 and abs(contact.distance - 0.001) < 1e-4

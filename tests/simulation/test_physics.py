@@ -13,9 +13,11 @@ import pytest
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Sphere
-from tamp.simulation.physics import World, load_bullet
+from tamp.simulation.engines import open_world
+from tamp.simulation.physics import load_bullet
 from tamp.simulation.settle import settle
 from tamp.simulation.shapes import centre_of_mass
+from tests.needs import NEEDS_PYBULLET
 
 ROBOT = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 
@@ -49,7 +51,7 @@ def body(name: str, *parts: Part, at: tuple[float, float, float] = (0, 0, 0), mo
 @pytest.mark.parametrize("second", SHAPES)
 def test_distances_are_exact(first: str, second: str) -> None:
     scene = scene_of(body("a", Part(SHAPES[first])), body("b", Part(SHAPES[second])))
-    with World(scene) as world:
+    with open_world(scene) as world:
         for gap, axis in itertools.product((0.01, 0.001, -0.0005, -0.004), (0, 2)):
             away = 0.1 + gap
             world.place("b", Pose((away, 0.0, 0.0) if axis == 0 else (0.0, 0.0, away)).matrix)
@@ -60,7 +62,7 @@ def test_distances_are_exact(first: str, second: str) -> None:
 
 def test_pad_of_the_robots_hulls_is_added_back() -> None:
     robot = ROBOTS["panda_mobile"]()
-    with World(scene_of(body("block", Part(Box((0.03, 0.06, 0.03))))), robot) as world:
+    with open_world(scene_of(body("block", Part(Box((0.03, 0.06, 0.03))))), robot) as world:
         world.set_robot((0, 0, 0), robot.home, 0.062)
         world.place("block", world.link_poses()["panda_hand"] @ robot.T_hand_tool.matrix)
         for finger in ("panda_leftfinger", "panda_rightfinger"):
@@ -70,7 +72,7 @@ def test_pad_of_the_robots_hulls_is_added_back() -> None:
 
 def test_setting_the_robot_moves_its_links() -> None:
     robot = ROBOTS["panda_mobile"]()
-    with World(scene_of(), robot) as world:
+    with open_world(scene_of(), robot) as world:
         world.set_robot((1.0, 2.0, math.pi / 2), robot.home, 0.08)
         poses = world.link_poses()
         assert list(poses) == [link.name for link in robot.links]
@@ -82,7 +84,7 @@ def test_setting_the_robot_moves_its_links() -> None:
 
 def test_boxes_around_the_links_hold_the_planners_hulls() -> None:
     robot = ROBOTS["panda_mobile"]()
-    with World(scene_of(), robot) as world:
+    with open_world(scene_of(), robot) as world:
         checked = 0
         for link in robot.links:
             solid = world.links[link.name]
@@ -95,7 +97,7 @@ def test_boxes_around_the_links_hold_the_planners_hulls() -> None:
 
 
 def test_rays_name_what_they_hit() -> None:
-    with World(scene_of(body("a", Part(Box((0.1, 0.1, 0.1))), at=(0, 0, 1)))) as world:
+    with open_world(scene_of(body("a", Part(Box((0.1, 0.1, 0.1))), at=(0, 0, 1)))) as world:
         starts = np.array([[0.0, 0, 2], [1.0, 0, 2], [5.0, 0, 2]])
         ends = np.array([[0.0, 0, 0], [1.0, 0, -2], [5.0, 0, 1]])
         (first, at), (second, below), (third, _) = world.rays(starts, ends)
@@ -127,6 +129,7 @@ def test_a_resting_body_stays_and_a_leaning_one_falls() -> None:
     assert settled["two"].moved < 0.003
 
 
+@NEEDS_PYBULLET
 def test_importing_pybullet_prints_nothing() -> None:
     code = "from tamp.simulation.physics import load_bullet; load_bullet(); print('only this')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -22,6 +22,7 @@ COMMANDS = (
     "tamp-export plan.json",
     "tamp-view one_object --png x.png",
     "tamp-view one_object --no-browser",
+    "tamp-demo upright(o) --no-open",
     "tamp-bench table log.jsonl",
     "tamp-learn evaluate on=surface --data none.npz",
 )

@@ -16,7 +16,7 @@ import pytest
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.system.files import find_domain
 from tamp.verification.collision_sweep import Sweeper
 
@@ -45,7 +45,7 @@ class Builder:
         self.problem.write_text(problem)
         self.loaded = load_scene(self.problem)
         self.robot = ROBOTS["panda_mobile"]()
-        self.world = World(self.loaded.scene, self.robot)
+        self.world = open_world(self.loaded.scene, self.robot)
         self.sweeper = Sweeper(self.world, self.robot)
         self.base = np.array(self.loaded.scene.robot.base)
         self.arm = np.array(self.robot.home)

@@ -12,7 +12,8 @@ import pytest
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
+from tamp.simulation.world import World
 from tamp.verification.collision_sweep import Findings, Natural, Sweeper
 from tamp.verification.execution_state import Held
 from tamp.verification.trajectory_sampling import STEP, TURN, Sampler
@@ -26,7 +27,7 @@ STICK = Body("stick", (Part(Box((0.02, 0.02, 0.3))),), Pose((-2.0, 0.0, 0.15)), 
 def world() -> Iterator[World]:
     bodies = {body.name: body for body in (POST, STICK)}
     scene = Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))
-    with World(scene, ROBOT) as made:
+    with open_world(scene, ROBOT) as made:
         yield made
 
 

@@ -12,7 +12,7 @@ from tamp.geometric.loading.footing import Ground
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cavity, Cylinder, Part, RobotStart, Room, Scene, Sphere, Surface
 from tamp.geometric.stability.stable_poses import stable_faces
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.simulation.settle import settle
 from tamp.verification.support_geometry import Supports, outside
 
@@ -48,7 +48,7 @@ def block(x: float, z: float, name: str = "block", *parts: Part) -> Body:
     ],
 )
 def test_a_block_on_a_table(x: float, z: float, on: set[str], stable: bool) -> None:
-    with World(scene(block(x, z))) as world:
+    with open_world(scene(block(x, z))) as world:
         stand = Supports(world).stand("block")
         assert stand.stable is stable
         if stable:
@@ -60,7 +60,7 @@ def test_a_block_on_a_table(x: float, z: float, on: set[str], stable: bool) -> N
 def test_the_files_centre_of_mass_counts(x: float, centre: float, stable: bool) -> None:
     """The planner's side, the judge's and physics agree on a body whose file says where its mass is."""
     uneven = replace(block(x, 0.601), center_of_mass=(centre, 0.0, 0.0))
-    with World(scene(uneven)) as world:
+    with open_world(scene(uneven)) as world:
         assert Supports(world).stand("block").stable is stable
     assert (Ground(scene(uneven).bodies).footing(uneven).why is None) is stable
     settled = settle(scene(uneven), {"block": uneven.pose}, 1.0)["block"]
@@ -72,14 +72,14 @@ def test_the_files_centre_of_mass_counts(x: float, centre: float, stable: bool) 
 
 @pytest.mark.parametrize("shape", [Sphere(0.04), Cylinder(0.04, 0.08)])
 def test_a_ball_and_a_can_stand(shape: Sphere | Cylinder) -> None:
-    with World(scene(block(0.0, 0.591, "round", Part(shape)))) as world:
+    with open_world(scene(block(0.0, 0.591, "round", Part(shape)))) as world:
         assert Supports(world).stand("round").stable
 
 
 def test_a_bridge_stands_on_two_bodies() -> None:
     pillars = [block(x, 0.601, name) for x, name in ((-0.1, "left"), (0.1, "right"))]
     beam = block(0.0, 0.662, "beam", Part(Box((0.3, 0.05, 0.02))))
-    with World(scene(*pillars, beam)) as world:
+    with open_world(scene(*pillars, beam)) as world:
         supports = Supports(world)
         stand = supports.stand("beam")
         assert stand.on == {"left", "right"} and stand.stable
@@ -89,7 +89,7 @@ def test_a_bridge_stands_on_two_bodies() -> None:
 
 
 def test_on_and_inside_say_why_not() -> None:
-    with World(scene(block(0.0, 0.601))) as world:
+    with open_world(scene(block(0.0, 0.601))) as world:
         supports = Supports(world)
         surface, cavity = TABLE.surfaces[0], TABLE.cavities[0]
 

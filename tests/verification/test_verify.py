@@ -13,11 +13,21 @@ import pytest
 
 from tamp.commands.verify import main
 from tamp.plan.violation import KINDS
+from tamp.simulation.engines import ENGINES, installed
 from tamp.verification.replay import LOOKS, LOOKS_BEYOND
 from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
 Plan = dict[str, Any]
+
+
+@pytest.fixture(autouse=True, params=[name for name in ENGINES if installed(name)])
+def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Each test asks each engine."""
+    monkeypatch.setattr("tamp.verification.verify.default_engine", lambda: request.param)
+    return request.param
+
+
 MOVE_EMPTY, PICK, MOVE_LOADED, PLACE = range(4)
 
 

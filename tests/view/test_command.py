@@ -175,14 +175,14 @@ def test_meshes_from_elsewhere_are_given_away_only_when_that_is_said(
     here = tmp_path / "here"
     here.mkdir()
     problem, page = here / "p.yaml", here / "p.html"
-    for mesh, inside in (("../hidden.obj", False), ("link.obj", False), ("pybullet_data/duck.obj", True)):
+    for mesh, inside in (("../hidden.obj", False), ("link.obj", False), ("objects/mug.obj", True)):
         if mesh == "link.obj":
             (here / mesh).symlink_to("../hidden.obj")
         problem.write_text(
             "domain: cupboard\nrobot: {model: panda_mobile, base: [0, 0, 0]}\n"
             "room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}\nbodies:\n"
             "  table: {furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0, 0]}\n"
-            f"  thing: {{mesh: {mesh}, on: table{', scale: 0.05' if inside else ''}}}\ngoal: (on thing table)\n",
+            f"  thing: {{mesh: {mesh}, on: table{', scale: 0.85' if inside else ''}}}\ngoal: (on thing table)\n",
             encoding="utf-8",
         )
         assert main([str(problem), "--html", str(page)]) == (0 if inside else 2), capsys.readouterr().err

@@ -11,7 +11,7 @@ from tamp import load_problem, solve
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.plan.open import Stored, open_plan
 from tamp.plan.write import write_plan
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.view.timeline import PoseInterval, Timeline, holding, timeline_of, tool_path
 
 
@@ -51,7 +51,7 @@ def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(timeline: Time
 
 def test_links_stand_where_another_engine_has_them(timeline: Timeline) -> None:
     kinematics = Kinematics(timeline.robot)
-    with World(timeline.scene, timeline.robot) as world:
+    with open_world(timeline.scene, timeline.robot) as world:
         for time in np.linspace(0.0, timeline.duration, 9):
             row = timeline.row(time)
             world.set_robot(row[:3], row[3:10], float(row[10]))

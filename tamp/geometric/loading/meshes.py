@@ -66,30 +66,34 @@ def find_mesh(name: str, folder: Path) -> Path:
     path = Path(os.path.expanduser(name))
     shown = name if len(name) <= 80 else f"{name[:77]}..."
 
+    roots = [folder, folder / "assets", shipped("problems") / "assets"]
+    sought = [root / path for root in roots]
     if path.parts[:1] == (_PYBULLET,):
-        spec = importlib.util.find_spec(_PYBULLET)
-        roots = (
-            [Path(place).parent for place in (spec.submodule_search_locations or ())]
-            if spec
-            else []
-        )
-        if not roots:
-            raise InputError(f"no mesh file '{shown}'", remedy="pybullet is not installed")
-    else:
-        roots = [folder, folder / "assets", shipped("problems") / "assets"]
+        roots = _bullet_roots()
+        # Those of its files that shipped problems use come with us.
+        sought = [root / path for root in roots]
+        sought.append(shipped("problems") / "assets" / Path(*path.parts[1:]))
 
     try:
-        for root in roots:
-            if (root / path).is_file():
-                return root / path
+        for place in sought:
+            if place.is_file():
+                return place
         beside = sorted(_meshes_beside(path, roots))
     except OSError as error:  # a name too long to be one, a folder that may not be read
         raise InputError(f"no mesh file '{shown}': {error.strerror}") from None
 
     nearest = closest(name, beside) if len(name) < 1000 else None
-    raise InputError(
-        f"no mesh file '{shown}'", remedy=f"Did you mean '{nearest}'?" if nearest else ""
-    )
+    remedy = f"Did you mean '{nearest}'?" if nearest else ""
+    if not roots:
+        remedy = "pybullet_data comes with pybullet, which is not installed (Python 3.11 has it)"
+    raise InputError(f"no mesh file '{shown}'", remedy=remedy)
+
+
+def _bullet_roots() -> list[Path]:
+    """Return the folders in which pybullet_data lies; none when it is not installed."""
+    spec = importlib.util.find_spec(_PYBULLET)
+    places = (spec.submodule_search_locations or ()) if spec else ()
+    return [Path(place).parent for place in places]
 
 
 def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:

@@ -59,6 +59,19 @@ NODE_DRAWS = 5
 """Draws for each of its nodes: a long one shall be gone through more than once, since its search
 was long as well."""
 
+LONG_SEARCH = 150
+"""Expanded states of a long search: the same plan would be found again, at the same expense, only
+to be given another try in each round."""
+
+DRAWS_FOR_A_STATE = 4
+"""Draws that a skeleton gets at least for each state of a long search, which so takes no more than
+about a quarter of the time; `MOST_SHARES` times as many are the most in one of its rounds."""
+
+MOST_SHARES = 10
+
+MANY_ROUNDS = 16
+"""Rounds of such a skeleton up to which its tries grow by half, after that by one."""
+
 ROUNDS_BEFORE_ALL_OBJECTS = 3
 """Rounds of a skeleton after which no object is excluded any more, even if nothing failed at it."""
 
@@ -107,7 +120,7 @@ def plan_adaptively(run: Run) -> Result:
                 result = _without_plan(run)
             else:
                 skeleton = run.latest = skeleton_of(run, found)
-                values = bind_skeleton(run, skeleton, *draws_of_round(skeleton))
+                values = bind_for_its_worth(run, skeleton, found.expanded)
                 if values is not None:
                     return solved_result(run, skeleton, values)
                 result = learn(run, skeleton)
@@ -118,6 +131,26 @@ def plan_adaptively(run: Run) -> Result:
             run.progress(run.effort)
     except (OutOfTime, KeyboardInterrupt) as error:
         return interrupted_result(run, error)
+
+
+def bind_for_its_worth(run: Run, skeleton: Skeleton, expanded: int) -> dict[int, str] | None:
+    """Bind a skeleton; after a long search with more and more tries, as long as that costs less.
+
+    Args:
+        run: The run.
+        skeleton: What to bind.
+        expanded: The states that its search took.
+    """
+    share = DRAWS_FOR_A_STATE * expanded if expanded >= LONG_SEARCH else 0
+    worth = run.binder.draws + share
+    while True:
+        before, rounds = run.binder.draws, skeleton.rounds
+        tries, budget = draws_of_round(skeleton)
+        budget = min(budget, MOST_SHARES * share) if share else budget
+        values = bind_skeleton(run, skeleton, tries, budget)
+        if values is not None or run.binder.draws >= worth or run.binder.draws == before:
+            return values
+        skeleton.rounds += 1 + (rounds // 2 if rounds < MANY_ROUNDS else 0)
 
 
 def draws_of_round(skeleton: Skeleton) -> tuple[int, int]:

@@ -35,11 +35,13 @@ class PricedPlan:
         plan: Of the optimistic task.
         task: That task, guarded by what binding has learned.
         prices: Of its static facts, where they are not free.
+        expanded: States that the search took which found it.
     """
 
     plan: Plan
     task: InstantiatedTask
     prices: Mapping[Fact, float]
+    expanded: int = 0
 
 
 def priced_search(
@@ -91,7 +93,7 @@ def priced_search(
         # with many prices many plans look alike: then any plan will do
         found = search(task, search="greedy", price=prices, deadline=deadline)
         effort.expanded += found.expanded
-    return None if found.plan is None else PricedPlan(found.plan, task, prices)
+    return None if found.plan is None else PricedPlan(found.plan, task, prices, found.expanded)
 
 
 def mean_action_cost(task: InstantiatedTask) -> float:

@@ -17,7 +17,7 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, RobotStart, Room, Scene, Shape, Sphere
 from tamp.planner.initial_state import initial_state
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.symbolic.pddl.parser import parse_domain
 from tamp.verification.support_geometry import Supports
 
@@ -50,7 +50,7 @@ def wedge(folder: Path) -> None:
 
 def felt(bodies: dict[str, Body], name: str) -> str | None:
     """The judge's opinion of how a body stands."""
-    with World(Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))) as world:
+    with open_world(Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))) as world:
         return Supports(world).stand(name).why
 
 

@@ -9,6 +9,7 @@ import pytest
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.overlaps import check_overlaps
+from tests.needs import MESHES, NEEDS_PYBULLET
 
 GOOD = """\
 name: mine
@@ -123,8 +124,14 @@ CASES = [
     ),
     # Meshes
     (CAN, "{mesh: objects/bwl.obj, on: table}", 7, "no mesh file 'objects/bwl.obj'. Did you mean 'objects/bowl.obj'"),
-    (CAN, "{mesh: pybullet_data/duc.obj, on: table}", 7, "Did you mean 'pybullet_data/duck.obj'"),
-    (CAN, "{mesh: pybullet_data/plane_implicit.urdf, on: table}", 7, "has a <plane>, which has no end"),
+    pytest.param(
+        CAN,
+        "{mesh: pybullet_data/duc.obj, on: table}",
+        7,
+        "Did you mean 'pybullet_data/duck.obj'",
+        marks=NEEDS_PYBULLET,
+    ),
+    (CAN, f"{{mesh: {MESHES}/plane_implicit.urdf, on: table}}", 7, "has a <plane>, which has no end"),
     (CAN, "{mesh: objects/bowl.obj, scale: 0, on: table}", 7, "bodies.can.scale: must be positive"),
     (CAN, "{mesh: objects/bowl.obj, scale: 1000, on: table}", 7, "160 x 160 x 55 m large.*scale: 0.001"),
 ]

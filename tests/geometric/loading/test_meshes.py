@@ -21,6 +21,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere, Visual
 from tamp.system.files import cache_folder, shipped
 from tests.clock import unhindered
+from tests.needs import MESHES, NEEDS_PYBULLET
 
 ONE = (1.0, 1.0, 1.0)
 CUBE = [(x, y, z) for x in (0, 0.1) for y in (0, 0.1) for z in (0, 0.1)]
@@ -84,7 +85,7 @@ def hulls(mesh: Mesh) -> list[Array]:
     return [part.shape.vertices for part in mesh.parts if isinstance(part.shape, Hull)]
 
 
-@pytest.mark.parametrize("name", ["objects/bowl.obj", "pybullet_data/objects/mug.obj"])
+@pytest.mark.parametrize("name", ["objects/bowl.obj", "objects/mug.obj"])
 def test_pieces_contain_a_hollow_mesh_closely(name: str) -> None:
     scale = (0.05,) * 3 if "duck" in name else ONE
     surface = read_surface(find_mesh(name, Path()), scale)  # type: ignore[arg-type]
@@ -138,7 +139,7 @@ def test_the_same_file_gives_the_same_pieces() -> None:
 
 def test_shipped_pieces_are_what_would_be_computed() -> None:
     folder = shipped("problems") / "assets" / "pieces"
-    for name, factor in (("objects/mustard_bottle.obj", 1.0), ("pybullet_data/objects/mug_col.obj", 0.85)):
+    for name, factor in (("objects/mustard_bottle.obj", 1.0), ("objects/mug_col.obj", 0.85)):
         path, scale = find_mesh(name, Path()), (factor,) * 3
         assert (folder / pieces_name(path, scale)).is_file()
         kept, _ = mesh_pieces(path, scale)
@@ -271,9 +272,21 @@ def test_where_meshes_are_looked_for(tmp_path: Path) -> None:
     assert find_mesh("objects/mine.obj", tmp_path) == mine
     assert find_mesh(str(mine), Path()) == mine
     assert find_mesh("objects/bowl.obj", tmp_path).is_file()
-    assert find_mesh("pybullet_data/duck.obj", tmp_path).is_file()
     with pytest.raises(InputError, match=r"no mesh file 'objects/mime.obj'. Did you mean 'objects/mine.obj'"):
         find_mesh("objects/mime.obj", tmp_path)
+
+
+@NEEDS_PYBULLET
+def test_meshes_of_pybullet_data_are_found_where_it_is_installed(tmp_path: Path) -> None:
+    assert find_mesh("pybullet_data/duck.obj", tmp_path).is_file()
+
+
+def test_pybullet_datas_mug_comes_with_us(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tamp.geometric.loading.meshes._bullet_roots", list)
+    assert find_mesh("pybullet_data/objects/mug.urdf", tmp_path) == find_mesh("objects/mug.urdf", tmp_path)
+    with pytest.raises(InputError, match=r"pybullet_data/duck\.obj") as said:
+        find_mesh("pybullet_data/duck.obj", tmp_path)
+    assert "not installed" in said.value.remedy
 
 
 URDF = """<?xml version="1.0"?>
@@ -339,9 +352,9 @@ def test_flat_points_become_a_thin_hull() -> None:
 
 
 def test_parts_of_a_mesh_are_in_the_files_frame() -> None:
-    mesh = load_mesh(find_mesh("pybullet_data/duck_vhacd.obj", Path()), (0.05, 0.05, 0.05))
+    mesh = load_mesh(MESHES / "duck_vhacd.obj", (0.05, 0.05, 0.05))
     points = np.concatenate(hulls(mesh))
-    surface = read_surface(find_mesh("pybullet_data/duck_vhacd.obj", Path()), (0.05, 0.05, 0.05))
+    surface = read_surface(MESHES / "duck_vhacd.obj", (0.05, 0.05, 0.05))
     assert points.min(axis=0) == pytest.approx(surface.vertices.min(axis=0), abs=0.001)
     assert points.max(axis=0) == pytest.approx(surface.vertices.max(axis=0), abs=0.001)
     assert all(part == Part(part.shape) for part in mesh.parts)

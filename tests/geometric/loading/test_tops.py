@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from tamp.geometric.loading.load import load_scene
-from tamp.geometric.loading.meshes import find_mesh, load_mesh, mesh_triangles
+from tamp.geometric.loading.meshes import load_mesh, mesh_triangles
 from tamp.geometric.loading.tops import top_of
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Part, Sphere
+from tests.needs import MESHES
 
 TOP = Part(Box((0.4, 0.4, 0.04)), Pose((0.0, 0.0, 0.42)))
 LEG = Part(Box((0.06, 0.06, 0.4)), Pose((0.15, 0.15, 0.2)))
@@ -89,10 +90,10 @@ def test_an_edge_or_a_slope_is_no_top() -> None:
 
 
 def test_pybullets_table_and_tray() -> None:
-    table = load_mesh(find_mesh("pybullet_data/table/table.urdf", Path()))
+    table = load_mesh(MESHES / "table" / "table.urdf")
     top = top_of("table", table.parts)
     assert top is not None and top.pose.position == pytest.approx((0, 0, 0.625)) and top.size == pytest.approx((1.5, 1))
-    tray = load_mesh(find_mesh("pybullet_data/tray/tray.urdf", Path()))
+    tray = load_mesh(MESHES / "tray" / "tray.urdf")
     inner = top_of("tray", tray.parts, triangles=mesh_triangles(tray))
     assert inner is not None and inner.pose.position[2] < 0.02 < min(
         inner.size

@@ -11,16 +11,17 @@ import numpy as np
 from tamp.planner.problem import Problem, load_problem
 from tamp.stream import Call, Rejection
 from tamp.system.deadline import Deadline
+from tests.needs import MESHES
 
 THINGS = {
     "box": "box: [0.045, 0.09, 0.175]",
     "can": "cylinder: {radius: 0.033, height: 0.102}",
-    "mug": "mesh: pybullet_data/objects/mug.urdf, scale: 0.85",
-    "duck": "mesh: pybullet_data/duck_vhacd.obj, scale: 0.03",
-    "lego": "mesh: pybullet_data/lego/lego.urdf",
+    "mug": "mesh: objects/mug.urdf, scale: 0.85",
+    "duck": f"mesh: {MESHES}/duck_vhacd.obj, scale: 0.03",
+    "lego": f"mesh: {MESHES}/lego/lego.urdf",
     "mustard": "mesh: objects/mustard_bottle.obj",
     "bowl": "mesh: objects/bowl.obj",
-    "blob": "mesh: pybullet_data/random_urdfs/007/007.urdf, scale: 0.7",
+    "blob": f"mesh: {MESHES}/random_urdfs/007/007.urdf, scale: 0.7",
 }
 
 SCENE = """

@@ -17,7 +17,7 @@ from grounding.paper.oracle import own_box, published_oracle
 from grounding.paper.rotations import quaternions, rotations
 from grounding.relation_scene import Placed, RelationScene
 from tamp.errors import InputError
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 
 @pytest.fixture(scope="module", params=["on", "inside"])
@@ -28,7 +28,7 @@ def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 def test_labels_are_what_physics_says_and_kinds_have_their_shares(data: Dataset) -> None:
     items = ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for example in data:
             pose = example.situation.body.matrix[None]
             holds = settled(example.situation, pose, drops, items)[0] is Verdict.HOLDS

@@ -25,7 +25,7 @@ from grounding.torch_layers import arrays_of
 from grounding.train import TRAINERS, TrainArgs, measure
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
-from tamp.simulation.drop import Drops
+from tamp.simulation.engines import open_drops
 
 Trained = dict[tuple[str, str], Weights]
 
@@ -51,7 +51,7 @@ def test_what_is_proposed_holds_in_physics(
     scenes: dict[str, Dataset], trained: Trained, relation: str, model: str
 ) -> None:
     grounding, rng, held, items = RelationalModel(trained[relation, model]), np.random.default_rng(0), [], ItemOf()
-    with Drops() as drops:
+    with open_drops() as drops:
         for index in range(40):  # scenes that it was trained on: does it work at all?
             situation = scenes[relation][index].situation
             poses = grounding.propose(situation, 1, rng)

@@ -24,7 +24,7 @@ class Level:
 
 
 class Levels:
-    """Which levels are to be entered, which stand as they were, and which of those are reset.
+    """The levels: those to be entered, those that stand as they were, those of them that are reset.
 
     Args:
         users: For each level the later ones that depend on its outputs.

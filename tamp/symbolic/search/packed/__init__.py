@@ -1,1 +1,1 @@
-"""Lazy search over packed states, compiled: what `lazy` does, many times faster on large tasks."""
+"""Lazy search over packed states, compiled: as `lazy`, many times faster on large tasks."""

@@ -1,4 +1,4 @@
-"""Where the arrays of the compiled search begin: the task, the states, the open lists, scratch.
+"""Places of the compiled search's arrays: the task, the states, the open lists, scratch.
 
 All lie in two arrays, one of whole numbers and one of reals, and a field of these tuples is the
 place where its part begins, or a count: a compiled function that takes two arrays is called ten
@@ -182,7 +182,7 @@ class Space(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """What one expansion works with."""
+    """The scratch of one expansion."""
 
     closed: int
     after: int

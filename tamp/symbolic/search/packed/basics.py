@@ -7,6 +7,20 @@ In Python that numba compiles, see `compiled`.
 
 from __future__ import annotations
 
+NODES, ENTRIES, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6
+"""Places of the counters."""
+
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 7, 8, 9, 10, 11
+"""Places of what is given: expanded states until a pause, at most, turns after progress, whether
+what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
+
+SIZES = 12
+"""From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
+
+
+GOAL_ENTRY = -2
+"""As in `open_lists`."""
+
 
 def heap_push(ints, reals, keys, ties, items, size, key, tie, item):
     """Push an item onto a heap of so many: the lowest key is first, among equals the lowest tie."""
@@ -29,6 +43,7 @@ def heap_pop(ints, reals, keys, ties, items, size):
     """Remove the first of a heap of so many: its item is read before."""
     last = size - 1
     key, tie, item = reals[keys + last], ints[ties + last], ints[items + last]
+
     k = 0
     while True:
         child = 2 * k + 1
@@ -70,3 +85,31 @@ def contains(ints, starts, facts, i, state):
         if not has(ints, state, ints[facts + k]):
             return False
     return True
+
+
+def push_goal(ints, reals, t, space, node, cost, key):
+    """Push a goal state that costs something to derive: it waits for what is cheaper than it."""
+    kinds = t.heuristics
+    capacity = space.entries
+    entry = ints[ENTRIES]
+    ints[ENTRIES] += 1
+    ints[PUSHED] += 1
+    ints[GOAL_NODE] = node
+
+    reals[space.entry_cost + entry], ints[space.entry_parent + entry] = cost, node
+    ints[space.entry_operator + entry] = GOAL_ENTRY
+    for k in (0, kinds):
+        if k == 0 or ints[SIZES + k]:
+            base, size = k * capacity, ints[SIZES + k]
+            heap_push(
+                ints,
+                reals,
+                space.keys + base,
+                space.ties + base,
+                space.items + base,
+                size,
+                key,
+                ints[PUSHED],
+                entry,
+            )
+            ints[SIZES + k] += 1

@@ -45,7 +45,7 @@ for _module in SOURCES:
             _compile(_function)
 
 RUN = _compile(loops.run, outer=True)
-PUSH_GOAL = _compile(loops.push_goal, outer=True)
+PUSH_GOAL = _compile(basics.push_goal, outer=True)
 REHASH = _compile(states.rehash, outer=True)
 ELIMINATE = _compile(states.eliminate, outer=True)
 

@@ -19,6 +19,7 @@ def trigger(ints, reals, t, x, state):
         if ints[x.on + g]:
             for k in range(ints[t.fine_starts + g], ints[t.fine_starts + g + 1]):
                 reals[x.extras + ints[t.fines + k]] = 0.0
+
     for g in range(t.guards):
         ints[x.on + g] = contains(ints, t.guard_starts, t.guard_facts, g, state)
         if ints[x.on + g]:
@@ -31,6 +32,7 @@ def relax(ints, reals, t, r, x, state):
     for i in range(r.operators):
         ints[x.left + i] = ints[r.waits + i]
         reals[x.costs + i] = reals[r.costs + i]
+
     for k in range(r.rise_count):
         reals[x.raised + ints[r.rises + k]] = 0.0
     for g in range(t.guards):
@@ -42,6 +44,7 @@ def relax(ints, reals, t, r, x, state):
                     ints[r.groups_starts + ints[r.rises + k] + 1],
                 ):
                     reals[x.costs + ints[r.groups + n]] += reals[r.rise_prices + k]
+
     for key in range(r.keys):
         ints[x.active + key] = contains(ints, r.key_starts, r.key_facts, key, state)
         if ints[x.active + key]:
@@ -84,6 +87,7 @@ def begin(ints, reals, t, r, x, closed):
     for fact in range(r.facts):
         reals[x.reached + fact] = math.inf
         ints[x.supporters + fact] = -1
+
     entries, heap, top = 0, 0, -1
     for key in range(r.keys):
         if ints[x.active + key] and reals[r.key_prices + key] < math.inf:
@@ -99,6 +103,7 @@ def begin(ints, reals, t, r, x, closed):
                 entries += 1
             word = (word >> 1) & 0x7FFFFFFFFFFFFFFF
             fact += 1
+
     for k in range(r.negative_count):
         fact = ints[r.negative_goals + k]
         if not has(ints, closed, fact):
@@ -123,6 +128,7 @@ def begin(ints, reals, t, r, x, closed):
 def explore(ints, reals, t, r, x, closed):
     """Compute the facts' costs and best supporters by hadd, until all goals are known."""
     entries, heap, top = begin(ints, reals, t, r, x, closed)
+
     now, bucket = 0.0, 0
     while True:
         while bucket <= top and ints[x.heads + bucket] < 0:
@@ -146,6 +152,7 @@ def explore(ints, reals, t, r, x, closed):
             if dearest <= now:
                 break
             now = cost
+
         for n in range(ints[r.needs_starts + fact], ints[r.needs_starts + fact + 1]):
             i = ints[r.needs + n]
             if (
@@ -169,6 +176,7 @@ def relaxed_plan(ints, reals, t, r, x):
         ints[x.seen + fact] = 0
         reals[x.bounds + fact] = math.inf
         reals[x.provided + fact] = math.inf
+
     size, total = 0, 0.0
     for k in range(r.goal_count):
         goal = ints[r.goals + k]
@@ -179,6 +187,7 @@ def relaxed_plan(ints, reals, t, r, x):
             key = -reals[x.reached + goal]
             heap_push(ints, reals, x.heap_keys, x.heap_ties, x.heap_items, size, key, goal, goal)
             size += 1
+
     while size:
         fact = ints[x.heap_items]
         heap_pop(ints, reals, x.heap_keys, x.heap_ties, x.heap_items, size)
@@ -193,6 +202,7 @@ def relaxed_plan(ints, reals, t, r, x):
             and reals[x.provided + fact] <= reals[x.bounds + fact]
         ):
             continue
+
         owner = ints[r.owners + i]
         if owner >= 0:
             reals[x.chosen + owner] = max(reals[x.chosen + owner], reals[x.costs + i])
@@ -214,6 +224,13 @@ def relaxed_plan(ints, reals, t, r, x):
                     ints, reals, x.heap_keys, x.heap_ties, x.heap_items, size, key, other, other
                 )
                 size += 1
+
+    price, count = gathered(ints, reals, t, x)
+    return total + price, count
+
+
+def gathered(ints, reals, t, x):
+    """Gather the chosen operators into x.plan; return what they cost, and how many they are."""
     price, count = 0.0, 0
     for i in range(t.operators):
         if reals[x.chosen + i] >= 0.0:
@@ -221,7 +238,7 @@ def relaxed_plan(ints, reals, t, r, x):
             ints[x.plan + count] = i
             reals[x.chosen + i] = -1.0
             count += 1
-    return total + price, count
+    return price, count
 
 
 def paid(ints, reals, r, x, operator):
@@ -246,6 +263,7 @@ def landmarks(ints, reals, r, x, space, closed, node, parent):
         fact = ints[r.mark_facts + k]
         if has(ints, closed, fact) != ints[r.mark_absent + k]:
             ints[x.now + (k >> 6)] |= 1 << (k & 63)
+
     for w in range(words):
         before = ints[space.marks + parent * words + w] if parent >= 0 else 0
         ints[space.marks + node * words + w] = before | ints[x.now + w]
@@ -259,6 +277,7 @@ def landmarks(ints, reals, r, x, space, closed, node, parent):
                     ints[x.remaining + (other >> 6)] |= 1 << (other & 63)
         elif ints[r.mark_goal + k] and not has(ints, x.now, k):
             ints[x.remaining + (k >> 6)] |= 1 << (k & 63)
+
     total = 0.0
     for k in range(r.marks):
         if has(ints, x.remaining, k):

@@ -10,7 +10,24 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.packed.basics import heap_pop, heap_push
+from tamp.symbolic.search.packed.basics import (
+    ACHIEVERS,
+    AT,
+    BOOST,
+    ENTRIES,
+    EVALUATED,
+    EXPANDED,
+    GOAL_ENTRY,
+    GOAL_NODE,
+    LIMIT,
+    NODES,
+    PUSHED,
+    RANDOM,
+    SIZES,
+    UNTIL,
+    heap_pop,
+    heap_push,
+)  # fmt: skip
 from tamp.symbolic.search.packed.estimates import (
     explore,
     landmarks,
@@ -34,19 +51,6 @@ EXHAUSTED, GOAL, GROW, PAUSE, FOUND, LIMITED = 0, 1, 2, 3, 4, 5
 """Why the loop stops: no entry is left, a goal state came, arrays are full, it is time to look
 around, the goal state's turn has come, no more states may be expanded."""
 
-NODES, ENTRIES, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6
-"""Places of the counters."""
-
-UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 7, 8, 9, 10, 11
-"""Places of what is given: expanded states until a pause, at most, turns after progress, whether
-what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
-
-SIZES = 12
-"""From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
-
-GOAL_ENTRY = -2
-"""As in `open_lists`."""
-
 
 def pop(ints, reals, t, space, greedy):
     """Pop the first entry of the open list whose turn it is; -1 when all are empty."""
@@ -54,6 +58,7 @@ def pop(ints, reals, t, space, greedy):
     capacity = space.entries
     turns = SIZES + 2 * kinds
     usual, chosen = -1, -1
+
     for k in range(kinds):
         if ints[SIZES + k] and (usual < 0 or ints[turns + k] < ints[turns + usual]):
             usual = k
@@ -91,6 +96,7 @@ def push(ints, reals, t, r, x, space, node, i, reached, order, prefer, weight):
     ints[ENTRIES] += 1
     reals[space.entry_cost + entry], ints[space.entry_parent + entry] = reached, node
     ints[space.entry_operator + entry] = i
+
     dearer = reached - cost - step
     for k in range(kinds):
         h = reals[space.values + node * kinds + k]
@@ -202,6 +208,40 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         ints[x.is_helpful + ints[x.helpful + k]] = 0
 
 
+def arrive(ints, reals, t, x, space, i, parent, reached, greedy):
+    """Go by an operator from a state to the next, into x.after, and close it, or open it again.
+
+    Returns:
+        Its node; -1 where it was closed at no higher cost.
+    """
+    if parent < 0:
+        for w in range(t.words):
+            ints[x.after + w] = ints[t.initial + w]
+    else:
+        if ints[t.con_starts + i] < ints[t.con_starts + i + 1]:
+            for w in range(t.words):
+                ints[x.other + w] = ints[space.states + parent * t.words + w]
+            close_state(ints, t, x.other)
+        apply(ints, t, i, space.states + parent * t.words, x.other, x.after)
+    place = place_of(ints, t.words, x.after, space.states, space.table, space.mask)
+    node = ints[space.table + place]
+    if node >= 0 and (greedy or reached >= reals[space.cost + node]):
+        return -1
+
+    if node < 0:
+        node = ints[NODES]
+        ints[NODES] += 1
+        ints[space.table + place] = node
+        for w in range(t.words):
+            ints[space.states + node * t.words + w] = ints[x.after + w]
+    reals[space.cost + node], ints[space.parent + node] = reached, parent
+    ints[space.operator + node] = i
+    reals[space.spent + node] = (
+        reals[space.spent + parent] + reals[t.own + i] if parent >= 0 else 0.0
+    )
+    return node
+
+
 def run(ints, reals, t, r, x, space, weight, below):
     """Search until something is to be told; x.closed and ints[AT] are about the state at hand."""
     kinds, greedy = t.heuristics, weight == math.inf
@@ -225,31 +265,9 @@ def run(ints, reals, t, r, x, space, weight, below):
             if parent == ints[GOAL_NODE]:
                 return FOUND
             continue
-        if parent < 0:
-            for w in range(t.words):
-                ints[x.after + w] = ints[t.initial + w]
-        else:
-            if ints[t.con_starts + i] < ints[t.con_starts + i + 1]:
-                for w in range(t.words):
-                    ints[x.other + w] = ints[space.states + parent * t.words + w]
-                close_state(ints, t, x.other)
-            apply(ints, t, i, space.states + parent * t.words, x.other, x.after)
-        place = place_of(ints, t.words, x.after, space.states, space.table, space.mask)
-        node = ints[space.table + place]
-        if node >= 0 and (greedy or reached >= reals[space.cost + node]):
-            continue
-
+        node = arrive(ints, reals, t, x, space, i, parent, reached, greedy)
         if node < 0:
-            node = ints[NODES]
-            ints[NODES] += 1
-            ints[space.table + place] = node
-            for w in range(t.words):
-                ints[space.states + node * t.words + w] = ints[x.after + w]
-        reals[space.cost + node], ints[space.parent + node] = reached, parent
-        ints[space.operator + node] = i
-        reals[space.spent + node] = (
-            reals[space.spent + parent] + reals[t.own + i] if parent >= 0 else 0.0
-        )
+            continue
         for w in range(t.words):
             ints[x.closed + w] = ints[x.after + w]
         trigger(ints, reals, t, x, x.closed)
@@ -268,30 +286,3 @@ def run(ints, reals, t, r, x, space, weight, below):
             expand(ints, reals, t, r, x, space, node, length, weight, below)
         for k in range(length):
             ints[x.in_plan + ints[x.plan + k]] = 0
-
-
-def push_goal(ints, reals, t, space, node, cost, key):
-    """Push a goal state that costs something to derive: it waits for what is cheaper than it."""
-    kinds = t.heuristics
-    capacity = space.entries
-    entry = ints[ENTRIES]
-    ints[ENTRIES] += 1
-    ints[PUSHED] += 1
-    ints[GOAL_NODE] = node
-    reals[space.entry_cost + entry], ints[space.entry_parent + entry] = cost, node
-    ints[space.entry_operator + entry] = GOAL_ENTRY
-    for k in (0, kinds):
-        if k == 0 or ints[SIZES + k]:
-            base, size = k * capacity, ints[SIZES + k]
-            heap_push(
-                ints,
-                reals,
-                space.keys + base,
-                space.ties + base,
-                space.items + base,
-                size,
-                key,
-                ints[PUSHED],
-                entry,
-            )
-            ints[SIZES + k] += 1

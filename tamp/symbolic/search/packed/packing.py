@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache, reduce
+from functools import cache, partial
 from itertools import accumulate, chain
-from operator import or_
 from typing import Any
 
 from tamp.symbolic.search.heuristics.landmarks import Landmarks
@@ -85,20 +84,22 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
     """
     size = len(s.facts)
     words, every = (size + WORD - 1) // WORD or 1, (1 << size) - 1
-    conditions, changes = cache(pairs_of), cache(lambda k, a: effects_of(k, a, every))
+    conditions, changes = cache(pairs_of), cache(partial(effects_of, every=every))
     pre = Rows((conditions(b, a) for b, a in zip(s.before, s.absent, strict=True)), 3)
     eff = Rows((changes(k, a) for k, a in zip(s.kept, s.added, strict=True)), 3)
     effects = list(chain.from_iterable(s.conditional))
     con_pre = Rows((conditions(one[0], one[1]) for one in effects), 3)
     con_eff = Rows((changes(~one[3], one[2]) for one in effects), 3)
-    whole = [
-        reduce(or_, (one[3] | one[2] for one in more), every & ~k | a)
-        for k, a, more in zip(s.kept, s.added, s.conditional, strict=True)
-    ]
+    whole = [every & ~k | a for k, a in zip(s.kept, s.added, strict=True)]
+    for i, more in enumerate(s.conditional):
+        for one in more:
+            whole[i] |= one[2] | one[3]
     both = cache(touched)
     watch = Rows(([(i,) for i in s.watched.get(fact, ())] for fact in range(size)), 1)
 
-    bodies, heads, strata, recursive = [], [], [0], []
+    bodies: list[list[tuple[int, int, int]]] = []
+    heads: list[int] = []
+    strata, recursive = [0], list[int]()
     for stratum in s.strata:
         for (positive, negative), head in stratum.axioms():
             bodies.append(conditions(positive, negative))
@@ -110,7 +111,7 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
     guards = s.guard_sets()
     guard_facts = Rows(([(fact,) for fact in bits(facts)] for facts in guards), 1)
     fines = Rows((list(s.penalties(facts).items()) for facts in guards), 2)
-    return Task(
+    return Task._make((
         words, len(s.operators), len(kinds), len(s.always), len(recursive), len(guards),
         ints(kinds), *map(ints, (pre.starts, *pre.columns)),
         *map(ints, (eff.starts, *eff.columns)),
@@ -126,7 +127,7 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
         ints([int(bool(operator.guards)) for operator in s.operators]),
         *map(ints, (guard_facts.starts, *guard_facts.columns, fines.starts, fines.columns[0])),
         reals(fines.columns[1]),
-    )  # fmt: skip
+    ))  # fmt: skip
 
 
 class Keys:
@@ -201,7 +202,7 @@ def pack_relaxation(
     finite = [*costs, *(p for p in (*prices, *rises.columns[1]) if p < math.inf)]
     found = 0 if marks is None else len(marks.landmarks)
     whole = all(cost == int(cost) for cost in finite)
-    return Relaxed(
+    return Relaxed._make((
         base + len(prices), base, len(before), first, len(effect_rows.columns[0]),
         waits.count(0), len(relaxation.goals), len(relaxation.negative_goals),
         len(rises.columns[0]), len(prices), found, (found + WORD - 1) // WORD,
@@ -216,7 +217,7 @@ def pack_relaxation(
         *map(ints, (members.starts, *members.columns, removers, rises.starts, rises.columns[0])),
         reals(rises.columns[1]), *map(ints, (held.starts, held.columns[0], held.columns[1])),
         reals(held.columns[2]), *pack_landmarks(marks, size, ints, reals),
-    )  # fmt: skip
+    ))  # fmt: skip
 
 
 def pack_landmarks(

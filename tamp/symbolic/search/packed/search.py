@@ -16,7 +16,7 @@ from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.heuristics.landmarks import Landmarks
 from tamp.symbolic.search.heuristics.relaxation import Relaxation
 from tamp.symbolic.search.open_lists import PREFERRED_BOOST
-from tamp.symbolic.search.packed import loops
+from tamp.symbolic.search.packed import basics, loops
 from tamp.symbolic.search.packed.packing import pack_relaxation, pack_task
 from tamp.symbolic.search.successors import State, Successors
 
@@ -75,7 +75,7 @@ class PackedSearch:
         marks = Landmarks(s) if "landmarks" in names else None
         self._possible = marks is None or marks.possible
 
-        self._arena = arena = compiled.Arena(loops.SIZES + 4 * kinds, kinds)
+        self._arena = arena = compiled.Arena(basics.SIZES + 4 * kinds, kinds)
         numbers = [KINDS[name] for name in names]
         self._t = t = pack_task(s, numbers, arena.integers, arena.reals)
         relaxation = Relaxation(s, steps=True)
@@ -89,26 +89,26 @@ class PackedSearch:
         self._seen = 0, 0
         self._pace = max(1, min(LOOK_AROUND, MOST_ENTRIES // (1 + s.entries)))
         self._begin(kinds)
-        self._ints[loops.RANDOM], self._ints[loops.ACHIEVERS] = random, achievers
+        self._ints[basics.RANDOM], self._ints[basics.ACHIEVERS] = random, achievers
 
     def _begin(self, kinds: int) -> None:
         """Set the counters, and put the initial state into the usual list of each heuristic."""
         space, ints, reals, limit = self._space, self._ints, self._reals, self._search.limit
-        ints[loops.GOAL_NODE], ints[loops.BOOST] = -1, PREFERRED_BOOST
-        ints[loops.LIMIT] = UNLIMITED if limit is None else limit
+        ints[basics.GOAL_NODE], ints[basics.BOOST] = -1, PREFERRED_BOOST
+        ints[basics.LIMIT] = UNLIMITED if limit is None else limit
         reals[:kinds] = math.inf
 
         reals[space.entry_cost], ints[space.entry_parent] = 0.0, -1
-        ints[space.entry_operator], ints[loops.ENTRIES] = -1, 1
+        ints[space.entry_operator], ints[basics.ENTRIES] = -1, 1
         for k in range(kinds):
             place = k * space.entries
             reals[space.keys + place] = ints[space.ties + place] = ints[space.items + place] = 0
-            ints[loops.SIZES + k] = 1
+            ints[basics.SIZES + k] = 1
 
     @property
     def expanded(self) -> int:
         """Return how many states this search itself has expanded."""
-        return int(self._ints[loops.EXPANDED])
+        return int(self._ints[basics.EXPANDED])
 
     def plan(self, until: int = UNLIMITED) -> Plan | None:
         """Run the loop until there is a plan, or nothing is left, or a limit is reached.
@@ -126,18 +126,19 @@ class PackedSearch:
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
         while True:
             n = self._ints
-            n[loops.UNTIL] = self._until(until)
+            n[basics.UNTIL] = self._until(until)
             why = self._compiled.RUN(
                 n, self._reals, self._t, self._r, self._x, self._space, self._weight, search.below
             )
             self._count()
+
             if why == loops.EXHAUSTED:
                 return None
             if why == loops.FOUND:
-                return self._extract(int(n[loops.GOAL_NODE]))
+                return self._extract(int(n[basics.GOAL_NODE]))
             if why == loops.GOAL:
-                if self._take_goal(int(n[loops.AT])):
-                    return self._extract(int(n[loops.AT]))
+                if self._take_goal(int(n[basics.AT])):
+                    return self._extract(int(n[basics.AT]))
             elif why == loops.LIMITED:
                 raise SearchLimitReached(Reason.LIMIT)
             elif why == loops.GROW:
@@ -149,7 +150,7 @@ class PackedSearch:
 
     def _count(self) -> None:
         """Add to the counts of all searches what this one has done since."""
-        expanded, evaluated = self.expanded, int(self._ints[loops.EVALUATED])
+        expanded, evaluated = self.expanded, int(self._ints[basics.EVALUATED])
         self._search.expanded += expanded - self._seen[0]
         self._search.evaluated += evaluated - self._seen[1]
         self._seen = expanded, evaluated
@@ -171,7 +172,7 @@ class PackedSearch:
     def _grow(self) -> None:
         """Double the room for states, for entries, or for both."""
         space, n = self._space, self._ints
-        made = int(n[loops.NODES]), int(n[loops.ENTRIES])
+        made = int(n[basics.NODES]), int(n[basics.ENTRIES])
         nodes, entries = space.nodes, space.entries
         if made[0] + 1 >= nodes // 2:
             nodes *= 2
@@ -220,5 +221,5 @@ class PackedSearch:
             ints, self._reals, t, x, x.rooms, plan, kept, len(numbers)
         )
         operators = self._search.successors.operators
-        steps = ints[kept : kept + count].tolist()
+        steps: list[int] = ints[kept : kept + count].tolist()
         return Plan(tuple(operators[i] for i in steps), float(cost))

@@ -33,6 +33,7 @@ def apply(ints, t, i, base, closed, after):
     """Apply an operator to the state at `base`; adding wins over deleting."""
     for w in range(t.words):
         ints[after + w] = ints[base + w]
+
     first, last = ints[t.con_starts + i], ints[t.con_starts + i + 1]
     for k in range(ints[t.eff_starts + i], ints[t.eff_starts + i + 1]):
         ints[after + ints[t.eff_words + k]] = (
@@ -93,6 +94,7 @@ def applicable(ints, t, x, closed):
         if holds(ints, t.pre_starts, t.pre_words, t.pre_need, t.pre_absent, i, closed):
             ints[x.applicable + count] = i
             count += 1
+
     for w in range(t.words):
         word, fact = ints[closed + w] & ints[t.watch_mask + w], w << 6
         while word != 0:
@@ -117,6 +119,7 @@ def preferred(ints, t, x, space, node, closed, length):
         apply(ints, t, i, space.states + node * t.words, closed, x.after)
         for w in range(t.words):
             ints[x.after + w] |= ints[closed + w] & ints[t.derived + w]
+
         lost, gained = 0, 0
         for b in range(length):
             j = ints[x.plan + b]
@@ -127,6 +130,7 @@ def preferred(ints, t, x, space, node, closed, length):
                 lost += not possible
             else:
                 gained += possible
+
         rank = lost * (length + 1) + length - gained
         k = count
         while k > 0 and ints[x.ranks + k - 1] > rank:
@@ -149,6 +153,7 @@ def achievers(ints, t, r, x, space, node, helpful, length):
         fact = ints[r.mark_facts + k]
         if not ints[r.mark_absent + k] and not has(ints, space.marks + node * r.mark_words, k):
             ints[x.other + (fact >> 6)] |= 1 << (fact & 63)
+
     for a in range(length):
         i = ints[x.applicable + a]
         for k in range(ints[t.eff_starts + i], ints[t.eff_starts + i + 1]):

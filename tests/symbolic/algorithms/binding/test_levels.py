@@ -83,5 +83,5 @@ def test_levels_that_a_jump_crosses_are_not_entered_again(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(Binder, "_enter", counted)
     values = run.binder.bind(skeleton, 4, 100)
-    assert values is not None and run.standing.fault(skeleton, values) is None
+    assert values is not None and run.replay.fault(skeleton, values) is None
     assert len(entered) == len(skeleton.nodes) + 3, "three jumps back, each of which asks the test anew"

@@ -1,0 +1,16 @@
+"""Conditions of tests: what is not to be had on every Python, and files that come with the tests."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+MESHES = Path(__file__).resolve().parent / "meshes"
+"""A few of pybullet_data's files, with their licence."""
+
+NEEDS_PYBULLET = pytest.mark.skipif(
+    importlib.util.find_spec("pybullet") is None,
+    reason="about pybullet or its files, which have no wheel for this Python",
+)
