@@ -144,7 +144,7 @@ class _Run:
 
     def _carry_out(self, action: TimedAction) -> Done:
         world, began = self._world, self._world.time
-        active = self._active(action)
+        active, load = self._active(action), self._expected.load
         before = {name: world.pose(name) for name in world.scene.movable}
         world.attend(active)
         watch = Watch(world, active)
@@ -175,7 +175,7 @@ class _Run:
             base=watch.base,
             arm=watch.arm,
             touches=watch.unwanted(),
-            displaced=tuple(self._displaced(before, active)),
+            displaced=tuple(self._displaced(before, {active, *load})),
             deviations=tuple(self._deviations(truth, active)),
             event=self._event if due else None,
         )
@@ -194,10 +194,10 @@ class _Run:
     def _scene_name(self, word: str) -> str | None:
         return next((name for name in self._world.scene.bodies if name.lower() == word), None)
 
-    def _displaced(self, before: Mapping[str, Array], active: str | None) -> list[Displaced]:
+    def _displaced(self, before: Mapping[str, Array], handled: set[str | None]) -> list[Displaced]:
         found: list[Displaced] = []
         for name, T in before.items():
-            if name != active and name in self._world.solids:
+            if name not in handled and name in self._world.solids:
                 moved, turned = apart(T, self._world.pose(name))
                 if moved > MOVED[0] or turned > MOVED[1]:
                     found.append(Displaced(name, moved, turned))

@@ -84,6 +84,12 @@ class Expected:
         return None
 
     @property
+    def load(self) -> frozenset[str]:
+        """Return the bodies that ride on another one, and go where that is carried."""
+        riding = (terms[0] for terms in self.state.all("riding") if len(terms) == 4)
+        return frozenset(self._bodies[name] for name in riding if name in self._bodies)
+
+    @property
     def facts(self) -> frozenset[Fact]:
         """Derive the facts of which body should be on and inside what, among surfaces and cavities;
         PDDL's names.

@@ -13,6 +13,7 @@ from tamp.execution.observation import Truth
 from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.geometric.streams.registry import STREAMS
 from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
 from tamp.relations.observed import Observation, moved, observe
@@ -165,7 +166,11 @@ def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Itera
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
     sampled = [stream.name.removeprefix("sample-") for stream in streams.streams if stream.outputs]
     known = {*planned, *classifiers, *sampled}
-    return [name for name in relation_names(streams) if name in known and name not in SAMPLERS]
+    return [
+        name
+        for name in relation_names(streams)
+        if name in known and name not in SAMPLERS and f"sample-{name}" not in STREAMS
+    ]
 
 
 def _unknown(name: str, said: str, file: Path) -> InputError:

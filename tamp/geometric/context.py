@@ -24,7 +24,7 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Part, Scene
 from tamp.geometric.stability.stable_poses import StableFaces, stable_faces_of
-from tamp.geometric.values import Grasp
+from tamp.geometric.values import Grasp, Load
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -43,6 +43,8 @@ class Context:
         holding: What is in the hand at the start; the scene has that body where it was before.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
+        footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
+            whatever stands on them must have its centre of mass, metres.
     """
 
     scene: Scene
@@ -52,6 +54,12 @@ class Context:
     holding: Grasp | None = None
     heights: dict[tuple[int, int], float | None] = field(
         default_factory=dict[tuple[int, int], "float | None"],
+    )
+    footings: dict[tuple[str, Pose], tuple[Array, ...]] = field(
+        default_factory=dict[tuple[str, Pose], "tuple[Array, ...]"],
+    )
+    _loaded: dict[tuple[str, Load], Context] = field(
+        default_factory=dict[tuple[str, Load], "Context"],
     )
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(
@@ -153,6 +161,27 @@ class Context:
             attachment = None if grasp is None else self.attachment(grasp)
             self._fixed_only[grasp] = self.collisions.arrangement({}, attachment)
         return self._fixed_only[grasp]
+
+    def loaded(self, body: str, load: Load) -> Context:
+        """Return the context in which a body and what stands on it are one: they are carried
+        together.
+        """
+        if not load:
+            return self
+        if (body, load) not in self._loaded:
+            bodies = dict(self.scene.bodies)
+            parts = [
+                Part(part.shape, T_body_rider @ part.pose)
+                for rider, T_body_rider in load
+                for part in bodies.pop(rider).parts
+            ]
+            whole = bodies[body]
+            bodies[body] = replace(whole, parts=(*whole.parts, *parts))
+            made = Context(
+                replace(self.scene, bodies=bodies), self.robot, self.mixtures, self.steering
+            )
+            self._loaded[body, load] = made
+        return self._loaded[body, load]
 
     def scene_at(self, poses: Mapping[str, Pose], proposed: str | None = None) -> Scene:
         """Return the scene at a step of the plan: movable bodies at their poses there, those in the

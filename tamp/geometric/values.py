@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from tamp.geometric.scene.pose import Array, Pose
 
+Load = tuple[tuple[str, Pose], ...]
+"""Bodies that stand on another one, each with its pose in that one's frame, T_body_rider."""
+
 
 @dataclass(frozen=True)
 class Grasp:
@@ -77,11 +80,13 @@ class Grip:
         opening: From and to, metres.
         attach: The grasp that begins, or None.
         detach: The body that is let go, or None.
+        load: What stands on it, and is carried along or set down with it.
     """
 
     opening: tuple[float, float]
     attach: Grasp | None = None
     detach: str | None = None
+    load: Load = ()
 
 
 @dataclass(frozen=True, eq=False)

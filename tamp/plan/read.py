@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.pose import Array
+from tamp.plan.pose_field import read_pose
 from tamp.symbolic.pddl.structs import Fact
 from tamp.system.json_fields import Field, clipped
 from tamp.system.reading import read_json
@@ -33,11 +34,14 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Hold:
-    """A grasp: the body, T_tool_body of shape (4, 4), and the fingers' opening in metres."""
+    """A grasp: the body, T_tool_body of shape (4, 4), and the fingers' opening in metres; what
+    stands on the body and goes along, each with its T_body_rider (4, 4).
+    """
 
     body: str
     T_tool_body: Array
     opening: float
+    load: tuple[tuple[str, Array], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +255,11 @@ def _segment(field: Field) -> Segment:
         attach, detach = field.get("attach"), field.get("detach")
         hold = None
         if attach:
-            hold = Hold(attach["body"].text(), _in_hand(attach["T_tool_body"]), float(opening[-1]))
+            riders = attach.get("load")
+            load = [(one["body"].text(), read_pose(one["T_body_rider"]))
+                    for one in (riders.items() if riders else ())]  # fmt: skip
+            T_tool_body = _in_hand(attach["T_tool_body"])
+            hold = Hold(attach["body"].text(), T_tool_body, float(opening[-1]), tuple(load))
         positions = np.empty((len(times), 0))
         return Segment(
             part, times, positions, opening, None, hold, detach.text() if detach else None
@@ -275,6 +283,7 @@ def _check_bodies(root: Field, plan: PlanFile) -> None:
                 segment.holding,
                 segment.detach,
                 segment.attach.body if segment.attach else None,
+                *(name for name, _ in (segment.attach.load if segment.attach else ())),
             )
             for body in named:
                 if body is not None and body not in plan.objects:
@@ -283,18 +292,3 @@ def _check_bodies(root: Field, plan: PlanFile) -> None:
         if isinstance(value.data, Hold) and value.data.body not in plan.objects:
             body = value.data.body
             raise root["values"][name].wrong(f"unknown body '{body}'", found=body, choices=names)
-
-
-def read_pose(field: Field) -> Array:
-    """Read a "position" and a unit "quaternion" (x, y, z, w) as a homogeneous matrix, shape (4, 4).
-
-    Raises:
-        InputError: A number is missing, or the quaternion's norm is not 1.
-    """
-    position, quaternion = field["position"].numbers(3), field["quaternion"].numbers(4)
-    norm = float(np.linalg.norm(quaternion))
-    if abs(norm - 1.0) > 1e-3:
-        raise field["quaternion"].wrong(f"its norm is {norm:.4g}, not 1")
-
-    x, y, z, w = (quaternion / norm).tolist()
-    return Pose((float(position[0]), float(position[1]), float(position[2])), (x, y, z, w)).matrix

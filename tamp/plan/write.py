@@ -221,6 +221,8 @@ def _segment(segment: Segment) -> dict[str, Any]:
     if segment.attach is not None:
         frame = _pose(segment.attach.T_tool_body)
         document["attach"] = {"body": _body(segment.attach.body), "T_tool_body": frame}
+        load = [{"body": _body(one), "T_body_rider": _pose(T)} for one, T in segment.load]
+        document["attach"] |= {"load": load} if load else {}
     if segment.detach is not None:
         document["detach"] = _body(segment.detach)
     return document

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tamp.geometric.scene.scene import Scene
+from tamp.geometric.scene.scene import Body, Scene
 from tamp.geometric.values import BaseConf, Grasp
 from tamp.symbolic.pddl.structs import Domain, Fact
 
 START_BASE = "base_start"
+
+STACKED = "stacked"
+"""(stacked ?o ?p ?surface ?below ?pb): ?o at ?p stands on a surface of ?below, which is at ?pb."""
 
 
 @dataclass
@@ -50,32 +54,51 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         grasp = _value(state, domain, f"{held}_held", "grasp", holding)
         facts += [("grasp", held, grasp), ("holding", held, grasp)]
 
-    for name in scene.movable:
-        if holding is not None and name == holding.body:
-            continue
-        body = scene.bodies[name]
+    standing = [name for name in scene.movable if holding is None or name != holding.body]
+    poses = {
+        name: _value(state, domain, f"{name.lower()}_start", "pose", scene.bodies[name].pose)
+        for name in standing
+    }
+    for name, pose in poses.items():
         word = name.lower()
-        pose = _value(state, domain, f"{word}_start", "pose", body.pose)
         facts += [("pose", word, pose), ("at-pose", word, pose)]
-
-        below = body.support or ""
-        if below in scene.surfaces:
-            facts.append(("supported", word, pose, below.lower()))
-        if below in scene.cavities:
-            facts.append(("contained", word, pose, below.lower()))
-
-        carriers = (
-            scene.surfaces[below].body if below in scene.surfaces else below,
-            *body.carriers,
-        )
-        facts += [
-            ("rests-on", word, pose, carrier.lower())
-            for carrier in dict.fromkeys(carriers)
-            if carrier in scene.bodies and scene.bodies[carrier].movable
-        ]
+        facts += _support_facts(scene, scene.bodies[name], poses, STACKED in domain.predicates)
 
     state.facts.update(fact for fact in facts if _fits(domain, fact))
     return state
+
+
+def _support_facts(scene: Scene, body: Body, poses: Mapping[str, str], carries: bool) -> list[Fact]:
+    """Say what a body rests on at its start: places, and bodies that move.
+
+    Args:
+        scene: The scene.
+        body: One of its movable bodies.
+        poses: The names of the start poses of those that stand.
+        carries: Whether a place of a body that moves is one of that body's pose, in a fact of its
+            own.
+    """
+    word, pose, facts = body.name.lower(), poses[body.name], list[Fact]()
+    below = body.support or ""
+    place = scene.surfaces.get(below) or scene.cavities.get(below)
+    under = dict.fromkeys((below if place is None else place.body, *body.carriers))
+    carriers = [name for name in under if name in scene.bodies and scene.bodies[name].movable]
+
+    if place is not None and not (carries and place.body in carriers):
+        predicate = "supported" if below in scene.surfaces else "contained"
+        facts.append((predicate, word, pose, below.lower()))
+    for name in carriers:
+        facts.append(("rests-on", word, pose, name.lower()))
+        if name in poses:
+            there = (name.lower(), poses[name])
+            facts.append(("borne", word, pose, *there))
+            if place is not None and place.body == name:
+                predicate = STACKED if below in scene.surfaces else "packed"
+                facts.append((predicate, word, pose, below.lower(), *there))
+    facts.append(("sampled", word, pose))
+    if not carriers:
+        facts.append(("grounded", word, pose))
+    return facts
 
 
 def _object(state: InitialState, domain: Domain, name: str, kind: str) -> None:

@@ -18,6 +18,7 @@ from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
 from tamp.planner.initial_state import InitialState, initial_state
+from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
 from tamp.planner.own_relations import decided
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
@@ -191,6 +192,8 @@ def _read(
 
     domain_path = _domain_path(loaded, domain)
     parsed = parse_domain(read_pddl(domain_path), domain_path)
+    if carries(parsed):
+        loaded = replace(loaded, scene=with_tops(loaded.scene))
 
     streams_path = (
         Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
@@ -204,15 +207,22 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
     loaded, domain = files.loaded, files.domain
     start = initial_state(loaded.scene, domain, holding)
 
-    goal = parse_goal(
-        loaded.goal.text, domain, start.objects, loaded.path,
-        line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
-    )  # fmt: skip
+    try:
+        goal = parse_goal(
+            loaded.goal.text, domain, start.objects, loaded.path,
+            line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
+        )  # fmt: skip
+    except InputError as error:
+        raise remedied(error, domain) from None
     for passage in loaded.init:
         start.facts |= parse_facts(
             passage.text, domain, start.objects, loaded.path,
             line_offset=passage.line - 1, column_offset=passage.column - 1,
         )  # fmt: skip
+
+    if carries(domain):
+        start.facts |= place_facts(loaded.scene, domain, goal)
+        check_circle(loaded, goal)
 
     _check_metric(loaded)
     return start, goal

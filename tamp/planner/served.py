@@ -17,6 +17,9 @@ from tamp.geometric.streams.user_relations import sample_relation, test_relation
 from tamp.symbolic.pddl.relations import relation_of
 from tamp.symbolic.pddl.structs import Domain, StreamFile
 
+BORNE = "borne"
+"""(borne ?o ?p ?below ?pb): certified by a stream, it makes ?o at ?p rest on the movable ?below."""
+
 
 @dataclass(frozen=True)
 class Served:
@@ -107,8 +110,12 @@ class Served:
         for name, generator in self.generators.items():
             if name not in SAMPLERS:
                 judge = None if f"test-{name}" in streams else self._judge(name, declared, domain)
+                stream = streams.get(f"sample-{name}")
+                onto = stream is not None and any(
+                    atom.predicate == BORNE for atom in stream.certified
+                )
                 functions[f"sample-{name}"] = partial(
-                    sample_relation, relation=name, generator=generator, judge=judge
+                    sample_relation, relation=name, generator=generator, judge=judge, onto=onto
                 )
 
         for name, classifier in self.classifiers.items():

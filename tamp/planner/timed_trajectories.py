@@ -11,11 +11,15 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.motion.timing import time_path
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.values import Grasp, Grip, Motion, Path
+from tamp.geometric.values import Grasp, Grip, Load, Motion, Path
 from tamp.symbolic.algorithms.result import PlanAction
 
 GRIP_TIME = 0.5
 """Seconds that the fingers take to open or close, at least."""
+
+GENTLE = 0.5
+"""Share of the robot's velocities, and its square of the accelerations, at which it carries a body
+with others on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +35,7 @@ class Segment:
         holding: The body in the hand meanwhile.
         attach: The grasp that a gripper segment ends with.
         detach: The body that it lets go.
+        load: What stands on that body and goes with it.
     """
 
     part: str
@@ -40,6 +45,7 @@ class Segment:
     holding: str | None = None
     attach: Grasp | None = None
     detach: str | None = None
+    load: Load = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +106,7 @@ class PlanTimer:
         self._context = context
         self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
         self._held: Grasp | None = context.holding
+        self._load: Load = ()
         if self._held is not None:
             self._poses.pop(self._held.body)
         self._base: Array = np.array(scene.robot.base)
@@ -114,22 +121,27 @@ class PlanTimer:
 
     def _grip(self, grip: Grip) -> Segment:
         if grip.attach is not None:
-            self._held = grip.attach
-            self._poses.pop(grip.attach.body, None)
+            self._held, self._load = grip.attach, grip.load
+            for name in (grip.attach.body, *(rider for rider, _ in grip.load)):
+                self._poses.pop(name, None)
         elif self._held is not None:
             tool = Pose.from_matrix(
                 self._context.kinematics.tool(self._context.conf(self._base, self._arm))
             )
-            self._poses[self._held.body] = tool @ self._held.T_tool_body
-            self._held = None
+            pose = tool @ self._held.T_tool_body
+            self._poses[self._held.body] = pose
+            self._poses |= {rider: pose @ T_body_rider for rider, T_body_rider in self._load}
+            self._held, self._load = None, ()
         positions = np.array(grip.opening)[:, None]
         speed = sum(finger.velocity for finger in self._context.robot.fingers)
         times = np.array([0.0, max(GRIP_TIME, abs(grip.opening[1] - grip.opening[0]) / speed)])
-        return Segment("gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach)
+        return Segment(
+            "gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach, grip.load
+        )
 
     def _path(self, path: Path) -> Segment:
         """Time the path, or return what it was timed to before in the same circumstances."""
-        held = None if self._held is None else (self._held.body, self._held.T_tool_body.position)
+        held = self._held and (self._held.body, self._held.T_tool_body.position, self._load)
         bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
         key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
         if key not in self._cache:
@@ -143,9 +155,13 @@ class PlanTimer:
 
     def _time(self, path: Path) -> Segment:
         context, robot = self._context, self._context.robot
+        if self._held is not None:
+            context = context.loaded(self._held.body, self._load)
         attachment = None if self._held is None else context.attachment(self._held)
         arrangement = context.collisions.arrangement(self._poses, attachment)
-        velocity, acceleration = np.array(robot.velocity), np.array(robot.acceleration)
+        pace = GENTLE if self._load else 1.0
+        velocity = pace * np.array(robot.velocity)
+        acceleration = pace**2 * np.array(robot.acceleration)
 
         def conf(point: Array) -> Array:
             return (

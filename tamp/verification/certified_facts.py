@@ -16,7 +16,7 @@ from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.collision_sweep import TOLERANCE, Findings, Sweeper
 from tamp.verification.execution_state import Held
-from tamp.verification.initial_state import apart, base_apart
+from tamp.verification.initial_state import apart, base_apart, owner_of
 from tamp.verification.limits import SLACK
 from tamp.verification.makers_limits import limits_of
 
@@ -58,6 +58,15 @@ class Certified:
             "supported": ("op?", lambda _: None),
             "contained": ("op?", lambda _: None),
             "rests-on": ("opo", lambda _: None),
+            "grounded": ("op", lambda _: None),
+            "borne": ("opop", lambda _: None),
+            "stacked": ("op?op", lambda _: None),
+            "packed": ("op?op", lambda _: None),
+            "sampled": ("op", lambda _: None),
+            "shifted": ("opoppp", self._shifted),
+            "portable": ("o", lambda _: None),
+            "anchored": ("?", self._anchored),
+            "stackable": ("o?o", self._stackable),
             "grasp": ("og", self._grasp),
             "standing": ("b", self._standing),
             "base-conf": ("b", self._standing),
@@ -159,6 +168,27 @@ class Certified:
                 if value is None or value.type != types[kind]:
                     return f"'{term}' is not a {types[kind]}"
         return None
+
+    def _shifted(self, terms: list[str]) -> str | None:
+        pose, was, now, shifted = (self._plan.values[terms[at]].data for at in (1, 3, 4, 5))
+        moved, turned = apart(now @ np.linalg.inv(was) @ pose, shifted)
+        if moved > CLOSE or turned > ALIKE:
+            off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
+            return f"carried along it would be {off} from there"
+        return None
+
+    def _anchored(self, terms: list[str]) -> str | None:
+        owner = owner_of(self._world.scene, terms[0])
+        if owner is None:
+            return "there is no such place"
+        return f"{owner.name} may be moved" if owner.movable else None
+
+    def _stackable(self, terms: list[str]) -> str | None:
+        owner = owner_of(self._world.scene, terms[1])
+        below = self._world.scene.bodies[self._bodies[terms[2]]]
+        if owner is None or owner.name != below.name:
+            return f"{terms[1]} is no place of {below.name}"
+        return None if below.movable else f"{below.name} is fixed"
 
     def _grasp(self, terms: list[str]) -> str | None:
         hold: Hold = self._plan.values[terms[1]].data

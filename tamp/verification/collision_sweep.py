@@ -179,12 +179,9 @@ class Sweeper:
         against: frozenset[str] | None,
     ) -> None:
         world = self._world
-        in_hand = held.body if held else None
-        bodies = [
-            body
-            for body in world.solids
-            if body != in_hand and (against is None or body in against)
-        ]
+        carried = {one.body for one in held.all} if held else set[str]()
+        asked = world.solids if against is None else against
+        bodies = [body for body in world.solids if body in asked and body not in carried]
         others = [solid for body in bodies for solid in world.solids[body]]
 
         low, high = block.low, block.high
@@ -195,7 +192,7 @@ class Sweeper:
                 np.concatenate([low, held_low], axis=1),
                 np.concatenate([high, held_high], axis=1),
             )
-            movers += world.solids[held.body]
+            movers += self._held_solids(held)
 
         at = [world.pose(solid.owner) for solid in others]
         centres = np.array(
@@ -232,7 +229,7 @@ class Sweeper:
 
             if distance < REACH:
                 usual = natural.grasped if by_hand else frozenset[str]()
-                expected = second.owner in (natural.resting if first.owner == in_hand else usual)
+                expected = second.owner in (natural.resting if first.owner in carried else usual)
                 contact = Contact(first.owner, second.owner, distance, float(block.times[state]))
                 tolerance = max(
                     TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
@@ -250,11 +247,11 @@ class Sweeper:
 
         if held is not None:
             held_low, held_high = self._held_boxes(block.frames, held)
-            arm = [number for number, name in enumerate(self._names) if name not in self.hand]
+            arm = [i for i, name in enumerate(self._names) if name not in self.hand]
             pairs += [
                 (solid, self._solids[i], held_low[:, k], held_high[:, k], low[:, i], high[:, i])
-                for k, solid in enumerate(self._world.solids[held.body])
-                for i in arm
+                for k, solid in enumerate(self._held_solids(held))
+                for i in (arm if solid.owner == held.body else range(len(self._names)))
             ]
 
         near = np.array(
@@ -281,16 +278,21 @@ class Sweeper:
         extents = np.einsum("nlij,lj->nli", np.abs(frames[..., :3, :3]), halves)
         return middles - extents, middles + extents
 
+    def _held_solids(self, held: Held) -> list[Solid]:
+        return [solid for one in held.all for solid in self._world.solids[one.body]]
+
     def _held_boxes(self, frames: Array, held: Held) -> tuple[Array, Array]:
-        solids = list(self._world.solids[held.body])
-        return self._boxes(
-            solids, np.repeat(self._sampler.held_frames(frames, held)[:, None], len(solids), axis=1)
-        )
+        at = [
+            self._sampler.held_frames(frames, one)
+            for one in held.all
+            for _ in self._world.solids[one.body]
+        ]
+        return self._boxes(self._held_solids(held), np.stack(at, axis=1))
 
     def _pose(self, row: Array, frames: Array, held: Held | None) -> None:
         self._world.set_robot(row[:3], row[3:-1], row[-1])
-        if held is not None:
-            self._world.place(held.body, self._sampler.held_frames(frames[None], held)[0])
+        for one in held.all if held else ():
+            self._world.place(one.body, self._sampler.held_frames(frames[None], one)[0])
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

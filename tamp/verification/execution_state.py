@@ -9,10 +9,16 @@ from tamp.geometric.scene.pose import Array
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A body in the hand: T_tool_body, shape (4, 4)."""
+    """A body in the hand: T_tool_body, shape (4, 4); and its load, what is carried on it."""
 
     body: str
     T_tool_body: Array
+    load: tuple[Held, ...] = ()
+
+    @property
+    def all(self) -> tuple[Held, ...]:
+        """Return the body and its load."""
+        return (self, *self.load)
 
 
 @dataclass(eq=False)

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
-from tamp.geometric.scene.scene import Scene
+from tamp.geometric.scene.scene import Body, Scene
 from tamp.plan.read import PlanFile
 from tamp.plan.violation import Violation
 from tamp.symbolic.pddl.structs import Domain, Fact
 
-FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1}
+FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1, "riding": 4}
 """Fluents whose geometric meaning we know."""
 KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container"})
 """Types that the scene decides about."""
@@ -124,11 +124,29 @@ def kinds_of(scene: Scene, name: str) -> set[str]:
     for body in scene.bodies.values():
         if body.name.lower() == name:
             kinds |= {"body", "movable" if body.movable else "fixed"}
+            if has_top(body):
+                kinds.add("surface")
     if name in {surface.lower() for surface in scene.surfaces}:
         kinds.add("surface")
     if name in {cavity.lower() for cavity in scene.cavities}:
         kinds.add("container")
     return kinds
+
+
+def has_top(body: Body) -> bool:
+    """Tell whether a body's top may be a surface of its own name: what is on it rests on the
+    body.
+    """
+    return body.movable and not (body.surfaces or body.cavities or body.bare)
+
+
+def owner_of(scene: Scene, place: str) -> Body | None:
+    """Return the body that has a surface or a cavity of this PDDL name, or a top."""
+    places = (*scene.surfaces.values(), *scene.cavities.values())
+    owners = {one.name.lower(): one.body for one in places}
+    tops = {name.lower(): name for name, body in scene.bodies.items() if has_top(body)}
+    name = owners.get(place) or tops.get(place)
+    return None if name is None else scene.bodies[name]
 
 
 def _is_kind(fact: Fact, plan: PlanFile, scene: Scene, domain: Domain) -> bool:

@@ -146,7 +146,7 @@ def _asked(
             )
 
         relation = relation_of(streams, domain, name)
-        if relation is not None and relation.predicates & RELATIONS:
+        if relation is not None and relation.predicates & RELATIONS.keys():
             raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
         if relation is None:
             what = (

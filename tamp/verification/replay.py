@@ -14,21 +14,21 @@ from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import ALIKE, CLOSE, Certified
-from tamp.verification.collision_sweep import TOLERANCE, Findings, Natural, Sweeper
+from tamp.verification.collision_sweep import Findings, Natural, Sweeper
 from tamp.verification.execution_state import Course, Held
 from tamp.verification.formulas import show
 from tamp.verification.initial_state import apart, base_apart
 from tamp.verification.limits import excesses
+from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.state_agreement import Agreement
 from tamp.verification.support_relations import Standing
+from tamp.verification.touching_pairs import forget_parted, note_touching
 from tamp.verification.violation_log import Log
 
 JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""
-TOGETHER = 5e-4
-"""Metres of air up to which bodies count as touching each other at the start."""
 CLOCK = 1e-4
 """Seconds by which times that should meet may differ."""
 BOUNDING = frozenset({"time", "limit", "velocity"})
@@ -64,6 +64,8 @@ class Replay:
         self._looks, self._looks_beyond = LOOKS + LOOKS_A_ROW * rows, LOOKS_BEYOND
         self._agreement = Agreement(plan, world, semantics.domain, self.log)
         self._standing = Standing(plan, world, semantics, certified.known, self.log)
+        self._loads = Loads(plan, world, semantics, self._standing, self.log)
+        self._state = State.of(())
         start = world.scene.robot
         arm = start.arm if start.arm is not None else robot.home
         self.course = Course(np.array([*start.base, *arm, robot.opening]), None, 0.0)
@@ -77,16 +79,17 @@ class Replay:
         """Replay the plan from the start to the goal."""
         state = State.of((*self._plan.initial, *self._plan.certified))
         state = self._relations.observed(state, self.course.in_hand)
-        self._check_bodies_apart()
+        note_touching(self._world, self._sweeper, self.log)
         self._standing.check_relations(state, None)
 
         for index, action in enumerate(self._plan.actions):
             self.log.action, self.log.time = (index, action.name), self.course.time
-            state = self._apply(state, action)
+            state = self._state = self._apply(state, action)
             self._move(action)
-            self._part()
+            forget_parted(self._world, self._sweeper)
             self._agreement.follows(action)
             self._agreement.compare(state, self.course)
+            self._loads.compare(state, self.course)
             self._standing.check_relations(state, self.course.in_hand)
             state = self._relations.observed(state, self.course.in_hand)
 
@@ -100,25 +103,6 @@ class Replay:
 
         self._standing.check_unused(self.course.in_hand)
         self._standing.check_goal(goal, state, self.course.in_hand)
-
-    def _check_bodies_apart(self) -> None:
-        scene = self._world.scene
-        for first, second in itertools.combinations(scene.bodies, 2):
-            if scene.bodies[first].movable or scene.bodies[second].movable:
-                depth = -self._world.body_distance(first, second, TOGETHER)
-                if -TOGETHER <= depth <= TOLERANCE:
-                    self._sweeper.together[min(first, second), max(first, second)] = max(0.0, depth)
-                if depth > TOLERANCE:
-                    by = f"{1000 * depth:.1f} mm"
-                    message = f"{first} and {second} penetrate by {by} at the start"
-                    self.log.add("collision", message, first, second, time=0.0, depth=depth)
-
-    def _part(self) -> None:
-        """Forget pairs that touched at the start and were moved apart: they may not meet again."""
-        together = self._sweeper.together
-        for pair in list(together):
-            if self._world.body_distance(*pair, TOGETHER) > TOGETHER:
-                del together[pair]
 
     def _apply(self, state: State, action: TimedAction) -> State:
         lifted = self._semantics.actions.get(action.name)
@@ -201,8 +185,10 @@ class Replay:
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
         if course.held is not None:
+            self._loads.check_level(course.held, rows, self._sweeper)
             T_world_tool = self._sweeper.tool(course.row)
-            self._world.place(course.held.body, T_world_tool @ course.held.T_tool_body)
+            for one in course.held.all:
+                self._world.place(one.body, T_world_tool @ one.T_tool_body)
         if segment.attach is not None:
             self._attach(segment.attach)
 
@@ -244,8 +230,8 @@ class Replay:
         if course.held is not None:
             self.log.add("grasp", f"the hand holds {course.held.body} already", hold.body)
 
-        T_world_body = self._world.pose(body)
-        T_tool_body = np.linalg.inv(self._sweeper.tool(course.row)) @ T_world_body
+        T_world_body, T_world_tool = self._world.pose(body), self._sweeper.tool(course.row)
+        T_tool_body = np.linalg.inv(T_world_tool) @ T_world_body
         moved, turned = apart(T_tool_body, hold.T_tool_body)
         if moved > CLOSE or turned > ALIKE:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
@@ -255,8 +241,9 @@ class Replay:
         self._world.place(body, T_world_body)
         if why:
             self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
-        course.held = Held(body, T_tool_body)
-        self._standing.check(body)
+        load = self._loads.on(hold, body, T_world_tool, self._state)
+        course.held = Held(body, T_tool_body, load)
+        self._standing.check(body, {one.body for one in load})
 
     def _detach(self, name: str, rows: Array) -> None:
         course = self.course

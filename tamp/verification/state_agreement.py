@@ -22,7 +22,7 @@ class Agreement:
     """Compares states of facts with a course, as far as the domain has the fluents that we know."""
 
     def __init__(self, plan: PlanFile, world: World, domain: Domain, log: Log) -> None:
-        self._plan, self._world, self._log = plan, world, log
+        self._plan, self._world, self._log, self._domain = plan, world, log, domain
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._meant = {
             name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)
@@ -87,6 +87,8 @@ class Agreement:
             if body in self._bodies:
                 self._pose(body, pose, course)
         placed = Counter(body for body, _ in facts)
+        if meant(self._domain, "riding"):
+            placed.update(fact[0] for fact in state.all("riding"))
         for name in self._world.scene.movable:
             count, free = placed[name.lower()], course.in_hand != name
             if count != int(free):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -33,11 +33,13 @@ class Stand:
             below it.
         gap: Metres of air above the nearest, infinite when there is nothing.
         lean: Metres by which the centre of mass is out of what carries it; negative inside.
+        carrying: Points of the world's plan at which it is carried, (n, 2), metres.
     """
 
     on: frozenset[str]
     gap: float
     lean: float
+    carrying: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
     @property
     def stable(self) -> bool:
@@ -123,7 +125,35 @@ class Supports:
             name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name
         )
         centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
-        return Stand(on, least, outside(centre, underside[carrying][:, :2]))
+        points = underside[carrying][:, :2]
+        return Stand(on, least, outside(centre, points), points)
+
+    def why_overloaded(self, body: str, absent: str | None = None) -> str | None:
+        """Say how a body that stands tips under what stands on it, and on that; None when it does
+        not. What rests on several bodies is no one's load.
+        """
+        load, waiting = {body}, [body]
+        while waiting:
+            under = waiting.pop()
+            for other in self._world.scene.movable:
+                if other in load or other == absent:
+                    continue
+                if self.stand(other, absent).on == {under}:
+                    load.add(other)
+                    waiting.append(other)
+        if len(load) == 1:
+            return None
+
+        masses = np.array([self._world.scene.bodies[name].mass for name in load])
+        centres = np.array(
+            [(self._world.pose(name) @ np.append(self._centres[name], 1.0))[:2] for name in load]
+        )
+        centre = masses @ centres / max(float(masses.sum()), 1e-9)
+        beyond = outside(centre, self.stand(body, absent).carrying)
+        if beyond <= LEAN:
+            return None
+        others = " and ".join(sorted(load - {body}))
+        return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"
 
     def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
         """Say why a body that stands so does not stand on a surface; None when it does."""

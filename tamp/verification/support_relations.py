@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from tamp.plan.read import PlanFile
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Fact, Formula
@@ -11,8 +13,17 @@ from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_geometry import Stand, Supports
 from tamp.verification.violation_log import Log
 
-RELATIONS = frozenset({"supported", "contained", "rests-on"})
-"""Certified predicates of a body, a pose and a place, decided in states with the body there."""
+RELATIONS = {
+    "supported": 4,
+    "contained": 4,
+    "rests-on": 4,
+    "grounded": 3,
+    "borne": 5,
+    "stacked": 6,
+    "packed": 6,
+}
+"""Certified predicates of a body and a pose, a place, a body below and its pose, with their
+lengths; decided in states with the bodies there."""
 
 
 class Standing:
@@ -35,7 +46,7 @@ class Standing:
 
         facts = sorted({*plan.certified, *plan.initial})
         self._relations = [
-            fact for fact in facts if fact[0] in RELATIONS & known and len(fact) == 4
+            fact for fact in facts if fact[0] in known and len(fact) == RELATIONS.get(fact[0])
         ]
         self._checked: set[Fact] = set()
 
@@ -53,12 +64,15 @@ class Standing:
         """Find how a body stands while another one is in the hand."""
         return self._supports.stand(body, absent=in_hand if in_hand != body else None)
 
-    def check(self, in_hand: str | None) -> None:
-        """Check that every body that is not held stands still."""
+    def check(self, in_hand: str | None, aboard: Collection[str] = ()) -> None:
+        """Check that every body that is neither held nor `aboard` of what is stands still."""
         for name in self._world.scene.movable:
-            if name == in_hand or self._floating.get(name) == self._world.pose(name).tobytes():
+            if name == in_hand or name in aboard:
                 continue
-            why = self.stand(name, in_hand).why
+            if self._floating.get(name) == self._world.pose(name).tobytes():
+                continue
+            stand = self.stand(name, in_hand)
+            why = stand.why or self._supports.why_overloaded(name, in_hand)
             if why:
                 self._log.add("support", f"{name} does not stand: {why}", name)
 
@@ -66,24 +80,31 @@ class Standing:
         """Check certified relations of bodies with places, in the first state with it there."""
         there = set(state.all("at-pose")) if meant(self._semantics.domain, "at-pose") else set()
         for fact in self._relations:
-            if fact not in self._checked and (fact[1], fact[2]) in there:
+            if fact not in self._checked and there.issuperset(_posed(fact)):
                 self._checked.add(fact)
                 self._check_relation(fact, in_hand)
 
     def check_unused(self, in_hand: str | None) -> None:
         """Check the same about poses at which the body never was: as if it were there now."""
         for fact in self._relations:
-            pose, name = self._plan.values.get(fact[2]), self._bodies.get(fact[1])
-            if (
-                fact not in self._checked
-                and pose is not None
-                and pose.type == "pose"
-                and name is not None
-            ):
-                before = self._world.pose(name)
-                self._world.place(name, pose.data)
-                self._check_relation(fact, in_hand)
-                self._world.place(name, before)
+            posed = [
+                (self._bodies.get(body), self._plan.values.get(pose)) for body, pose in _posed(fact)
+            ]
+            if fact in self._checked:
+                continue
+            there = {
+                name: pose.data
+                for name, pose in posed
+                if name is not None and pose is not None and pose.type == "pose"
+            }
+            if len(there) < len(posed):
+                continue
+            before = {name: self._world.pose(name) for name in there}
+            for name, pose in there.items():
+                self._world.place(name, pose)
+            self._check_relation(fact, in_hand if in_hand not in there else None)
+            for name, pose in before.items():
+                self._world.place(name, pose)
 
     def check_goal(self, goal: Formula, state: State, in_hand: str | None) -> None:
         """Check the goal by the facts, and again by what the bodies say is on and inside what."""
@@ -116,21 +137,30 @@ class Standing:
             self._log.add("goal", f"{message}: {asked}" if asked else message)
 
     def _check_relation(self, fact: Fact, in_hand: str | None) -> None:
-        relation, body, _, place = fact
-        name = self._bodies.get(body)
+        name = self._bodies.get(fact[1])
         if name is None or name == in_hand:
             return
         stand = self.stand(name, in_hand)
-        if relation == "rests-on":
-            why = (
-                None
-                if self._bodies.get(place) in stand.on
-                else f"it rests on {', '.join(sorted(stand.on))}"
-            )
-        else:
-            why = self._why_not(relation, name, place, stand)
+        why = self._why_no_relation(fact, name, stand)
         if why:
-            self._log.add("certified", f"({' '.join(fact)}) does not hold: {why}", body, place)
+            bodies = [term for term in (fact[1], *fact[3:]) if term in self._bodies]
+            self._log.add("certified", f"({' '.join(fact)}) does not hold: {why}", *bodies)
+
+    def _why_no_relation(self, fact: Fact, name: str, stand: Stand) -> str | None:
+        relation, rests = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
+        if relation == "grounded":
+            return rests if stand.on & set(self._world.scene.movable) else None
+        if relation in ("supported", "contained"):
+            return self._why_not(relation, name, fact[3], stand)
+
+        below = self._bodies.get(fact[3 if relation != "stacked" else 4])
+        if relation in ("rests-on", "borne"):
+            return None if below in stand.on else rests
+        if relation == "packed":
+            return self._why_not("contained", name, fact[3], stand)
+        if fact[3] in self._places["supported"]:
+            return self._why_not("supported", name, fact[3], stand)
+        return stand.why if below in stand.on else rests
 
     def _why_not(self, relation: str, body: str, place: str, stand: Stand) -> str | None:
         if relation == "supported":
@@ -150,3 +180,9 @@ class Standing:
     def _name(self, relation: str, place: str) -> str:
         found = self._places[relation].get(place)
         return found.name if found is not None else ""
+
+
+def _posed(fact: Fact) -> tuple[tuple[str, str], ...]:
+    """Return the bodies and poses that a certified relation is about."""
+    below = ((fact[-2], fact[-1]),) if fact[0] in ("borne", "stacked", "packed") else ()
+    return ((fact[1], fact[2]), *below)

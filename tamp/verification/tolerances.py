@@ -6,7 +6,7 @@ import math
 
 from tamp.verification import certified_facts as certified
 from tamp.verification import collision_sweep as sweep
-from tamp.verification import limits, replay
+from tamp.verification import limits, loads, replay
 from tamp.verification import support_geometry as supports
 from tamp.verification import trajectory_sampling as sampling
 
@@ -24,7 +24,14 @@ def tolerances() -> tuple[tuple[str, str], ...]:
         ),
         ("air between a resting body and what carries it", air),
         ("gaps of points that carry a body differ by", _mm(supports.EVEN)),
-        ("centre of mass beyond what carries the body", _mm(supports.LEAN)),
+        (
+            "centre of mass beyond what carries the body, also with all that stands on it",
+            _mm(supports.LEAN),
+        ),
+        (
+            "lean of a body that is carried with others on it",
+            f"{math.degrees(loads.LEAN):g} deg",
+        ),
         ("body beyond the walls of a cavity", _mm(supports.SINK)),
         ("pose of a body or the tool against the plan's", same),
         (

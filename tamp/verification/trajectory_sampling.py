@@ -130,8 +130,12 @@ class Sampler:
         signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
         at = [(frames[:, i], solid) for i, solid in enumerate(self._solids)]
         if held is not None:
-            T_world_held = self.held_frames(frames, held)
-            at += [(T_world_held, solid) for solid in self._world.solids[held.body]]
+            at += [
+                (T_world_held, solid)
+                for one in held.all
+                for T_world_held in (self.held_frames(frames, one),)
+                for solid in self._world.solids[one.body]
+            ]
         corners = [
             (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1)
             + T[:, None, :3, 3]

@@ -10,7 +10,7 @@ from typing import Any
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene
-from tamp.plan.read import read_pose
+from tamp.plan.pose_field import read_pose
 from tamp.system.json_fields import Field
 
 

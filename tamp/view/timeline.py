@@ -148,13 +148,17 @@ class _Maker:
         }
         self._names = {name.lower(): name for name in scene.movable}
         self._kinematics = Kinematics(robot)
+        self._load: tuple[str, ...] = ()
 
     def follow(self, segment: Segment, clock: float) -> None:
         """Move one part along a segment."""
         if segment.detach in self._names:
             body = self._names[segment.detach]
             tool = self._kinematics.tool(self.rows[-1][:-1])
-            self.stays[body].append(PoseInterval(clock, False, tool @ self.stays[body][-1].T))
+            for name in (body, *self._load):
+                self.stays[name].append(PoseInterval(clock, False, tool @ self.stays[name][-1].T))
+            self._load = ()
+
         columns = PARTS[segment.part]
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
@@ -163,9 +167,14 @@ class _Maker:
             row[-1] = opening
             self.times.append(clock + float(time))
             self.rows.append(row)
+
         if segment.attach is not None and segment.attach.body in self._names:
-            held = PoseInterval(self.times[-1], True, segment.attach.T_tool_body)
-            self.stays[self._names[segment.attach.body]].append(held)
+            hold, now = segment.attach, self.times[-1]
+            self.stays[self._names[hold.body]].append(PoseInterval(now, True, hold.T_tool_body))
+            load = {self._names[name]: T for name, T in hold.load if name in self._names}
+            for name, T_body_rider in load.items():
+                self.stays[name].append(PoseInterval(now, True, hold.T_tool_body @ T_body_rider))
+            self._load = tuple(load)
 
 
 def tool_path(timeline: Timeline, kinematics: Kinematics) -> Array:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.geometric.loading.declared_places import check_name, read_cavities, read_surfaces
-from tamp.geometric.loading.furniture import FURNITURE, Furniture, Options
+from tamp.geometric.loading.furniture import FURNITURE, PORTABLE, Furniture, Options
 from tamp.geometric.loading.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_triangles
 from tamp.geometric.loading.orientation import read_orientation
 from tamp.geometric.loading.tops import NARROWEST, top_of
@@ -84,8 +84,9 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     movable = kind != "furniture"
     if "fixed" in entries:
         movable = not entries["fixed"].flag()
-    if kind == "furniture" and movable:
-        raise entries["fixed"].error("furniture is always fixed")
+    if kind == "furniture" and movable and entries[kind].text() not in PORTABLE:
+        what = f"furniture is fixed, but for {' and '.join(PORTABLE)}"
+        raise entries["fixed"].error(what)
     _check_size(parts, entries[kind], movable)
 
     derived = furniture.surfaces
@@ -118,6 +119,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         else furniture.cavities,
         visuals=_visuals(mesh, "colour" in entries),
         center_of_mass=mesh.center_of_mass if mesh else None,
+        bare="surfaces" in entries,
         front=entries["front"].angle() if "front" in entries else 0.0,
     )
 

@@ -129,6 +129,9 @@ FURNITURE: Mapping[str, Kind] = {
 }
 """Builders by name; each raises ValueError, with a sentence, when the boards leave no room."""
 
+PORTABLE = ("open_box",)
+"""Kinds that may be moved: `fixed: false`."""
+
 
 def _carcass(
     size: Size, options: Options, back: bool

@@ -130,6 +130,7 @@ class Body:
         support: The surface or cavity that it was declared to stand on (`on:`), or rests on by
             geometry, or the movable body that carries it; None when it floats or is fixed.
         carriers: The movable bodies that it rests on, one or several.
+        bare: Whether its file says which surfaces it has, even none: its top is not derived.
         mass: Kilograms.
         friction: Coulomb's coefficient.
         visuals: What to draw in place of its parts.
@@ -150,6 +151,7 @@ class Body:
     cavities: tuple[Cavity, ...] = ()
     support: str | None = None
     carriers: tuple[str, ...] = ()
+    bare: bool = False
     visuals: tuple[Visual, ...] = ()
     center_of_mass: tuple[float, float, float] | None = None
     front: float = 0.0

@@ -22,11 +22,26 @@ HAIR = 0.0005
 """Metres of air that the robot and what it holds keep to them while it reaches."""
 
 
+def near(context: Context, body: str, pose: Pose, other: str, other_pose: Pose) -> bool:
+    """Check whether two movable bodies are nearer than NEIGHBOUR, but for one that rests on the
+    other: it is no nearer than CONTACT_GAP, and only because it is above.
+    """
+    pair = context.collisions.pair
+    if not pair(body, pose, other, other_pose, NEIGHBOUR):
+        return False
+    if pair(body, pose, other, other_pose, HAIR):
+        return True
+    up, down = (Pose((0.0, 0.0, z)) @ pose for z in (NEIGHBOUR, -NEIGHBOUR))
+    return pair(body, up, other, other_pose, NEIGHBOUR) and pair(
+        body, down, other, other_pose, NEIGHBOUR
+    )
+
+
 def test_pose_clear(
     context: Context, body: str, pose: Pose, other: str, other_pose: Pose, call: Call
 ) -> bool | Rejection:
     """Test whether two movable bodies at these poses are apart."""
-    if body == other or not context.collisions.pair(body, pose, other, other_pose, NEIGHBOUR):
+    if body == other or not near(context, body, pose, other, other_pose):
         return True
     return Rejection.hits(other, blockers=(other,))
 

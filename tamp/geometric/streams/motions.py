@@ -16,6 +16,7 @@ from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.result import Failure, Planned
 from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.streams.loads import load_of, plan_loaded_pick, standing
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
 
@@ -46,7 +47,9 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
     """Plan a drive of the base, the arm at home, perhaps with a body in hand."""
     start = next(value for name, *values in call.fluents for value in values if name == "at-base")
     held = next((values[1] for name, *values in call.fluents if name == "holding"), None)
-    poses = {values[0]: values[1] for name, *values in call.fluents if name == "at-pose"}
+    poses = standing(call)
+    if held is not None:
+        context = context.loaded(held.body, load_of(call, held.body))
     opening = context.robot.opening if held is None else held.opening
 
     def plan(arrangement: Arrangement, effort: int) -> Planned:
@@ -71,6 +74,11 @@ def plan_pick(
     context: Context, body: str, pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call
 ) -> Iterator[Motion | Rejection]:
     """Plan a pick: from home to the body, close the hand, and back home with it."""
+    load = load_of(call, body)
+    if load:
+        yield from plan_loaded_pick(context, pose, grasp, base, reach, load, call)
+        return
+
     opened = context.robot.opening
     for found in _transits(context, body, pose, grasp, base, reach, call):
         if isinstance(found, Rejection):
@@ -103,7 +111,8 @@ def _backwards(motion: Motion) -> Motion:
             segments.append(replace(segment, points=segment.points[::-1]))
         else:
             held = None if segment.attach is None else segment.attach.body
-            segments.append(Grip((segment.opening[1], segment.opening[0]), detach=held))
+            opening = (segment.opening[1], segment.opening[0])
+            segments.append(Grip(opening, detach=held, load=segment.load))
 
     return Motion(tuple(segments))
 
@@ -116,7 +125,7 @@ def _transits(
 
     One path usually serves both, so the loaded one is planned first; it is the harder.
     """
-    others = {name: other for _, name, other in call.fluents if name != body}
+    others = {name: other for name, other in standing(call).items() if name != body}
     stand = np.array(base.array)
     out = reach.lift[-1]
 

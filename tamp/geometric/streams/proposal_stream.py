@@ -20,7 +20,7 @@ from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.placement import Placement, placed_pose
-from tamp.geometric.streams.collisions import NEIGHBOUR
+from tamp.geometric.streams.collisions import near
 from tamp.stream import Call, Rejection, RejectionKind
 
 BATCH = 16
@@ -202,8 +202,7 @@ class _Drawer:
         return source.take_clash() if source.clear else None
 
     def _near(self, pose: Pose, other: str) -> bool:
-        body = self.arguments[0]
-        return self.context.collisions.pair(body, pose, other, self.poses[other], NEIGHBOUR)
+        return near(self.context, self.arguments[0], pose, other, self.poses[other])
 
     def _ask(self, source: _Source, refused: Counter[Rejection]) -> None:
         account = source.account
@@ -261,8 +260,9 @@ class _Drawer:
         if isinstance(proposal, Pose):
             return proposal
         faces, scene = self.context.stable_faces(self.arguments[0]), self.context.scene
-        T_world_region = scene.world_pose(scene.region(proposal.region))
-        return placed_pose(faces, proposal, T_world_region)
+        region = scene.region(proposal.region)
+        T_world_body = self.poses.get(region.body, scene.bodies[region.body].pose)
+        return placed_pose(faces, proposal, T_world_body @ region.pose)
 
     def _is_new(self, source: _Source, proposal: Proposal) -> bool:
         """Check whether the generator has not proposed this, to a tenth of a millimetre, in this

@@ -102,10 +102,18 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     if context.scene.bodies[region.body].movable:
         what = (
             f"{region.name} is on {region.body}, which may be moved; "
-            "only fixed bodies can be put things on"
+            "only fixed bodies can be put things on in this domain: 'domain: carriers' can"
         )
         return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
+    refused = no_fit(context, body, region)
+    if refused is not None:
+        return refused
+    room = region.clearance if isinstance(region, Surface) else region.size[2]
+    return _out_of_reach(context, body, region, room)
 
+
+def no_fit(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
+    """Say why a body can be placed nowhere in a region, wherever that is; None where it may."""
     room = region.clearance if isinstance(region, Surface) else region.size[2]
     shape = context.scene.bodies[body]
     ways = context.stable_faces(body).ways
@@ -133,7 +141,7 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
         may = _could_fit(shape, room, region)
         return Rejection(what, given_up=may, kind=RejectionKind.TOO_LARGE)
 
-    return _out_of_reach(context, body, region, room)
+    return None
 
 
 def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:

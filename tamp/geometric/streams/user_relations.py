@@ -16,6 +16,7 @@ from tamp.geometric.scene.classifier import LIKELY, Classifier, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
+from tamp.geometric.streams.movable_supports import stood_on
 from tamp.geometric.streams.proposal_stream import draw
 from tamp.stream import Call, Rejection, RejectionKind
 
@@ -27,6 +28,7 @@ def sample_relation(
     relation: str,
     generator: Generator,
     judge: tuple[Classifier, tuple[int, ...]] | None = None,
+    onto: bool = False,
     call: Call,
 ) -> Iterator[Pose | Rejection]:
     """Sample poses that the generator proposes for the relation's first argument, put to rest on
@@ -36,7 +38,7 @@ def sample_relation(
     body before it. That the body rests there, on a place among the inputs where there is one, clear
     of the fixed bodies, is certified here, everything else by other streams' tests; but where the
     relation has no test and a classifier, `judge`, that is asked here, with the inputs at these
-    indices.
+    indices. With `onto` it rests on a movable body among the inputs, at the pose there.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
     at = {
@@ -51,13 +53,19 @@ def sample_relation(
     regions = {
         place.name: place
         for place in (*scene.surfaces.values(), *scene.cavities.values())
-        if place.body in scene.fixed and place.name in named
+        if (place.body in at if onto else place.body in scene.fixed) and place.name in named
     }
 
     def certified(proposal: Placement | Pose) -> Pose | Rejection:
-        pose = _rested(context, body, proposal, regions)
-        if isinstance(pose, Rejection):
-            return pose
+        rested = _rested(context, body, proposal, regions, at if onto else {})
+        if isinstance(rested, Rejection):
+            return rested
+
+        pose, region = rested
+        if onto:
+            stood = stood_on(context, body, pose, region, region.body, at[region.body])
+            if isinstance(stood, Rejection):
+                return stood
 
         hit = context.collisions.between(body, pose, {})
         if hit is not None:
@@ -80,24 +88,31 @@ def _rested(
     body: str,
     proposal: Placement | Pose,
     regions: Mapping[str, Surface | Cavity],
-) -> Pose | Rejection:
-    """Certify that a proposal rests in its region, or a pose in the first that it is nearest to."""
+    at: Mapping[str, Pose],
+) -> tuple[Pose, Surface | Cavity] | Rejection:
+    """Certify that a proposal rests in its region, or a pose in the first that it is nearest to;
+    regions of bodies in `at` are where those are.
+    """
     faces, scene = context.stable_faces(body), context.scene
     if isinstance(proposal, Placement):
-        region = regions.get(proposal.region)
-        if region is None:  # on a body that moves
-            return Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
-        return certified_pose(faces, proposal, region, scene.world_pose(region))
+        meant = regions.get(proposal.region)
+        regions = {} if meant is None else {meant.name: meant}
 
+    refused = Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
     for region in regions.values():
-        T_world_region = scene.world_pose(region)
-        placement = snap_to_region(faces, proposal, region, T_world_region)
-        if isinstance(placement, Rejection):
-            continue
+        T_world_region = at.get(region.body, scene.bodies[region.body].pose) @ region.pose
+        placement = proposal
+        if isinstance(placement, Pose):
+            snapped = snap_to_region(faces, placement, region, T_world_region)
+            if isinstance(snapped, Rejection):
+                continue
+            placement = snapped
+
         pose = certified_pose(faces, placement, region, T_world_region)
         if isinstance(pose, Pose):
-            return pose
-    return Rejection("rests nowhere", kind=RejectionKind.UNSTABLE)
+            return pose, region
+        refused = pose if isinstance(proposal, Placement) else refused
+    return refused
 
 
 def test_relation(

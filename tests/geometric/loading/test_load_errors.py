@@ -71,7 +71,7 @@ CASES = [
     ("furniture: table", "furniture: tabel", 6, "unknown furniture 'tabel'.*Did you mean 'table'"),
     (", size: [1.2, 0.7, 0.72]", "", 6, "'size' is missing"),
     ("0.72], at", "0.72], compartments: 2, at", 6, "unknown key 'compartments'"),
-    ("0.72], at", "0.72], fixed: false, at", 6, "furniture is always fixed"),
+    ("0.72], at", "0.72], fixed: false, at", 6, "furniture is fixed, but for open_box"),
     ("0.72], at", "0.03], at", 6, "has no room under a top"),
     (TABLE, "{furniture: cupboard, size: [1, 1, 1], compartments: 0, at: [1.6, 0, 0]}", 6, "must be at least 1"),
     (TABLE, "{furniture: cupboard, size: [1, 1, 1], compartments: 1.5, at: [1.6, 0, 0]}", 6, "not a whole number"),

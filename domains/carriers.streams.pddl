@@ -1,0 +1,70 @@
+; Where the values of carriers.pddl come from. A relation is grounded by two streams: sample-<relation> and test-<relation>.
+(define (stream carriers)
+  (:stream sample-grasp
+    :inputs (?o) :domain (movable ?o)
+    :outputs (?g) :certified (grasp ?o ?g))
+
+  ; A generator may look at the scene, but certifies nothing about it: collisions have tests of their own.
+  (:stream sample-on
+    :inputs (?o ?s) :domain (and (movable ?o) (surface ?s) (anchored ?s))
+    :fluents (at-pose)
+    :outputs (?p) :certified (and (pose ?o ?p) (supported ?o ?p ?s) (grounded ?o ?p) (sampled ?o ?p)))
+  (:stream sample-inside
+    :inputs (?o ?c) :domain (and (movable ?o) (container ?c) (anchored ?c))
+    :fluents (at-pose)
+    :outputs (?p) :certified (and (pose ?o ?p) (contained ?o ?p ?c) (grounded ?o ?p) (sampled ?o ?p)))
+  ; On a body that moves, where it stands at ?pb.
+  (:stream sample-on-movable
+    :inputs (?o ?s ?below ?pb) :domain (and (stackable ?o ?s ?below) (surface ?s) (pose ?below ?pb))
+    :fluents (at-pose)
+    :outputs (?p) :certified (and (pose ?o ?p) (stacked ?o ?p ?s ?below ?pb) (borne ?o ?p ?below ?pb) (sampled ?o ?p)))
+  (:stream sample-inside-movable
+    :inputs (?o ?c ?below ?pb) :domain (and (stackable ?o ?c ?below) (container ?c) (pose ?below ?pb))
+    :fluents (at-pose)
+    :outputs (?p) :certified (and (pose ?o ?p) (packed ?o ?p ?c ?below ?pb) (borne ?o ?p ?below ?pb) (sampled ?o ?p)))
+
+  ; Where it is when the body below has been carried from ?pb to ?pb2.
+  (:stream shift-on
+    :inputs (?o ?p ?s ?below ?pb ?pb2)
+    :domain (and (portable ?below) (sampled ?o ?p) (stacked ?o ?p ?s ?below ?pb) (pose ?below ?pb2))
+    :outputs (?p2) :certified (and (pose ?o ?p2) (stacked ?o ?p2 ?s ?below ?pb2) (borne ?o ?p2 ?below ?pb2)
+                                   (shifted ?o ?p ?below ?pb ?pb2 ?p2)))
+  (:stream shift-inside
+    :inputs (?o ?p ?c ?below ?pb ?pb2)
+    :domain (and (portable ?below) (sampled ?o ?p) (packed ?o ?p ?c ?below ?pb) (pose ?below ?pb2))
+    :outputs (?p2) :certified (and (pose ?o ?p2) (packed ?o ?p2 ?c ?below ?pb2) (borne ?o ?p2 ?below ?pb2)
+                                   (shifted ?o ?p ?below ?pb ?pb2 ?p2)))
+
+  (:stream test-reachable
+    :inputs (?o ?p) :domain (pose ?o ?p)
+    :certified (reachable ?o ?p))
+  ; The hand alone among the fixed bodies, before there is an arm or a base: cheap, and it fails for the same reasons.
+  (:stream test-approach
+    :inputs (?o ?p ?g) :domain (and (pose ?o ?p) (grasp ?o ?g))
+    :certified (approach ?o ?p ?g))
+  (:stream inverse-kinematics
+    :inputs (?o ?p ?g) :domain (and (pose ?o ?p) (reachable ?o ?p) (grasp ?o ?g) (approach ?o ?p ?g))
+    :outputs (?b ?q) :certified (and (standing ?b) (kin ?o ?p ?g ?b ?q)))
+
+  (:stream test-pose-clear
+    :inputs (?o ?p ?o2 ?p2) :domain (and (pose ?o ?p) (pose ?o2 ?p2))
+    :certified (pose-clear ?o ?p ?o2 ?p2))
+  (:stream test-approach-clear
+    :inputs (?o ?p ?g ?o2 ?p2) :domain (and (approach ?o ?p ?g) (pose ?o2 ?p2))
+    :certified (approach-clear ?o ?p ?g ?o2 ?p2))
+  (:stream test-reach-clear
+    :inputs (?o ?p ?g ?b ?q ?o2 ?p2) :domain (and (kin ?o ?p ?g ?b ?q) (pose ?o2 ?p2))
+    :certified (reach-clear ?o ?p ?g ?b ?q ?o2 ?p2))
+
+  (:stream plan-base-motion
+    :inputs (?b) :domain (standing ?b)
+    :fluents (at-base at-pose holding riding)
+    :outputs (?t) :certified (base-motion ?b ?t))
+  (:stream plan-pick
+    :inputs (?o ?p ?g ?b ?q) :domain (kin ?o ?p ?g ?b ?q)
+    :fluents (at-pose riding)
+    :outputs (?t) :certified (pick-motion ?o ?p ?g ?b ?q ?t))
+  (:stream plan-place
+    :inputs (?o ?p ?g ?b ?q) :domain (kin ?o ?p ?g ?b ?q)
+    :fluents (at-pose riding)
+    :outputs (?t) :certified (place-motion ?o ?p ?g ?b ?q ?t)))
