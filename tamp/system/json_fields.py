@@ -38,7 +38,8 @@ class Field:
     def __getitem__(self, key: str) -> Field:
         found = self.get(key)
         if found is None:
-            raise self.wrong(f"'{key}' is missing")
+            null = key in self.mapping()
+            raise self.wrong(f"'{key}' is {'null' if null else 'missing'}")
         return found
 
     def get(self, key: str) -> Field | None:

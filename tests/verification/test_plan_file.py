@@ -41,6 +41,7 @@ MALFORMED: dict[str, tuple[Callable[[Plan], Any], str, bool]] = {
     "six joints": (lambda p: p["values"]["q1"]["lift"][1].pop(), "values.q1.lift[1]: 7 numbers", True),
     "no rows": (lambda p: p["values"]["q1"].update(approach=[]), "at least one row", True),
     "value without type": (lambda p: p["values"]["p1"].pop("type"), "'type' is missing", True),
+    "value with type null": (lambda p: p["values"]["p1"].update(type=None), "'type' is null", True),
     "unknown part": (lambda p: first_segment(p).update(part="leg"), "'leg' is unknown", True),
     "no times": (lambda p: first_segment(p).update(times=[]), "at least one time", True),
     "a time too few": (lambda p: first_segment(p)["times"].pop(), "one a time", False),

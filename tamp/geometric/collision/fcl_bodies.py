@@ -29,7 +29,7 @@ class FclBody:
         self._at: list[Array | None] = [None] * len(parts)
 
     @classmethod
-    def of_meshes(cls, meshes: Iterable[tuple[Array, NDArray[np.int64]]]) -> FclBody:
+    def of_meshes(cls, meshes: Iterable[tuple[Float[Array, "n 3"], NDArray[np.int64]]]) -> FclBody:
         """Make a body of meshes: vertices (n, 3) in the body's frame and faces (m, 3)."""
         body = cls(())
         for vertices, faces in meshes:

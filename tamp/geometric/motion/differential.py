@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from tamp.geometric.motion.sampling_based import PlaneSpace, connect
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 EdgeTest = Callable[[Array, Array], bool]
 
@@ -33,9 +37,9 @@ RETREATS = (0.3, 0.6)
 
 
 def turn_and_drive(
-    start: Array, goal: Array, room: Room, edge_free: EdgeTest, rng: np.random.Generator, *,
-    seed: int, checks: int, deadline: Deadline, tries: int,
-) -> Array | None:  # fmt: skip
+    start: Float[Array, " 3"], goal: Float[Array, " 3"], room: Room, edge_free: EdgeTest,
+    rng: np.random.Generator, *, seed: int, checks: int, deadline: Deadline, tries: int,
+) -> Float[Array, "n 3"] | None:  # fmt: skip
     """Search a path (n, 3) from start to goal, x, y, yaw, whose edges turn or drive straight.
 
     Args:
@@ -80,7 +84,7 @@ def turn_and_drive(
     return _through(stations, legs)
 
 
-def ways(a: Array, b: Array) -> list[Array]:
+def ways(a: Float[Array, " 3"], b: Float[Array, " 3"]) -> list[Float[Array, "k 3"]]:
     """List the ways from one base to another by turn, drive and turn: forwards and backwards, the
     one that turns less first; each shape (k, 3).
     """

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +48,14 @@ class Chain:
         )
 
     @property
-    def arrays(self) -> tuple[Array, Array, Array, Array, Array]:
+    def arrays(
+        self,
+    ) -> tuple[
+        Float[Array, "n 4 4"],
+        Float[Array, " n"],
+        Float[Array, "4 4"],
+        Float[Array, " n"],
+        Float[Array, " n"],
+    ]:
         """Return what every kernel takes first."""
         return (self.origins, self.slides, self.T_flange_tool, self.lower, self.upper)

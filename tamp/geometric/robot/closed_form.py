@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from eaik.IK_HP import HPRobot
@@ -10,6 +11,9 @@ from eaik.IK_HP import HPRobot
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.closed_form_kernels import keep_valid
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 TOLERANCE = 1e-6
 """Metres, and entries of the rotation matrix, by which a solution's FK may miss the pose."""
@@ -43,8 +47,11 @@ class ClosedForm:
         self._reach = _reach(origins)
 
     def solve(
-        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
-    ) -> Array:
+        self,
+        T_base_tool: Float[Array, "4 4"],
+        enough: int | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> Float[Array, "n 7"]:
         """Solve inverse kinematics: joint angles (n, 7) within the limits that put the tool at
         T_base_tool (4, 4), in a deterministic order.
 

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.numerical_kernels import damped_least_squares
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 SEEDS = 128
 """Starts after which a pose counts as out of reach, one that lies beyond the arm's length at once:
@@ -42,8 +47,11 @@ class Numerical:
         self._centre, self._length = _length(chain)
 
     def solve(
-        self, T_base_tool: Array, enough: int | None = None, rng: np.random.Generator | None = None
-    ) -> Array:
+        self,
+        T_base_tool: Float[Array, "4 4"],
+        enough: int | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> Float[Array, "n joints"]:
         """Solve as `ArmIK.solve` says; at most MOST solutions, each found from another start."""
         chain = self._chain
         if float(np.linalg.norm(T_base_tool[:3, 3] - self._centre)) > self._length:

@@ -113,7 +113,10 @@ def _placement(item: Placement, limits: _Limits) -> Placement:
     if region not in limits.regions:
         raise Misbehaved(f"it proposes a placement in '{region:.40}', which there is not")
 
-    ways = 0 if limits.body is None else len(stable_faces_of(limits.body).ways)
+    stable = None if limits.body is None else stable_faces_of(limits.body)
+    ways = 0 if stable is None else len(stable.ways)
+    if stable is not None and face >= ways:
+        ways += len(stable.curved)
     if not 0 <= face < ways:
         raise Misbehaved(f"it proposes face {face} of a body that rests on {ways}")
     if not all(math.isfinite(number) for number in (x, y, yaw)):

@@ -12,8 +12,8 @@ from numpy.random import Generator as Random
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Scene, Surface
-from tamp.geometric.stability.placement import Placement, placement_on, resting_pose
+from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement, placement_on, resting_pose, room_above
 from tamp.geometric.stability.stable_poses import Face, stable_faces_of
 
 KEEP_FACE = 0.85
@@ -26,7 +26,7 @@ extent."""
 
 class SurfacePlacements:
     """A stable face down, uniform in yaw and in the positions that keep the whole body above the
-    region.
+    region; a curved side where no stable face fits under its ceiling.
 
     Where the body is larger than the region, uniform in the positions of its centre; overhang is
     judged afterwards.
@@ -35,26 +35,23 @@ class SurfacePlacements:
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
     ) -> list[Placement]:
-        """Propose placements at rest in the region `arguments[1]`; none when no stable face fits
-        under its ceiling.
+        """Propose placements at rest in the region `arguments[1]`; none when nothing fits under
+        its ceiling.
         """
         body, region_name = arguments
         region = scene.region(region_name)
-        room = region.clearance if isinstance(region, Surface) else region.size[2]
         stable = stable_faces_of(scene.bodies[body])
-        low = [face.extent + 2 * CONTACT_GAP <= room for face in stable.ways]
-        steady = len(stable.faces)  # what lies on a curved side does so where nothing else is left
-        faces = [number for number in range(steady) if low[number]]
-        faces = faces or [number for number in range(steady, len(low)) if low[number]]
+        faces = stable.under(room_above(region))
         if not faces:
             return []
+        keep = KEEP_FACE if faces[0] < len(stable.ways) else 0.0  # no curved side is before another
 
         T_world_region = scene.world_pose(region)
         T_region_world = T_world_region.inverse()
         placements: list[Placement] = []
         for _ in range(count):
-            index = faces[0] if rng.random() < KEEP_FACE else faces[int(rng.integers(len(faces)))]
-            face, yaw = stable.ways[index], rng.uniform(-math.pi, math.pi)
+            index = faces[0] if rng.random() < keep else faces[int(rng.integers(len(faces)))]
+            face, yaw = stable.face(index), rng.uniform(-math.pi, math.pi)
             x, y = position_inside(face, yaw, region.size, rng)
             # A pose of the world rounds them in the last bit, on which whole plans can hang: so
             # that seeds keep theirs, the numbers are those that it holds.

@@ -14,7 +14,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Cavity, Surface
-from tamp.geometric.stability.stable_poses import Face, StableFaces
+from tamp.geometric.stability.stable_poses import Face, StableFaces, is_under
 from tamp.stream import Rejection, RejectionKind
 
 SNAP_HEIGHT = 0.03
@@ -31,7 +31,7 @@ class Placement:
 
     Attributes:
         region: Name of the surface or the cavity.
-        face: Which way up: an index of the body's `StableFaces.ways`.
+        face: Which way up: an index that the body's `StableFaces.face` knows.
         x: Of the body's frame along the region frame's x axis, metres.
         y: The same along its y axis, metres.
         yaw: Turn about the region's normal, radians, after the face's rotation.
@@ -48,12 +48,12 @@ def snap_to_region(
     faces: StableFaces, T_world_body: Pose, region: Surface | Cavity, T_world_region: Pose
 ) -> Placement | Rejection:
     """Lay a proposed pose onto the stable face that is nearly down and the region that is nearly
-    under it, or say why that cannot be.
+    under it, or say why that cannot be. Where no stable face fits, onto a curved side.
     """
-    index = faces.nearest(T_world_body.rotation)
+    index = faces.nearest(T_world_body.rotation, room_above(region))
     if index is None:
         return Rejection("stands on no stable face", kind=RejectionKind.UNSTABLE)
-    face = faces.ways[index]
+    face = faces.face(index)
     if (refused := _too_tall(face, region)) is not None:
         return refused
 
@@ -69,7 +69,7 @@ def placement_on(index: int, face: Face, T_region_body: Pose, region: str) -> Pl
     """Read the placement on a face that is known off a pose; its height and tilt are dropped.
 
     Args:
-        index: Of the face among the body's `StableFaces.ways`.
+        index: Of the face, as the body's `StableFaces.face` knows it.
         face: It.
         T_region_body: The body's pose in the region's frame.
         region: Its name.
@@ -89,7 +89,7 @@ def certified_pose(
     """
     if placement.region != region.name:
         return Rejection(f"placed in {placement.region}", kind=RejectionKind.FAULT)
-    face = faces.ways[placement.face]
+    face = faces.face(placement.face)
     if (refused := _too_tall(face, region)) is not None:
         return refused
 
@@ -108,9 +108,14 @@ def certified_pose(
     return placed_pose(faces, placement, T_world_region)
 
 
+def room_above(region: Surface | Cavity) -> float:
+    """Return how high things in a region can be, metres."""
+    return region.clearance if isinstance(region, Surface) else region.size[2]
+
+
 def placed_pose(faces: StableFaces, placement: Placement, T_world_region: Pose) -> Pose:
     """Return T_world_body where a placement puts the body, whether or not it rests there."""
-    face = faces.ways[placement.face]
+    face = faces.face(placement.face)
     return T_world_region @ resting_pose(face, placement.yaw, placement.x, placement.y)
 
 
@@ -140,8 +145,8 @@ def _rotation(yaw: float) -> Array:
 
 def _too_tall(face: Face, region: Surface | Cavity) -> Rejection | None:
     """Say by how much the body on this face is too tall for the room above the region."""
-    room = region.clearance if isinstance(region, Surface) else region.size[2]
-    if face.extent + 2 * CONTACT_GAP <= room:
+    room = room_above(region)
+    if is_under(face, room):
         return None
     what = f"too tall ({face.extent:.2f} m, room for {room:.2f} m)"
     return Rejection(what, kind=RejectionKind.TOO_LARGE)

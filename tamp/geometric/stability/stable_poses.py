@@ -12,7 +12,7 @@ import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Body, Sphere
+from tamp.geometric.scene.scene import CONTACT_GAP, Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
 
@@ -40,6 +40,13 @@ metres."""
 
 LEAN = 0.002
 """By so much a curved side carries beyond its lowest points: meshes have few of them, metres."""
+
+AROUND = math.radians(40.0)
+"""Curved sides that a body might lie on are at least so far apart: of a can every one is like the
+next."""
+
+MOST_CURVED = 300
+"""Sides of a body's hull that are looked at for curved ones: the largest."""
 
 
 @lru_cache(maxsize=512)
@@ -110,22 +117,54 @@ class StableFaces:
             return None
         if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT) for face in self.faces):
             return None
-        return curved_face(self.body)
+        return curved_face(self.body, self.body.pose.rotation)
 
     @cached_property
     def ways(self) -> tuple[Face, ...]:
         """Return the stable faces, and the curved side that it lies on."""
         return self.faces if self.lying is None else (*self.faces, self.lying)
 
-    def nearest(self, rotation: Float[Array, "3 3"]) -> int | None:
-        """Find the way onto which the body, let go under this rotation (3, 3), tips back: an index
-        of `ways`; None when it may tip over.
+    @cached_property
+    def curved(self) -> tuple[Face, ...]:
+        """Return curved sides that the body might be laid on, though it stands now, the lowest
+        first; none of a ball.
+
+        They are a way to rest only where no other one fits under the ceiling.
         """
-        if not self.ways:
+        if all(isinstance(part.shape, Sphere) for part in self.body.parts):
+            return ()
+        return curved_faces(self.body, self.ways)
+
+    def face(self, index: int) -> Face:
+        """Return the face with this index: of `ways`, and beyond these of `curved`."""
+        steady = len(self.ways)
+        return self.ways[index] if index < steady else self.curved[index - steady]
+
+    def under(self, room: float) -> tuple[int, ...]:
+        """List the faces on which the body fits under a ceiling `room` metres above its support:
+        stable ones, where there are none the curved side that it lies on, and last any curved one.
+        """
+        ways = [number for number, face in enumerate(self.ways) if is_under(face, room)]
+        steady = tuple(number for number in ways if number < len(self.faces))
+        if steady or ways:
+            return steady or tuple(ways)
+        first = len(self.ways)
+        return tuple(n for n, face in enumerate(self.curved, first) if is_under(face, room))
+
+    def nearest(self, rotation: Float[Array, "3 3"], room: float = math.inf) -> int | None:
+        """Find the way onto which the body, let go under this rotation (3, 3), tips back: an index
+        of `ways`, or of a curved side where nothing else fits under a ceiling `room` metres above;
+        None when it may tip over.
+        """
+        numbers = range(len(self.ways))
+        if (low := self.under(room)) and low[0] >= len(self.ways):
+            numbers = low
+        if not numbers:
             return None
-        cosines = [float(face.rotation[2] @ rotation[2]) for face in self.ways]
-        best = max(range(len(cosines)), key=cosines.__getitem__)
-        return best if cosines[best] >= math.cos(max(SNAP_TILT, self.ways[best].angle)) else None
+        best = max(numbers, key=lambda number: float(self.face(number).rotation[2] @ rotation[2]))
+        face = self.face(best)
+        cosine = float(face.rotation[2] @ rotation[2])
+        return best if cosine >= math.cos(max(SNAP_TILT, face.angle)) else None
 
     def index_of(self, rotation: Float[Array, "3 3"]) -> int | None:
         """Find the way that this rotation (3, 3) turns down, exactly: an index of `ways`."""
@@ -133,6 +172,11 @@ class StableFaces:
             if (face.rotation == rotation).all():
                 return number
         return None
+
+
+def is_under(face: Face, room: float) -> bool:
+    """Check whether the body on this face is lower than a ceiling `room` metres above."""
+    return face.extent + 2 * CONTACT_GAP <= room
 
 
 def fits(face: Face, size: Sequence[float]) -> bool:
@@ -198,14 +242,34 @@ def facets(body: Body, most: int) -> list[Face] | None:
     return faces
 
 
-def curved_face(body: Body) -> Face | None:
-    """Return the side that is down in the body's pose, however curved; None where its centre of
-    mass is beside it.
+def curved_faces(body: Body, ways: Sequence[Face]) -> tuple[Face, ...]:
+    """List curved sides over which the centre of mass is, apart from each other and from `ways`,
+    the lowest first.
     """
-    rotation = body.pose.rotation
+    found: list[Face] = []
+    for normal in facet_normals(*body_hull(body))[:MOST_CURVED]:
+        face = curved_face(body, rotation_to_down(normal))
+        if face is not None:
+            found.append(face)
+
+    found.sort(key=lambda face: round(face.extent, 3))
+    apart: list[Face] = []
+    for face in found:
+        others = [float(face.rotation[2] @ other.rotation[2]) for other in (*ways, *apart)]
+        if max(others, default=-1.0) < math.cos(AROUND):
+            apart.append(face)
+    return tuple(apart)
+
+
+def curved_face(body: Body, rotation: Float[Array, "3 3"]) -> Face | None:
+    """Return the side that is down under this rotation (3, 3), however curved; None where its
+    centre of mass is beside it.
+    """
     vertices, _ = body_hull(body)
     turned = vertices @ rotation.T
-    low, high = bounds(body.parts, Pose((0.0, 0.0, 0.0), body.pose.quaternion))
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    low, high = bounds(body.parts, Pose.from_matrix(matrix))
     touching = turned[turned[:, 2] < float(turned[:, 2].min()) + ROUND, :2]
     corners = LEAN * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     base = outline((touching[:, None] + corners).reshape(-1, 2))

@@ -81,10 +81,9 @@ def approach_hits(
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     back = -RETREAT * T_world_tool[:3, 2]
     up = context.touching.way_out(grasp.body, pose, LIFT)
-    away = [_moved(T_world_tool, share * back) for share in PROBES]
     out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in PROBES)]
     hand, touching = context.hand, context.touching
-    hit = hand.hits(away, context.robot.opening, None, standing)
+    hit = open_hand_hits(context, T_world_tool, standing)
     if hit is not None:
         return hit
 
@@ -102,6 +101,15 @@ def approach_hits(
         standing = [one for one in standing if one[0] not in leaving]
 
     return hit or hand.hits(out, grasp.opening, context.attachment(grasp), standing)
+
+
+def open_hand_hits(
+    context: Context, T_world_tool: Array, others: Iterable[tuple[str, Pose]]
+) -> str | None:
+    """Return the first of other bodies that the open hand hits on its way to a tool pose (4, 4)."""
+    back = -RETREAT * T_world_tool[:3, 2]
+    away = [_moved(T_world_tool, share * back) for share in PROBES]
+    return context.hand.hits(away, context.robot.opening, None, others)
 
 
 def _moved(matrix: Array, offset: Array) -> Array:

@@ -27,6 +27,7 @@ from tamp.geometric.streams.grasp_directions import (
     straight,
 )
 from tamp.geometric.streams.hand_fit import CONE, ROOMY, Closed, HandFit
+from tamp.geometric.streams.narrow_ways import promising
 from tamp.geometric.values import Grasp
 from tamp.stream import Rejection
 
@@ -71,12 +72,18 @@ def _welcome(_: Grasp) -> None:
     """Refuse none."""
 
 
+def _anywhere(_: Array) -> bool:
+    """Take every way for free."""
+    return True
+
+
 def sample_grasps(
     body: Body,
     robot: Robot,
     rng: np.random.Generator,
     ups: Sequence[Float[Array, " 3"]] = (),
     refused: Callable[[Grasp], Rejection | None] = _welcome,
+    free: Callable[[Float[Array, "4 4"]], bool] = _anywhere,
 ) -> Iterator[Grasp | Rejection]:
     """Yield grasps of a body: first the canonical ones in random order, then random antipodal ones
     without end.
@@ -98,6 +105,8 @@ def sample_grasps(
         ups: Directions of up in the tool's frame in which it carries, beside that in which it
             grasps, (3,) each.
         refused: Why a grasp is of no use, whose place another one takes.
+        free: Whether the open hand's way to T_body_tool is free where the body stands at the start;
+            in a narrow place most random grasps are such.
     """
     solid = Solid(body)
     fit = HandFit(body, solid, robot)
@@ -130,7 +139,7 @@ def sample_grasps(
             yield waiting.pop(0)[1]
 
     failures = 0
-    proposals = _antipodal(solid, up, fit.widest, rng)
+    proposals = promising(_antipodal(solid, up, fit.widest, rng), free)
     while failures < PATIENCE:
         wanted, looked = len(waiting) + TOGETHER, 0
         while len(waiting) < wanted and failures < PATIENCE and looked < LOOKED_AT:

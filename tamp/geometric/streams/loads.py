@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from tamp.geometric.streams.collisions import HAIR, test_reach_clear
 from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.values import BaseConf, Grasp, Grip, Load, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 TILT = math.radians(10.0)
 """Radians by which a body may lean while others stand on it: a third of what their friction would
@@ -67,11 +71,11 @@ class Level:
     grasp: Grasp
     up: Array
 
-    def free(self, conf: Array) -> bool:
+    def free(self, conf: Float[Array, " conf"]) -> bool:
         """Check whether nothing touches at `conf`, and the body is level."""
         return self.tilt(conf) <= TILT and self.arrangement.free(conf)
 
-    def edge_free(self, start: Array, end: Array) -> bool:
+    def edge_free(self, start: Float[Array, " conf"], end: Float[Array, " conf"]) -> bool:
         """Check whether nothing touches on the straight line, and the body stays level."""
         count = max(1, math.ceil(float(np.abs(end - start)[3:].max()) / TURN))
         shares = np.linspace(0.0, 1.0, count + 1)
@@ -79,7 +83,7 @@ class Level:
             return False
         return self.arrangement.edge_free(start, end)
 
-    def tilt(self, conf: Array) -> float:
+    def tilt(self, conf: Float[Array, " conf"]) -> float:
         """Measure how far the body leans, radians."""
         turned = self.context.kinematics.tool(conf)[2, :3] @ self.grasp.T_tool_body.rotation
         return math.acos(min(1.0, float(turned @ self.up)))

@@ -15,7 +15,6 @@ from tamp.geometric.context import Context
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import (
-    CONTACT_GAP,
     Body,
     Box,
     Cavity,
@@ -25,6 +24,7 @@ from tamp.geometric.scene.scene import (
     Surface,
 )
 from tamp.geometric.stability.hulls import body_hull, part_mesh
+from tamp.geometric.stability.placement import room_above
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
 from tamp.geometric.streams.hand_fit import CONE
@@ -108,16 +108,16 @@ def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     refused = no_fit(context, body, region)
     if refused is not None:
         return refused
-    room = region.clearance if isinstance(region, Surface) else region.size[2]
+    room = room_above(region)
     return _out_of_reach(context, body, region, room)
 
 
 def no_fit(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
     """Say why a body can be placed nowhere in a region, wherever that is; None where it may."""
-    room = region.clearance if isinstance(region, Surface) else region.size[2]
+    room = room_above(region)
     shape = context.scene.bodies[body]
-    ways = context.stable_faces(body).ways
-    if not ways:
+    stable = context.stable_faces(body)
+    if not (stable.ways or stable.curved):
         ball = all(isinstance(part.shape, Sphere) for part in shape.parts)
         reason = (
             f"a sphere rests on no stable face ({body})"
@@ -126,9 +126,9 @@ def no_fit(context: Context, body: str, region: Surface | Cavity) -> Rejection |
         )
         return Rejection(reason, given_up=True, kind=RejectionKind.UNSTABLE)
 
-    low = [face for face in ways if face.extent + 2 * CONTACT_GAP <= room]
+    low = [stable.face(number) for number in stable.under(room)]
     if not low:
-        least = min(face.extent for face in ways)
+        least = min(face.extent for face in (*stable.ways, *stable.curved))
         what = f"protrudes ({body} is {least:.2f} m tall, {region.name} has room for {room:.2f} m)"
         may = _could_fit(shape, room, None)
         return Rejection(what, given_up=may, kind=RejectionKind.TOO_LARGE)
@@ -151,9 +151,11 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     Wherever it rests, its centre of mass is over the region and well inside the side that is down;
     so a disc around it, just above the region, must be free.
     """
-    shape, ways = context.scene.bodies[body], context.stable_faces(body).ways
-    if len(shape.parts) != 1 or not ways:
+    shape, stable = context.scene.bodies[body], context.stable_faces(body)
+    low = [stable.face(number) for number in stable.under(room_above(region))]
+    if len(shape.parts) != 1 or not low:
         return None
+    ways = (*stable.ways, *low)
 
     radius = min(_room_around(face) * max(0.0, 1.0 - 4 * JUST_ABOVE / face.extent) for face in ways)
     cell = max(FINE, math.sqrt(region.size[0] * region.size[1] / PLACES))

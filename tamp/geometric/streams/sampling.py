@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 from tamp.geometric.context import Context
 from tamp.geometric.robot.robot import Robot
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
+from tamp.geometric.streams.approach import open_hand_hits
 from tamp.geometric.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.streams.proposal_stream import draw
@@ -35,7 +36,13 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
     if too_heavy is not None:
         yield too_heavy
         return
-    for grasp in sample_grasps(shape, context.robot, call.rng, (context.carrying_up,), refused):
+    fixed = [(name, context.scene.bodies[name].pose) for name in context.scene.fixed]
+
+    def free(T_body_tool: Array) -> bool:
+        return open_hand_hits(context, shape.pose.matrix @ T_body_tool, fixed) is None
+
+    ups = (context.carrying_up,)
+    for grasp in sample_grasps(shape, context.robot, call.rng, ups, refused, free):
         found = True
         yield grasp
     if found:

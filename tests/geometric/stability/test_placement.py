@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cavity, Part, Surface
+from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cavity, Cylinder, Part, Surface
 from tamp.geometric.stability.placement import (
     SNAP_HEIGHT,
     Placement,
@@ -104,3 +104,29 @@ def test_a_face_is_found_again_by_its_rotation() -> None:
     again = StableFaces(BRICK)
     assert [again.index_of(face.rotation) for face in FACES.ways] == list(range(6))
     assert again.index_of(np.full((3, 3), 0.5)) is None
+
+
+CAN = stable_faces_of(Body("can", (Part(Cylinder(0.03, 0.2)),), Pose((0.0, 0.0, 1.0)), movable=True))
+LOW = Surface("board", "shelf", Pose(), (0.4, 0.3), clearance=0.15)
+
+
+@pytest.mark.parametrize("face", CAN.under(LOW.clearance))
+def test_what_can_only_lie_under_a_ceiling_is_laid_on_its_curved_side(face: int) -> None:
+    pose = certified_pose(CAN, Placement("board", face, 0.03, -0.02, 2.5), LOW, T_WORLD_TOP)
+    assert isinstance(pose, Pose)
+    assert abs(pose.rotation[2, 2]) < 1e-9 and pose.position[2] == pytest.approx(0.7 + 0.03 + CONTACT_GAP)
+    read = snap_to_region(CAN, pose, LOW, T_WORLD_TOP)
+    assert isinstance(read, Placement)
+    assert read.face == face and (read.x, read.y, read.yaw) == pytest.approx((0.03, -0.02, 2.5), abs=1e-9)
+
+
+def test_where_it_can_stand_it_is_not_laid_down() -> None:
+    lying = Pose.from_xyz_rpy((1.0, -2.0, 0.73), (math.pi / 2, 0.0, 0.0))
+    assert CAN.under(TOP.clearance) == (0, 1)
+    assert reason(snap_to_region(CAN, lying, TOP, T_WORLD_TOP))[0] == "stands on no stable face"
+
+
+def test_a_curved_side_that_overhangs_with_its_middle_is_refused() -> None:
+    face = CAN.under(LOW.clearance)[0]
+    said = certified_pose(CAN, Placement("board", face, 0.19, 0.0, 0.0), LOW, T_WORLD_TOP)
+    assert reason(said)[0] == "overhangs"

@@ -64,7 +64,9 @@ def test_a_can_that_lies_may_lie_elsewhere_and_a_ball_may_not() -> None:
     assert lying.lying.height == pytest.approx(0.03, abs=1e-3)
     nearest = lying.nearest(lying.body.pose.rotation)
     assert nearest is not None and lying.ways[nearest] is lying.lying
-    assert stable_faces_of(body(Cylinder(0.03, 0.2))).lying is None
+    standing = stable_faces_of(body(Cylinder(0.03, 0.2)))
+    assert standing.lying is None and standing.under(0.25) == (0, 1) and not stable_faces_of(body(Sphere(0.03))).curved
+    assert [standing.face(n).extent for n in standing.under(0.1)] == pytest.approx([0.06] * len(standing.curved))
     assert stable_faces_of(body(Sphere(0.03))).lying is None
     assert stable_faces_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.0), support=None)).lying is None
 
@@ -99,8 +101,9 @@ def test_a_box_that_fits_on_an_unsteady_side_proves_nothing(tmp_path: Path) -> N
 def test_a_lying_can_fits_under_a_ceiling_that_it_cannot_stand_under(tmp_path: Path) -> None:
     context = problem_with("thing", tmp_path, "cylinder: {radius: 0.03, height: 0.25}").context
     thing, low = context.scene.bodies["thing"], replace(context.scene.cavities["cupboard_1"], size=(0.4, 0.3, 0.2))
-    standing = no_room(context, "thing", low)
-    assert standing is not None and standing.given_up and "protrudes" in standing.reason
+    assert no_room(context, "thing", low) is None  # though it stands now
+    lower = no_room(context, "thing", replace(low, size=(0.4, 0.3, 0.05)))
+    assert lower is not None and not lower.given_up and "thing is 0.06 m tall" in lower.reason
     lying = replace(thing, pose=Pose.from_xyz_rpy(thing.pose.position, (math.pi / 2, 0.0, 0.3)))
     scene = replace(context.scene, bodies={**context.scene.bodies, "thing": lying})
     assert no_room(replace(context, scene=scene), "thing", low) is None

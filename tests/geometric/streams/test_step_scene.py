@@ -13,6 +13,7 @@ from tamp import load_problem, solve
 from tamp.geometric.samplers.placements import SurfacePlacements
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.placement import Placement, placed_pose
 from tamp.geometric.streams.sampling import sample_inside, sample_on
 from tamp.stream import Call
 from tamp.system.deadline import Deadline
@@ -24,9 +25,9 @@ class Watching:
 
     def __init__(self) -> None:
         self.shown: list[tuple[str, Scene, int]] = []
-        self.proposed: list[list[Pose]] = []
+        self.proposed: list[list[Placement]] = []
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
+    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Placement]:
         self.shown.append((arguments[0], scene, count))
         self.proposed.append(SurfacePlacements().propose(scene, arguments, count, rng))
         return self.proposed[-1]
@@ -74,7 +75,9 @@ def test_a_batch_is_drawn_at_once_and_used_in_its_order(sample: object, place: s
     drawn = sample(problem.context, "box", place, Call(np.random.default_rng(0), Deadline()))  # type: ignore[operator]
     poses = [pose for pose in (next(drawn) for _ in range(20)) if isinstance(pose, Pose)]
     assert len(watching.proposed) == 2 or len(poses) < 17
-    proposed = [pose.position[:2] for batch in watching.proposed for pose in batch]
+    scene, faces = problem.scene, problem.context.stable_faces("box")
+    T_world_region = scene.world_pose(scene.region(place))
+    proposed = [placed_pose(faces, one, T_world_region).position[:2] for batch in watching.proposed for one in batch]
     order = [
         min(range(len(proposed)), key=lambda i: np.hypot(*np.subtract(proposed[i], p.position[:2]))) for p in poses
     ]
@@ -95,4 +98,9 @@ def test_poses_clear_of_the_others_come_first() -> None:
         hits.append(any(context.collisions.pair("soup_can", pose, name, at, 0.003) for name, at in poses.items()))
     assert 0.0 < np.mean(hits) < 0.35 and not hits[0]  # blindly, most of them hit something
     blind = SurfacePlacements().propose(problem.scene, ("soup_can", "cupboard_top"), 200, np.random.default_rng(0))
-    assert np.mean([context.collisions.between("soup_can", pose, poses) is not None for pose in blind]) > 0.5
+    faces, T_world_region = (
+        context.stable_faces("soup_can"),
+        problem.scene.world_pose(problem.scene.region("cupboard_top")),
+    )
+    placed = [placed_pose(faces, one, T_world_region) for one in blind]
+    assert np.mean([context.collisions.between("soup_can", pose, poses) is not None for pose in placed]) > 0.5
