@@ -5,6 +5,7 @@ of arm or base.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 LIFT = 0.02
 """How far a held body is lifted straight up before it is drawn back, metres."""
@@ -104,7 +108,7 @@ def approach_hits(
 
 
 def open_hand_hits(
-    context: Context, T_world_tool: Array, others: Iterable[tuple[str, Pose]]
+    context: Context, T_world_tool: Float[Array, "4 4"], others: Iterable[tuple[str, Pose]]
 ) -> str | None:
     """Return the first of other bodies that the open hand hits on its way to a tool pose (4, 4)."""
     back = -RETREAT * T_world_tool[:3, 2]
