@@ -12,7 +12,8 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
-from tamp.simulation.drop import Drops, Item
+from tamp.simulation.drop import Item
+from tamp.simulation.engines import open_drops
 
 SECONDS = 2.0
 """Simulated time of a drop."""
@@ -64,7 +65,7 @@ class Workbench:
     """
 
     def __init__(self) -> None:
-        self._drops = Drops()
+        self._drops = open_drops()
         self._items: dict[tuple[object, ...], Item] = {}
         self._lock = threading.Lock()
 

@@ -112,7 +112,7 @@ def gather(
     p = np.where(period > 0, period, 1.0)
     turn = np.exp(2j * np.pi * good / p).mean(axis=0)
     zero = np.where(period > 0, np.angle(turn) / (2 * np.pi) * p, 0.0)
-    hollow = (positives.inner[positives.shape, 3] > 0).all(axis=0)
+    hollow = np.all(positives.inner[positives.shape, 3] > 0, axis=0)
     allowed = np.array(
         [
             "floor of" not in one.key or bool(hollow[int(one.key.rpartition(" ")[2])])

@@ -166,7 +166,7 @@ def onto(s: Situations, level: int) -> Array:
 def level_of(shown: Situations) -> int:
     """Find what argument 0 stands on wherever it was shown."""
     k = shown.arguments
-    hollow = (shown.inner[shown.shape, 3] > 0).all(axis=0)
+    hollow = np.all(shown.inner[shown.shape, 3] > 0, axis=0)
     levels = [0, *range(1, k), *(-j for j in range(1, k) if hollow[j])]
 
     def missed(level: int) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import Hold, PlanFile
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.verification.certified_facts import ALIKE, CLOSE
 from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.execution_state import Course, Held

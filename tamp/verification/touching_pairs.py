@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from tamp.simulation.physics import World
+from tamp.simulation.world import World
 from tamp.verification.collision_sweep import TOLERANCE, Sweeper
 from tamp.verification.violation_log import Log
 

@@ -19,6 +19,8 @@ from grounding.train import train
 from grounding.weights import write_weights
 from tamp.commands import solve as cli
 from tamp.geometric.samplers.python_file import python_grounding
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.stability.placement import placed_pose
 from tamp.verification.verify import verify
 
 SCENE = """robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
@@ -118,7 +120,10 @@ def test_what_lies_is_learned_from_a_dozen_demonstrations(kitchen: Path, tmp_pat
         kitchen / "kitchen.yaml", groundings={"lying": lying, "near": python_grounding(kitchen / "near.py")}
     )
     poses = lying.propose(problem.scene, ("milk", "sideboard"), 16, np.random.default_rng(0))
-    assert len(poses) == 16 and all(abs(pose.matrix[2, 2]) < 0.05 for pose in poses)
+    faces = problem.context.stable_faces("milk")
+    T_world_region = problem.scene.world_pose(problem.scene.region("sideboard"))
+    placed = [one if isinstance(one, Pose) else placed_pose(faces, one, T_world_region) for one in poses]
+    assert len(placed) == 16 and all(abs(pose.matrix[2, 2]) < 0.05 for pose in placed)
 
 
 def test_both_from_the_command_line(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pinocchio
+import pinocchio  # pyright: ignore[reportMissingImports]
 import pytest
 
 from tamp.geometric.loading.robot_folder import read_robot

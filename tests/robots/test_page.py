@@ -36,7 +36,9 @@ def test_made_robots_follow_the_schema(driving: Path, lifting: Path, bolted: Pat
 
 @pytest.mark.slow
 def test_the_page_leads_from_a_urdf_to_a_plan_that_is_carried_out(tmp_path: Path) -> None:
-    commands = re.search(r"```sh\n(.*?)```", PAGE, re.DOTALL)[1].strip().splitlines()
+    found = re.search(r"```sh\n(.*?)```", PAGE, re.DOTALL)
+    assert found is not None
+    commands = found[1].strip().splitlines()
     assert len(commands) == 4
     for command in commands:
         program, *words = shlex.split(command)

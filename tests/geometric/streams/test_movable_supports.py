@@ -15,7 +15,7 @@ from tamp.geometric.streams.loads import TILT, Level
 from tamp.geometric.streams.movable_supports import inside, sample_inside_movable, sample_on_movable, shift
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import Problem, load_problem
-from tamp.simulation.physics import World
+from tamp.simulation.engines import open_world
 from tamp.stream import Call, Rejection
 from tamp.system.deadline import Deadline
 from tamp.verification.support_geometry import Supports
@@ -129,7 +129,7 @@ def test_inside_measures_to_the_nearest_edge() -> None:
 def test_the_judge_feels_what_tips_under_its_load(problem: Problem) -> None:
     """A cube at the edge of a plate on a post: each stands by itself, together they fall."""
     scene = problem.scene
-    with World(scene) as world:
+    with open_world(scene) as world:
         supports = Supports(world)
         x, y, z = scene.bodies["plate"].pose.position
         cube = scene.bodies["cube"].pose.matrix.copy()
