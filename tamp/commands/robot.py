@@ -18,7 +18,7 @@ from tamp.system.options import Above, OneOf, check_rules, read_command
 from tamp.system.progress import Progress, say
 
 if TYPE_CHECKING:
-    from tamp.robots.make import Wanted
+    from tamp.commands.robot_folder.make import Wanted
 
 DRIVES = ("omnidirectional", "differential", "fixed")
 
@@ -102,10 +102,16 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
 def _make(options: Make, shown: Progress) -> None:
     began = time.monotonic()
     _check_out(options.out)
+    from tamp.commands.robot_folder.check import (
+        against_physics,
+        against_urdf,
+        check_home,
+        check_reach,
+        solved,
+    )
+    from tamp.commands.robot_folder.make import make
+    from tamp.commands.robot_folder.write import write_folder
     from tamp.geometric.loading.robot_folder import read_robot
-    from tamp.robots.check import against_physics, against_urdf, check_home, check_reach, solved
-    from tamp.robots.make import make
-    from tamp.robots.write import write_folder
 
     wanted = _wanted(options)
     made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
@@ -133,7 +139,7 @@ def _make(options: Make, shown: Progress) -> None:
 
 
 def _wanted(options: Make) -> Wanted:
-    from tamp.robots.make import Wanted
+    from tamp.commands.robot_folder.make import Wanted
 
     base, tip = options.arm or _asked(options.urdf)
     return Wanted(
@@ -156,8 +162,8 @@ def _wanted(options: Make) -> Wanted:
 
 def _asked(urdf: str) -> tuple[str, str]:
     """Take root and tip of a URDF with one chain; else say which there are."""
-    from tamp.robots.arm import tips
-    from tamp.robots.description import find_urdf, read_description
+    from tamp.commands.robot_folder.arm import tips
+    from tamp.commands.robot_folder.description import find_urdf, read_description
 
     description = read_description(find_urdf(urdf))
     ends = tips(description)
@@ -192,10 +198,10 @@ def _check_out(out: Path) -> None:
 
 
 def _check(name: str) -> None:
+    from tamp.commands.robot_folder.check import against_physics, check_home, solved
     from tamp.geometric.loading.robots import find_robot, load_robot
     from tamp.geometric.robot.reachability import Reachability
     from tamp.geometric.robot.spheres import link_covers
-    from tamp.robots.check import against_physics, check_home, solved
 
     robot = load_robot(find_robot(name))
     Reachability(robot)

@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from tamp.commands.robot_folder.convex import Solid
 from tamp.geometric.collision.arrangement import PADDING
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.robots.convex import Solid
 
 STATES = 20_000
 """Random states that decide which pairs are checked in plans: 10,000 do for one arm."""

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tamp.robots import convex, reach_table, self_collision, spheres
-from tests.robots.urdf import LIFT, SIX, write_arm
+from tamp.commands.robot_folder import convex, reach_table, self_collision, spheres
+from tests.commands.robot_folder.urdf import LIFT, SIX, write_arm
 
 
 @pytest.fixture(scope="session")

@@ -8,12 +8,12 @@ import numpy as np
 import pinocchio  # pyright: ignore[reportMissingImports]
 import pytest
 
+from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.geometric.loading.robot_folder import read_robot
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.spheres import link_covers
 from tamp.geometric.scene.scene import Hull
-from tamp.robots.self_collision import home_collision
 
 
 @pytest.fixture(params=["driving", "lifting", "bolted"])

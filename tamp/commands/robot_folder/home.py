@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
+from tamp.commands.robot_folder.reach_table import directions, rotation_with_up
+from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
-from tamp.robots.reach_table import directions, rotation_with_up
-from tamp.robots.self_collision import home_collision
 
 ROOM = 0.3
 """Metres below the tool that what it carries may take."""

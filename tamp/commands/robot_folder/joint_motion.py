@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.commands.robot_folder.description import MOVING, Description
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array
-from tamp.robots.description import MOVING, Description
 
 
 def stands(description: Description, joint: Joint, fixed: Mapping[str, float]) -> Array:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tamp.commands.robot_folder.arm import Arm
+from tamp.commands.robot_folder.convex import hull_of
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Hull
-from tamp.robots.arm import Arm
-from tamp.robots.convex import hull_of
 
 AXES = ("x", "-x", "y", "-y", "z", "-z")
 """Of the arm's tip, along which a gripper can point."""

@@ -7,21 +7,27 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from tamp.commands.robot_folder.arm import Arm, find_arm
+from tamp.commands.robot_folder.base import choose_base
+from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
+from tamp.commands.robot_folder.description import Description, find_urdf, read_description
+from tamp.commands.robot_folder.gripper import (
+    Gripper,
+    along,
+    outward_axis,
+    own_fingers,
+    two_fingers,
+)
+from tamp.commands.robot_folder.hand import find_hand
+from tamp.commands.robot_folder.home import home
+from tamp.commands.robot_folder.reach_table import table
+from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
+from tamp.commands.robot_folder.spheres import cover
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import MARGIN, Link, Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Hull, Part
-from tamp.robots.arm import Arm, find_arm
-from tamp.robots.base import choose_base
-from tamp.robots.convex import Solid, joined, pieces, solids
-from tamp.robots.description import Description, find_urdf, read_description
-from tamp.robots.gripper import Gripper, along, outward_axis, own_fingers, two_fingers
-from tamp.robots.hand import find_hand
-from tamp.robots.home import home
-from tamp.robots.reach_table import table
-from tamp.robots.self_collision import allowed_pairs, home_collision, misjudged
-from tamp.robots.spheres import cover
 
 PER_SECOND = 2.0
 """A joint's acceleration as a multiple of its velocity, 1/s, where nobody says more."""

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tamp.commands.robot_folder.description import MOVING, Description
+from tamp.commands.robot_folder.joint_motion import clean, stands, z_onto
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element
 from tamp.geometric.robot.robot import MARGIN
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.robots.description import MOVING, Description
-from tamp.robots.joint_motion import clean, stands, z_onto
 
 FEWEST, LARGEST = 2, 10
 """Joints of an arm."""

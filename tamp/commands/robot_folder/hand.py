@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from tamp.commands.robot_folder.arm import Group, outwards
+from tamp.commands.robot_folder.description import Description
+from tamp.commands.robot_folder.joint_motion import stands
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.robots.arm import Group, outwards
-from tamp.robots.description import Description
-from tamp.robots.joint_motion import stands
 
 
 def find_hand(

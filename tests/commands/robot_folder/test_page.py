@@ -14,7 +14,7 @@ import yaml
 
 from tamp.geometric.loading.robots import ROBOTS, SHIPPED
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "adding-a-robot.md").read_text(encoding="utf-8")
 SCHEMA = json.loads((ROOT / "tamp/geometric/loading/robot.schema.json").read_text(encoding="utf-8"))
 

@@ -9,6 +9,9 @@ import numpy as np
 # Its wheel lives behind a .pth that pyright does not run.
 import pinocchio  # pyright: ignore[reportMissingImports]
 
+from tamp.commands.robot_folder.arm import Arm
+from tamp.commands.robot_folder.description import Description
+from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.inverse_kinematics import ArmIK
@@ -16,9 +19,6 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
-from tamp.robots.arm import Arm
-from tamp.robots.description import Description
-from tamp.robots.self_collision import home_collision
 from tamp.simulation.engines import open_world
 from tamp.simulation.silence import silence
 

@@ -12,7 +12,7 @@ import pytest
 import tamp
 from tamp.commands.robot import main
 from tamp.errors import InputError
-from tests.robots.urdf import SIX, arm_text
+from tests.commands.robot_folder.urdf import SIX, arm_text
 
 BRANCH = """
 <link name="second"/><link name="third"/>

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import tamp
+from tamp.commands.robot_folder.check import against_physics
+from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.execution.execute import Circumstances, execute
 from tamp.geometric.loading.robots import ROBOTS, SHIPPED
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.plan.open import open_plan
-from tamp.robots.check import against_physics
-from tamp.robots.self_collision import home_collision
 from tamp.verification.verify import verify
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tamp.commands.robot_folder.arm import Arm
 from tamp.geometric.robot.robot import Link
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part
-from tamp.robots.arm import Arm
 
 BOX = (0.8, 0.7, 0.33)
 """Edge lengths of the driving base that carries an arm without one, metres,"""
