@@ -108,7 +108,7 @@ def test_an_interrupted_training_goes_on(
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("", "no command. Choices: generate, explore, collect, encoder, train, evaluate"),
+        ("", "no command. Choices: new, ask, generate, explore, collect, encoder, train, evaluate"),
         ("trian on", "Did you mean 'train'?"),
         ("train", "See tamp-learn train --help"),
         ("train on --sampels 3", "--sampels"),

@@ -32,7 +32,7 @@ def test_places_are_told_as_one_would_write_them() -> None:
 def test_null_is_as_good_as_nothing() -> None:
     assert root().get("none") is None and root().get("absent") is None
     assert "none" not in root() and "cost" in root()
-    with pytest.raises(InputError, match="'none' is missing"):
+    with pytest.raises(InputError, match="'none' is null"):
         root()["none"]
 
 

@@ -55,7 +55,7 @@ def test_bases_are_the_same_after_a_full_turn(second: tuple[float, float, float]
 @pytest.mark.parametrize(
     ("name", "kinds"),
     [
-        ("cup", {"body", "movable"}),
+        ("cup", {"body", "movable", "surface"}),
         ("table", {"body", "fixed", "surface"}),
         ("crate", {"body", "fixed"}),
         ("crate_inside", {"container"}),

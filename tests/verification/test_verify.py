@@ -24,7 +24,7 @@ Plan = dict[str, Any]
 @pytest.fixture(autouse=True, params=[name for name in ENGINES if installed(name)])
 def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """Each test asks each engine."""
-    monkeypatch.setattr("tamp.verification.verify.default_engine", lambda: request.param)
+    monkeypatch.setattr("tamp.simulation.engines.default_engine", lambda: request.param)
     return request.param
 
 

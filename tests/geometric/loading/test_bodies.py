@@ -100,7 +100,7 @@ def test_furniture_is_fixed_and_wooden_with_named_places(tmp_path: Path) -> None
         ("{sphere: 0.05, colour: [2, 0, 0]}", r"colour\[0\]: must be at most 1, found 2"),
         ("{furniture: table}", "'size' is missing. size: .width, depth, height. in metres"),
         ("{furniture: tabel, size: [1, 1, 1]}", "unknown furniture 'tabel'.*Did you mean 'table'?"),
-        ("{furniture: table, size: [1, 1, 1], fixed: false}", "thing.fixed: furniture is always fixed"),
+        ("{furniture: table, size: [1, 1, 1], fixed: false}", "thing.fixed: furniture is fixed, but for open_box"),
         ("{furniture: cupboard, size: [1, 1, 1], compartments: 101}", "must be at most 100, found 101"),
         ("{mesh: gone.obj}", "thing.mesh: no mesh file 'gone.obj'"),
         ("{mesh: gone.obj, scale: 0}", "thing.scale: must be positive, found 0"),

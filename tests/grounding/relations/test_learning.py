@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 
 import numpy as np
@@ -88,20 +87,19 @@ def test_a_situation_with_both_labels_is_refused_with_both_places(tmp_path: Path
 
 
 def test_labels_at_random_are_refused(demos: list[Demonstration]) -> None:
-    refused = 0
+    refused, told = 0, ""
     for seed in range(4):
         labels = np.random.default_rng(seed).permutation([one.holds for one in demos])
         mixed = [
             Demonstration(one.scene, one.arguments, bool(label), one.source)
             for one, label in zip(demos, labels, strict=True)
         ]
-        with contextlib.suppress(InputError):
+        try:
             assert learn("left_of", mixed, np.random.default_rng(0)).cannot_tell
-            continue
-        refused += 1
+        except InputError as error:
+            refused, told = refused + 1, error.message
     assert refused >= 3
-    with pytest.raises(InputError, match="cannot be learned from these labels"):
-        learn("left_of", mixed, np.random.default_rng(0))
+    assert "cannot be learned from these labels" in told
 
 
 def test_one_label_alone_only_proposes(demos: list[Demonstration]) -> None:
