@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # of torch: two workers with two threads each wait for one another
+os.environ.setdefault(
+    "OMP_NUM_THREADS", "1"
+)  # of torch: two workers with two threads each wait for one another
 
 import signal
 import sys
@@ -32,7 +34,11 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--no-shapes", action="store_true", help="do not check the shapes of arrays in tamp.geometric")
+    parser.addoption(
+        "--no-shapes",
+        action="store_true",
+        help="do not check the shapes of arrays in tamp.geometric",
+    )
 
 
 def pytest_runtest_setup() -> None:

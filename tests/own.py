@@ -109,7 +109,9 @@ def write_domain(
 ) -> Path:
     """The domain and its streams in a folder."""
     domain = (root / "domains/cupboard.pddl").read_text()
-    domain = domain.replace("    (on ?o - body ?s - surface)\n", f"    (on ?o - body ?s - surface){PREDICATES}", 1)
+    domain = domain.replace(
+        "    (on ?o - body ?s - surface)\n", f"    (on ?o - body ?s - surface){PREDICATES}", 1
+    )
     domain = domain.replace("  (:action move", f"{RULES}\n  (:action move", 1)
     domain = domain.rstrip()[:-1] + actions + ")\n"
     own = (root / "domains/cupboard.streams.pddl").read_text().rstrip()[:-1] + streams + ")\n"
@@ -118,7 +120,9 @@ def write_domain(
     return folder / f"{name}.pddl"
 
 
-def write_problem(folder: Path, goal: str, *, name: str = "mine", domain: str = "mine.pddl") -> Path:
+def write_problem(
+    folder: Path, goal: str, *, name: str = "mine", domain: str = "mine.pddl"
+) -> Path:
     """The scene with a goal: tea stands on the table, milk lies there."""
     path = folder / f"{name}.yaml"
     path.write_text(SCENE.format(goal=goal, domain=domain))

@@ -60,8 +60,12 @@ class _Wrapped(ast.NodeTransformer):
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         self.generic_visit(node)
         arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-        shaped = any(names_shapes(one.annotation) for one in arguments) or names_shapes(node.returns)
-        known = all(isinstance(one, ast.Name) and one.id in WRAPPABLE for one in node.decorator_list)
+        shaped = any(names_shapes(one.annotation) for one in arguments) or names_shapes(
+            node.returns
+        )
+        known = all(
+            isinstance(one, ast.Name) and one.id in WRAPPABLE for one in node.decorator_list
+        )
         if not shaped or not known:
             return node
 
@@ -73,7 +77,11 @@ class _Wrapped(ast.NodeTransformer):
 
 
 def _checked(annotation: ast.expr | None) -> ast.expr | None:
-    return _Concrete().visit(annotation) if annotation is not None and names_shapes(annotation) else None
+    return (
+        _Concrete().visit(annotation)
+        if annotation is not None and names_shapes(annotation)
+        else None
+    )
 
 
 def instrumented(source: str, path: str) -> CodeType:
@@ -105,7 +113,11 @@ class Finder(MetaPathFinder):
         if not fullname.startswith(WING):
             return None
         spec = importlib.machinery.PathFinder.find_spec(fullname, path, target)
-        if spec is None or spec.origin is None or "from jaxtyping import" not in Path(spec.origin).read_text("utf-8"):
+        if (
+            spec is None
+            or spec.origin is None
+            or "from jaxtyping import" not in Path(spec.origin).read_text("utf-8")
+        ):
             return None
         spec.loader = _Loader(fullname, spec.origin)
         return spec

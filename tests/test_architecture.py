@@ -60,12 +60,17 @@ def imported(file: Path) -> Iterator[str]:
 
 def test_folders_import_only_from_folders_below() -> None:
     linter = Path(sys.executable).with_name("lint-imports")
-    run = subprocess.run([str(linter), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [str(linter), "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert run.returncode == 0, run.stdout + run.stderr
     assert "0 broken" in run.stdout
 
 
-COMPILED = {ROOT / "tamp/symbolic/search" / folder / "compiled.py" for folder in ("heuristics/loops", "packed")}
+COMPILED = {
+    ROOT / "tamp/symbolic/search" / folder / "compiled.py"
+    for folder in ("heuristics/loops", "packed")
+}
 
 
 @pytest.mark.parametrize("folder", SYMBOLIC)
@@ -103,7 +108,11 @@ def test_no_global_state_no_asserts_no_probing() -> None:
         )
     }
     assert found == set()
-    assert not [file for file in sources("tamp", "grounding") if file.name in {"utils.py", "helpers.py", "common.py"}]
+    assert not [
+        file
+        for file in sources("tamp", "grounding")
+        if file.name in {"utils.py", "helpers.py", "common.py"}
+    ]
 
 
 def test_dependencies_are_what_the_code_imports() -> None:
@@ -113,9 +122,17 @@ def test_dependencies_are_what_the_code_imports() -> None:
         extra: {re.split("[>=]=", line)[0] for line in project["optional-dependencies"][extra]}
         for extra in ("learn", "bench", "ray")
     }
-    own = {"tamp", "grounding", "jaxtyping", *sys.stdlib_module_names}  # jaxtyping: see tests/test_shapes.py
+    own = {
+        "tamp",
+        "grounding",
+        "jaxtyping",
+        *sys.stdlib_module_names,
+    }  # jaxtyping: see tests/test_shapes.py
     needed = {
-        folder: {DISTRIBUTIONS.get(name, name) for file in sources(folder) for name in imported(file)} - own
+        folder: {
+            DISTRIBUTIONS.get(name, name) for file in sources(folder) for name in imported(file)
+        }
+        - own
         for folder in ("tamp", "grounding")
     }
     benchmarks = extras["bench"] | extras["ray"]
@@ -125,13 +142,18 @@ def test_dependencies_are_what_the_code_imports() -> None:
 
 def test_the_extras_of_benchmarks_stay_there() -> None:
     using = {
-        name: {str(file.relative_to(ROOT)) for file in sources("tamp") if name in imported(file)} for name in EXTRAS
+        name: {str(file.relative_to(ROOT)) for file in sources("tamp") if name in imported(file)}
+        for name in EXTRAS
     }
     assert using == EXTRAS
 
 
 def test_torch_stays_where_training_is() -> None:
-    files = {str(file.relative_to(ROOT)) for file in sources("grounding") if {"torch", "sklearn"} & {*imported(file)}}
+    files = {
+        str(file.relative_to(ROOT))
+        for file in sources("grounding")
+        if {"torch", "sklearn"} & {*imported(file)}
+    }
     assert files == {
         "grounding/torch_layers.py",
         *(f"grounding/relational/{name}.py" for name in ("training", "flow_training")),
@@ -164,14 +186,20 @@ def test_torch_stays_where_training_is() -> None:
 )
 def test_nothing_heavy_is_imported_at_start(module: str) -> None:
     code = f"import sys, json, {module}; print(json.dumps(sorted(sys.modules)))"
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     modules = {name.partition(".")[0] for name in json.loads(run.stdout)}
     assert "tamp" in modules
     assert modules & HEAVY == set()
 
 
-@pytest.mark.parametrize("module", ["registry", "surface", "paper.runtime", "paper.trees", "paper.uniform"])
+@pytest.mark.parametrize(
+    "module", ["registry", "surface", "paper.runtime", "paper.trees", "paper.uniform"]
+)
 def test_groundings_work_without_the_extra_they_are_trained_with(module: str) -> None:
     code = f"import sys, grounding.{module}; print(*(name for name in ('torch', 'sklearn') if name in sys.modules))"
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     assert run.stdout.strip() == ""

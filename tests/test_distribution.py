@@ -28,7 +28,20 @@ FOLDERS = (
     ".ci",
     ".github",
 )
-SUFFIXES = {".py", ".md", ".toml", ".txt", ".sh", ".yml", ".yaml", ".cfg", ".html", ".js", ".pddl", ""}
+SUFFIXES = {
+    ".py",
+    ".md",
+    ".toml",
+    ".txt",
+    ".sh",
+    ".yml",
+    ".yaml",
+    ".cfg",
+    ".html",
+    ".js",
+    ".pddl",
+    "",
+}
 OTHERS = re.compile(
     r"""
     (?: \b(?:pip|pip3|pipx|uv|uvx|poetry|pdm|hatch|rye|conda|mamba)\b   # a program that fetches,
@@ -57,7 +70,13 @@ def texts() -> Iterator[tuple[str, str]]:
 
 def test_no_text_of_ours_fetches_the_other_package() -> None:
     looked = dict(texts())
-    assert {"README.md", "Makefile", "pyproject.toml", "tamp/benchmark/picture.py", "docs/benchmarking.md"} <= {*looked}
+    assert {
+        "README.md",
+        "Makefile",
+        "pyproject.toml",
+        "tamp/benchmark/picture.py",
+        "docs/benchmarking.md",
+    } <= {*looked}
 
     found = {
         f"{name}:{text.count(chr(10), 0, match.start()) + 1}: {match[0]}"
@@ -112,12 +131,17 @@ def test_what_fetches_ours_or_nothing_is_let_be(words: str) -> None:
 def test_the_projects_own_requirements_name_ours() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    required = [Requirement(line) for lines in (project["dependencies"], *extras.values()) for line in lines]
+    required = [
+        Requirement(line) for lines in (project["dependencies"], *extras.values()) for line in lines
+    ]
 
     assert project["name"] == DISTRIBUTION == "tamp-planner"
     assert "tamp" not in {requirement.name for requirement in required}
     assert {"bench", "ray"} == {
-        extra for requirement in required if requirement.name == DISTRIBUTION for extra in requirement.extras
+        extra
+        for requirement in required
+        if requirement.name == DISTRIBUTION
+        for extra in requirement.extras
     }
 
 
@@ -132,9 +156,24 @@ def test_the_remedy_names_an_extra_that_there_is(extra: str) -> None:
 def test_the_import_name_and_the_commands_stay() -> None:
     assert tamp.__name__ == "tamp"
     assert distribution_version() == version(DISTRIBUTION)
-    commands = {command.name for command in entry_points(group="console_scripts") if command.value.startswith("tamp.")}
+    commands = {
+        command.name
+        for command in entry_points(group="console_scripts")
+        if command.value.startswith("tamp.")
+    }
     assert commands == {
-        f"tamp-{word}" for word in ("solve", "verify", "execute", "export", "learn", "demo", "robot", "view", "bench")
+        f"tamp-{word}"
+        for word in (
+            "solve",
+            "verify",
+            "execute",
+            "export",
+            "learn",
+            "demo",
+            "robot",
+            "view",
+            "bench",
+        )
     }
 
 

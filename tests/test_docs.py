@@ -30,7 +30,10 @@ def named(cell: str) -> list[str]:
 
 
 FOLDERS = [(named(folder)[0], named(files)) for _, folder, files in rows("## The map")]
-DECISIONS = [(question, named(file)[0], named(name)[0]) for question, file, name in rows("### Where is it decided?")]
+DECISIONS = [
+    (question, named(file)[0], named(name)[0])
+    for question, file, name in rows("### Where is it decided?")
+]
 
 
 def test_every_module_is_in_a_folder_that_the_map_names() -> None:
@@ -38,7 +41,11 @@ def test_every_module_is_in_a_folder_that_the_map_names() -> None:
     assert len(modules) > 200
 
     folders = {folder for folder, _ in FOLDERS}
-    lost = {str(path.relative_to(ROOT)) for path in modules if str(path.parent.relative_to(ROOT)) not in folders}
+    lost = {
+        str(path.relative_to(ROOT))
+        for path in modules
+        if str(path.parent.relative_to(ROOT)) not in folders
+    }
     assert lost == set()
 
 
@@ -54,11 +61,15 @@ def test_every_folder_says_in_one_line_what_it_is_for(folder: str) -> None:
     assert said and len(said.splitlines()[0]) > 20
 
 
-@pytest.mark.parametrize(("question", "file", "name"), DECISIONS, ids=[name for _, _, name in DECISIONS])
+@pytest.mark.parametrize(
+    ("question", "file", "name"), DECISIONS, ids=[name for _, _, name in DECISIONS]
+)
 def test_what_decides_is_where_the_map_says(question: str, file: str, name: str) -> None:
     tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
     defined = {
-        node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        node.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
     }
     for node in tree.body:
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
@@ -68,7 +79,9 @@ def test_what_decides_is_where_the_map_says(question: str, file: str, name: str)
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_paths_that_a_page_names_exist(page: Path) -> None:
-    text = re.sub(r"\]\([^)]*\)", "]", page.read_text(encoding="utf-8"))  # links: test_readme follows them
+    text = re.sub(
+        r"\]\([^)]*\)", "]", page.read_text(encoding="utf-8")
+    )  # links: test_readme follows them
     missing = {path for path in PATHS.findall(text) if not (ROOT / path).exists()}
     assert missing == set()
 
@@ -76,17 +89,23 @@ def test_paths_that_a_page_names_exist(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_modules_that_a_page_names_exist(page: Path) -> None:
     """`tamp.system.reading`, `python -m benchmarks.search`, `grounding.collect`: the longest part that is a module."""
-    for dotted in re.findall(r"\b((?:tamp|grounding|benchmarks)(?:\.[a-z_0-9]+)+)\b", page.read_text(encoding="utf-8")):
+    for dotted in re.findall(
+        r"\b((?:tamp|grounding|benchmarks)(?:\.[a-z_0-9]+)+)\b", page.read_text(encoding="utf-8")
+    ):
         words = dotted.split(".")
         if words[-1] in {"py", "md", "json", "jsonl", "toml", "pddl", "yaml"}:
             continue
         module = ROOT.joinpath(*words)
         parent = ROOT.joinpath(*words[:-1])
-        found = [path for path in (module, parent) if path.is_dir() or path.with_suffix(".py").is_file()]
+        found = [
+            path for path in (module, parent) if path.is_dir() or path.with_suffix(".py").is_file()
+        ]
         assert found, f"{dotted} is no module"
         if found[0] == parent:
             source = parent / "__init__.py" if parent.is_dir() else parent.with_suffix(".py")
-            assert words[-1] in source.read_text(encoding="utf-8"), f"{dotted}: {source} has no {words[-1]}"
+            assert words[-1] in source.read_text(encoding="utf-8"), (
+                f"{dotted}: {source} has no {words[-1]}"
+            )
 
 
 def test_tests_stand_in_the_folders_of_what_they_test() -> None:
@@ -96,7 +115,9 @@ def test_tests_stand_in_the_folders_of_what_they_test() -> None:
     strange = {
         str(folder)
         for folder in folders
-        if not ((ROOT / "tamp" / folder).is_dir() or (ROOT / folder).is_dir() or str(folder) in shared)
+        if not (
+            (ROOT / "tamp" / folder).is_dir() or (ROOT / folder).is_dir() or str(folder) in shared
+        )
     }
     assert strange == set()
     assert (ROOT / "tests" / "geometric" / "robot").is_dir()

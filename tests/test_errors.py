@@ -38,7 +38,9 @@ def test_a_place_is_filled_in_where_it_is_missing() -> None:
     assert str(bare.at("a.yaml", 5)) == "a.yaml:5: no. Choices: mug. Did you mean 'mug'? Name it"
     placed = InputError("no", file="b.yaml", line=2)
     assert str(placed.at("a.yaml", 5)) == "b.yaml:2: no"
-    assert str(bare) == "no. Choices: mug. Did you mean 'mug'? Name it"  # the first one stays as it was
+    assert (
+        str(bare) == "no. Choices: mug. Did you mean 'mug'? Name it"
+    )  # the first one stays as it was
 
 
 @given(st.text(max_size=40))
@@ -74,7 +76,8 @@ def test_line_breaks_may_be_kept() -> None:
 
 
 @pytest.mark.parametrize(
-    ("word", "meant"), [("tabel", "table"), ("chair", "chair"), ("xyz", None), ("t" * 101, None), ("", None)]
+    ("word", "meant"),
+    [("tabel", "table"), ("chair", "chair"), ("xyz", None), ("t" * 101, None), ("", None)],
 )
 def test_the_closest_word(word: str, meant: str | None) -> None:
     assert closest(word, ("table", "chair", "shelf")) == meant

@@ -53,7 +53,12 @@ def test_solved_and_verified(name: str) -> None:
     report = verify(json.loads(plan_text(solution)))
     assert report.holds, report.text()
     assert report.states > 100 * len(solution.plan)
-    moved = {body for action in solution.plan if action.name in ("pick", "ride") for body in action.objects}
+    moved = {
+        body
+        for action in solution.plan
+        if action.name in ("pick", "ride")
+        for body in action.objects
+    }
     goes = set(re.findall(r"\((?:on|inside) (\w+)", problem.goal))
     wanted = set(problem.scene.movable) & goes
     assert wanted and moved >= wanted

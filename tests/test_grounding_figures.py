@@ -41,11 +41,16 @@ def options(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Options:
         monkeypatch.setattr(figures, f"QUICK_{name}", value)
     places = {"data": folder, "weights": folder / "weights", "pictures": folder / "pictures"}
     out = folder / "results.jsonl"
-    return Options("all", relations=("on",), models=NAMES, sizes=(10, 24), quick=True, out=out, **places)
+    return Options(
+        "all", relations=("on",), models=NAMES, sizes=(10, 24), quick=True, out=out, **places
+    )
 
 
 def test_all_figures_are_measured_once_and_drawn(
-    options: Options, folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    options: Options,
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     main(options)
     said = capsys.readouterr()
@@ -57,7 +62,9 @@ def test_all_figures_are_measured_once_and_drawn(
     lines = [json.loads(line) for line in (folder / "results.jsonl").read_text().splitlines()]
     assert {"commit", "machine", "seed", "load"} <= lines[0].keys()
     configs = [tuple(line["config"].values()) for line in lines]
-    assert len(configs) == len(set(configs)) == 2 + 7 + 1 + 4  # of each figure what those before it lack
+    assert (
+        len(configs) == len(set(configs)) == 2 + 7 + 1 + 4
+    )  # of each figure what those before it lack
     success = [line for line in lines if line["config"]["measure"] == "success"]
     for line in success:
         assert line["mca"] + sum(line["mca_failures"].values()) == pytest.approx(1.0)
@@ -73,10 +80,18 @@ def test_what_is_missing_is_left_out_without_training(
     options: Options, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bare = replace(
-        options, figure="fig5", models=("uniform", "transfer"), train=False, weights=tmp_path, out=tmp_path / "r.jsonl"
+        options,
+        figure="fig5",
+        models=("uniform", "transfer"),
+        train=False,
+        weights=tmp_path,
+        out=tmp_path / "r.jsonl",
     )
     main(bare)
-    assert "fig5: without weights, left out: on transfer 24 0, on transfer 10 0" in capsys.readouterr().out
+    assert (
+        "fig5: without weights, left out: on transfer 24 0, on transfer 10 0"
+        in capsys.readouterr().out
+    )
     (line,) = (tmp_path / "r.jsonl").read_text().splitlines()
     assert json.loads(line)["config"]["model"] == "uniform"
 
@@ -85,7 +100,11 @@ def test_mistakes_are_said(options: Options, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Did you mean 'transfer'"):
         main(replace(options, models=("transfre",)))
     with pytest.raises(InputError, match=r"on_test\.npz: no such data set"):
-        main(replace(options, quick=False, models=("uniform",), data=tmp_path, out=tmp_path / "r.jsonl"))
+        main(
+            replace(
+                options, quick=False, models=("uniform",), data=tmp_path, out=tmp_path / "r.jsonl"
+            )
+        )
 
 
 def test_a_line_that_was_cut_off_is_measured_again(tmp_path: Path) -> None:
@@ -111,13 +130,22 @@ def test_the_cases_of_the_figures() -> None:
         assert {case.seed for case in found} == ({0} if figure == "fig7" else {0, 1, 2})
         times = {"fig4": 2, "fig7": 0.1}.get(figure, 1)
         assert {case.scenes for case in found} == {500 * times, 200 * times}
-    assert {case for case in cases("fig6", plan) if case.model not in TRAINING_VARIANTS} < {*cases("fig5", plan)}
+    assert {case for case in cases("fig6", plan) if case.model not in TRAINING_VARIANTS} < {
+        *cases("fig5", plan)
+    }
     borrowed = Case("success", "on", "uniform+gnn", 100, 2, 5)
-    assert borrowed.weights == replace(borrowed, model=SHARED_WEIGHTS["uniform+gnn"]).weights == "on-gnn-bb-100-2"
+    assert (
+        borrowed.weights
+        == replace(borrowed, model=SHARED_WEIGHTS["uniform+gnn"]).weights
+        == "on-gnn-bb-100-2"
+    )
 
 
 def test_means_over_seeds_and_the_interval_of_one_seeds_scenes() -> None:
-    lines = [{"mca": 0.4, "scenes": 10, "mca_failures": {"outside": 0.6}}, {"mca": 0.6, "scenes": 10}]
+    lines = [
+        {"mca": 0.4, "scenes": 10, "mca_failures": {"outside": 0.6}},
+        {"mca": 0.6, "scenes": 10},
+    ]
     lines[1]["mca_failures"] = {"outside": 0.2, "collides": 0.2}
     found = share(lines, "mca")
     assert found.mean == pytest.approx(0.5) and found.each == (0.4, 0.6)

@@ -157,7 +157,8 @@ def test_no_function_is_too_long(folder: str) -> None:
     found = {
         node.name: f"{place} {node.name}: {len(_code(node))} lines"
         for place, node, _ in _nodes(folder)
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and len(_code(node)) > FUNCTION_LINES
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and len(_code(node)) > FUNCTION_LINES
     }
     assert set(found) == (LONGER if folder == "tamp" else set()), "\n".join(found.values())
 

@@ -20,7 +20,8 @@ LISTED = (3, 11)
 """The Python whose packages are listed; later ones lack some."""
 
 ALLOWED = re.compile(
-    r"\b(MIT|BSD|0BSD|Apache|PSF|Python Software Foundation|ISC|Zlib|BSL-1\.0|MPL|Mozilla|CC0|Unlicense|HPND)\b", re.I
+    r"\b(MIT|BSD|0BSD|Apache|PSF|Python Software Foundation|ISC|Zlib|BSL-1\.0|MPL|Mozilla|CC0|Unlicense|HPND)\b",
+    re.I,
 )
 FORBIDDEN = re.compile(r"\b[AL]?GPL|GNU", re.I)
 READ = {  # metadata that does not name a licence: read in the package itself
@@ -45,7 +46,9 @@ def closure(name: str, extras: frozenset[str]) -> dict[str, Distribution]:
         found[package] = distribution(package)
         for line in found[package].requires or ():
             needed = Requirement(line)
-            if needed.marker is None or any(needed.marker.evaluate({"extra": extra}) for extra in wanted | {""}):
+            if needed.marker is None or any(
+                needed.marker.evaluate({"extra": extra}) for extra in wanted | {""}
+            ):
                 waiting.append((canonicalize_name(needed.name), frozenset(needed.extras)))
     del found[name]
     return found
@@ -55,15 +58,24 @@ def licence(package: Distribution) -> str:
     """What the package's metadata says, in a few words."""
     name = canonicalize_name(package.metadata["Name"])
     fields = {key.lower(): value for key, value in package.metadata.json.items()}
-    classifiers = [line.rpartition(" :: ")[2] for line in fields.get("classifier", ()) if line.startswith("License")]
+    classifiers = [
+        line.rpartition(" :: ")[2]
+        for line in fields.get("classifier", ())
+        if line.startswith("License")
+    ]
     text = str(fields.get("license", "?")).strip().splitlines()
     named = READ.get(name) or fields.get("license_expression")
-    return str(named or ", ".join(line for line in classifiers if "approved" not in line) or text[0])
+    return str(
+        named or ", ".join(line for line in classifiers if "approved" not in line) or text[0]
+    )
 
 
 def page() -> str:
     """docs/licences.md."""
-    runtime, everything = closure(DISTRIBUTION, frozenset()), closure(DISTRIBUTION, frozenset({"dev"}))
+    runtime, everything = (
+        closure(DISTRIBUTION, frozenset()),
+        closure(DISTRIBUTION, frozenset({"dev"})),
+    )
     lines = [
         "# Licences of what tamp installs",
         "",
@@ -86,10 +98,15 @@ def page() -> str:
 
 
 def test_no_package_has_a_licence_that_binds_ours() -> None:
-    licences = {name: licence(package) for name, package in closure(DISTRIBUTION, frozenset({"dev"})).items()}
+    licences = {
+        name: licence(package)
+        for name, package in closure(DISTRIBUTION, frozenset({"dev"})).items()
+    }
     assert len(licences) > 30
     assert {
-        name: words for name, words in licences.items() if FORBIDDEN.search(words) or not ALLOWED.search(words)
+        name: words
+        for name, words in licences.items()
+        if FORBIDDEN.search(words) or not ALLOWED.search(words)
     } == {}
 
 
@@ -98,14 +115,19 @@ def test_the_list_is_current() -> None:
     if sys.version_info[:2] == LISTED:
         assert written == page()
     else:
-        assert {line for line in page().splitlines() if line.startswith("|")} <= {*written.splitlines()}
+        assert {line for line in page().splitlines() if line.startswith("|")} <= {
+            *written.splitlines()
+        }
 
 
 def test_data_of_others_come_with_their_licences() -> None:
     panda = ROOT / "tamp" / "geometric" / "robot" / "assets" / "franka_panda"
     assert "Apache License" in (panda / "LICENSE.txt").read_text(encoding="utf-8")
     assert "Changed:" in (panda / "NOTICE.txt").read_text(encoding="utf-8")
-    for folder, names in (("problems/assets/objects", "mug"), ("grounding/assets", "bullet_objects")):
+    for folder, names in (
+        ("problems/assets/objects", "mug"),
+        ("grounding/assets", "bullet_objects"),
+    ):
         assert "Bullet" in (ROOT / folder / f"{names}.LICENSE.txt").read_text(encoding="utf-8")
 
 
@@ -116,7 +138,9 @@ def test_constraints_pin_exactly_what_is_installed() -> None:
         for name, _, version in (line.partition("==") for line in lines if "==" in line)
     }
     packages = closure(DISTRIBUTION, frozenset({"dev"}))
-    installed = {name: package.version.partition("+")[0] for name, package in packages.items()}  # torch 2.13.0+cpu
+    installed = {
+        name: package.version.partition("+")[0] for name, package in packages.items()
+    }  # torch 2.13.0+cpu
     if sys.version_info[:2] == LISTED:
         assert installed == pins
     else:

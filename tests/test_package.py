@@ -20,7 +20,14 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(300)]
 
 def call(command: Sequence[str | Path], cwd: Path) -> subprocess.CompletedProcess[str]:
     env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    run = subprocess.run([str(word) for word in command], cwd=cwd, env=env, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [str(word) for word in command],
+        cwd=cwd,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 0, f"{command}\n{run.stdout}\n{run.stderr}"
     return run
 
@@ -39,10 +46,17 @@ def install(package: Path, folder: Path) -> Path:
     own = folder / "lib" / f"python3.{sys.version_info.minor}" / "site-packages"
     for number, outer in enumerate(site.getsitepackages()):
         (own / f"outer{number}.pth").write_text(f"{outer}\n", encoding="utf-8")
-        for pth in Path(outer).glob("cmeel.pth"):  # pinocchio's folder; what it imports must be found by then
-            (own / f"outer{number}_{pth.name}").write_text(pth.read_text(encoding="utf-8"), encoding="utf-8")
+        for pth in Path(outer).glob(
+            "cmeel.pth"
+        ):  # pinocchio's folder; what it imports must be found by then
+            (own / f"outer{number}_{pth.name}").write_text(
+                pth.read_text(encoding="utf-8"), encoding="utf-8"
+            )
     pip = [sys.executable, "-m", "pip", "--python", folder / "bin" / "python", "install", "--quiet"]
-    call([*pip, "--no-index", "--no-deps", "--ignore-installed", "--no-build-isolation", package], folder.parent)
+    call(
+        [*pip, "--no-index", "--no-deps", "--ignore-installed", "--no-build-isolation", package],
+        folder.parent,
+    )
     return folder / "bin"
 
 
@@ -63,18 +77,36 @@ def test_installed_package_solves_by_name_from_another_directory(
 
 def test_wheel_holds_the_data_and_nothing_foreign(built: dict[str, Path]) -> None:
     names = zipfile.ZipFile(built["wheel"]).namelist()
-    assert {name.partition("/")[0].partition("-")[0] for name in names} == {"tamp", "tamp_planner", "grounding"}
+    assert {name.partition("/")[0].partition("-")[0] for name in names} == {
+        "tamp",
+        "tamp_planner",
+        "grounding",
+    }
     shipped = {name.removeprefix("tamp/_data/") for name in names if name.startswith("tamp/_data/")}
-    here = [path for folder in ("domains", "problems") for path in (ROOT / folder).rglob("*") if path.is_file()]
+    here = [
+        path
+        for folder in ("domains", "problems")
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file()
+    ]
     assert shipped == {str(path.relative_to(ROOT)) for path in here}
     assert "domains/cupboard.pddl" in shipped
     weights = {path.name for path in (ROOT / "grounding" / "assets").iterdir()}
-    assert {name.rpartition("/")[2] for name in names if name.startswith("grounding/assets/")} == weights
+    assert {
+        name.rpartition("/")[2] for name in names if name.startswith("grounding/assets/")
+    } == weights
     assert "on_transfer.safetensors" in weights
 
 
 def test_sdist_builds_and_tests(built: dict[str, Path]) -> None:
     with tarfile.open(built["sdist"]) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    assert {"pyproject.toml", "constraints.txt", "Makefile", "LICENSE", "README.md", "tests/test_package.py"} <= names
+    assert {
+        "pyproject.toml",
+        "constraints.txt",
+        "Makefile",
+        "LICENSE",
+        "README.md",
+        "tests/test_package.py",
+    } <= names
     assert not any(name.startswith((".venv", "dist/")) for name in names)

@@ -28,7 +28,9 @@ def words(line: str) -> list[str]:
 def test_the_program_runs(tmp_path: Path) -> None:
     (program,) = blocks("python")
     assert len(program.strip().splitlines()) <= 6
-    run = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert run.returncode == 0, run.stderr
     assert "pick" in run.stdout
 
@@ -39,7 +41,9 @@ def test_the_command_prints_what_is_shown(tmp_path: Path) -> None:
     program, *arguments = shlex.split(command.removeprefix("$ "))
     paths = [str(ROOT / word) if (ROOT / word).exists() else word for word in arguments]
     script = Path(sys.executable).with_name(program)
-    run = subprocess.run([str(script), *paths], cwd=tmp_path, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [str(script), *paths], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert run.returncode == 0, run.stderr
     printed = (run.stdout + run.stderr).splitlines()
     first, last = expected[0], expected[-1]

@@ -57,7 +57,9 @@ def test_twice_with_one_loaded_problem() -> None:
 
 
 @pytest.mark.timeout(150)
-@pytest.mark.parametrize(("name", "algorithm"), [("four_objects", "adaptive"), ("one_object", "incremental")])
+@pytest.mark.parametrize(
+    ("name", "algorithm"), [("four_objects", "adaptive"), ("one_object", "incremental")]
+)
 def test_in_two_processes(name: str, algorithm: str, tmp_path: Path) -> None:
     """With other hash seeds, working directories, names of the files' places and budgets."""
     texts = []
@@ -65,7 +67,15 @@ def test_in_two_processes(name: str, algorithm: str, tmp_path: Path) -> None:
         folder = tmp_path / f"run{number}"
         folder.mkdir()
         problem = str(find_problem(name)) if number else name
-        options = ["--algorithm", algorithm, "--time", f"{45 + 15 * number}", "--out", "plan.json", "--quiet"]
+        options = [
+            "--algorithm",
+            algorithm,
+            "--time",
+            f"{45 + 15 * number}",
+            "--out",
+            "plan.json",
+            "--quiet",
+        ]
         environment = {**os.environ, "PYTHONHASHSEED": hash_seed}
         done = subprocess.run(
             [SOLVE, problem, *options],
@@ -79,9 +89,14 @@ def test_in_two_processes(name: str, algorithm: str, tmp_path: Path) -> None:
         assert done.returncode == 0, done.stdout + done.stderr
         texts.append(without_clock((folder / "plan.json").read_text()))
     assert texts[0] == texts[1]
-    assert texts[0] == plan(name, algorithm=algorithm), "in this process, after other tests, it is the same plan"
+    assert texts[0] == plan(name, algorithm=algorithm), (
+        "in this process, after other tests, it is the same plan"
+    )
 
 
 def test_other_seeds_give_other_plans() -> None:
-    actions = {plan("one_object", seed).partition('"actions"')[2].partition('"statistics"')[0] for seed in range(3)}
+    actions = {
+        plan("one_object", seed).partition('"actions"')[2].partition('"statistics"')[0]
+        for seed in range(3)
+    }
     assert len(actions) == 3 and "" not in actions

@@ -23,9 +23,15 @@ WITHOUT_A_SHAPE = {
 
 def public_functions(tree: ast.Module) -> Iterator[ast.FunctionDef]:
     for node in tree.body:
-        inner = node.body if isinstance(node, ast.ClassDef) and not node.name.startswith("_") else [node]
+        inner = (
+            node.body
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+            else [node]
+        )
         for one in inner:
-            if isinstance(one, ast.FunctionDef) and not (one.name.startswith("_") and not one.name.startswith("__")):
+            if isinstance(one, ast.FunctionDef) and not (
+                one.name.startswith("_") and not one.name.startswith("__")
+            ):
                 yield one
 
 
@@ -33,7 +39,9 @@ def test_public_functions_name_the_shapes_of_their_arrays(root: Path) -> None:
     shaped, bare = 0, list[str]()
     for path in sorted((root / "tamp" / "geometric").rglob("*.py")):
         for function in public_functions(ast.parse(path.read_text(encoding="utf-8"))):
-            if any(word in ast.unparse(one) for one in function.decorator_list for word in COMPILED):
+            if any(
+                word in ast.unparse(one) for one in function.decorator_list for word in COMPILED
+            ):
                 continue
             arguments = [one.annotation for one in (*function.args.args, *function.args.kwonlyargs)]
             for annotation in (*arguments, function.returns):
@@ -94,5 +102,7 @@ def test_the_product_imports_neither_of_the_two(root: Path) -> None:
         "import sys; sys.modules['jaxtyping'] = sys.modules['beartype'] = None\n"
         "import tamp; print(len(tamp.load_problem('one_object').scene.bodies))"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=root, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=root, check=False
+    )
     assert done.returncode == 0 and int(done.stdout) > 0, done.stderr

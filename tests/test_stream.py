@@ -23,12 +23,18 @@ def test_words_alone_blame_nobody() -> None:
 def test_a_collision_names_what_was_hit_and_not_who_hit_it() -> None:
     said = Rejection.hits("shelf", "wall", who="mug carried here")
     assert said.reason == "mug carried here hits shelf or wall"
-    assert (said.kind, said.in_the_way, said.blockers) == (RejectionKind.COLLISION, ("shelf", "wall"), ())
+    assert (said.kind, said.in_the_way, said.blockers) == (
+        RejectionKind.COLLISION,
+        ("shelf", "wall"),
+        (),
+    )
     assert Rejection.hits("shelf").reason == "hits shelf"
 
 
 def test_a_cause_that_is_no_obstacle_has_nothing_in_the_way() -> None:
-    said = Rejection("no motion (straight ahead: wall)", kind=RejectionKind.NO_MOTION, bodies=("wall",))
+    said = Rejection(
+        "no motion (straight ahead: wall)", kind=RejectionKind.NO_MOTION, bodies=("wall",)
+    )
     assert said.in_the_way == () and said.bodies == ("wall",)
 
 

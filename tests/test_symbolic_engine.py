@@ -38,7 +38,14 @@ def test_the_page_shows_what_its_code_prints() -> None:
 
 def test_the_example_goes_through_what_the_page_is_about() -> None:
     outputs = "".join(re.findall(r"```text\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL))
-    for said in ("may be unfolded", "assumed: clear", "resting on", "costs the price of", "hits blue", "Solved"):
+    for said in (
+        "may be unfolded",
+        "assumed: clear",
+        "resting on",
+        "costs the price of",
+        "hits blue",
+        "Solved",
+    ):
         assert said in outputs
 
 

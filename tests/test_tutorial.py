@@ -28,7 +28,10 @@ def steps() -> list[tuple[str, str]]:
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_the_tutorial_runs_from_an_empty_folder_to_an_executed_plan(tmp_path: Path) -> None:
-    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+    }
     environment["PYTHONPATH"] = str(PAGE.parent.parent)
     ran: list[str] = []
     said = ""
@@ -38,13 +41,26 @@ def test_the_tutorial_runs_from_an_empty_folder_to_an_executed_plan(tmp_path: Pa
             continue
         for line in text.splitlines():
             run = subprocess.run(
-                line.split(), cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=300
+                line.split(),
+                cwd=tmp_path,
+                env=environment,
+                capture_output=True,
+                text=True,
+                check=False,
+                timeout=300,
             )
             assert run.returncode == 0, f"{line}\n{run.stdout}\n{run.stderr}"
             ran.append(line.split()[0])
             said += run.stdout
 
-    assert ran == ["python", "tamp-learn", "tamp-learn", "tamp-solve", "tamp-verify", "tamp-execute"]
+    assert ran == [
+        "python",
+        "tamp-learn",
+        "tamp-learn",
+        "tamp-solve",
+        "tamp-verify",
+        "tamp-execute",
+    ]
     assert len(list((tmp_path / "demos").glob("*.yaml"))) == 24
     assert "+  (:derived (left_of ?o - movable ?o2 - movable)" in said
     assert "place  cup  left_of plate" in said and "Goal reached" in said

@@ -30,9 +30,14 @@ KNOWN = {
 
 
 def test_all_samplers_get_the_same_seeds_and_an_early_look_is_fair() -> None:
-    found = cases(["swap", "packed", "swap"], {"default": {}, "flow": {"on": "flow"}}, range(2), 30.0)
+    found = cases(
+        ["swap", "packed", "swap"], {"default": {}, "flow": {"on": "flow"}}, range(2), 30.0
+    )
     assert [(case.seed, case.problem, case.sampler) for case in found] == [
-        (seed, problem, sampler) for seed in (0, 1) for problem in ("swap", "packed") for sampler in ("default", "flow")
+        (seed, problem, sampler)
+        for seed in (0, 1)
+        for problem in ("swap", "packed")
+        for sampler in ("default", "flow")
     ]
     assert found[1].config["samplers"] == {"on": "flow"}
 
@@ -63,11 +68,18 @@ def test_a_wrong_sampler_is_an_error(sampler: str, said: str) -> None:
         relations(sampler, KNOWN)
 
 
-def test_a_problem_has_one_name_from_everywhere(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_problem_has_one_name_from_everywhere(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     own = tmp_path / "swap.yaml"
     own.write_text("", encoding="utf-8")
     monkeypatch.chdir(root)
-    assert named("packed") == named("problems/packed.yaml") == named(str(root / "problems" / "packed.yaml")) == "packed"
+    assert (
+        named("packed")
+        == named("problems/packed.yaml")
+        == named(str(root / "problems" / "packed.yaml"))
+        == "packed"
+    )
     assert named(os.path.relpath(own)) == str(own)
     with pytest.raises(InputError, match="Did you mean 'packed'"):
         named("pakced")
@@ -89,7 +101,9 @@ grounding = Middle()
 """
 
 
-def test_a_python_file_is_named_with_its_hash_and_sent_along(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_python_file_is_named_with_its_hash_and_sent_along(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "mine,own.py"
     file.write_text(MINE)

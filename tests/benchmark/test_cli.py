@@ -34,7 +34,11 @@ from tests.benchmark.toys import line, some
     ],
 )
 def test_a_wrong_word_is_an_error_that_helps(
-    words: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: str,
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(words.split()) == BAD_INPUT
@@ -63,9 +67,21 @@ def test_an_error_of_the_planner_is_an_outcome() -> None:
 
 
 @pytest.mark.slow
-def test_runs_are_done_written_and_not_done_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_runs_are_done_written_and_not_done_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     log = tmp_path / "log.jsonl"
-    words = ["run", "--problems", "one_object", "--samplers", "default", "--jobs", "1", "--out", str(log)]
+    words = [
+        "run",
+        "--problems",
+        "one_object",
+        "--samplers",
+        "default",
+        "--jobs",
+        "1",
+        "--out",
+        str(log),
+    ]
     assert run([*words, "--seeds", "1"]) == DONE
     first = log.read_bytes()
     assert run([*words, "--seeds", "2"]) == DONE
@@ -74,7 +90,15 @@ def test_runs_are_done_written_and_not_done_again(tmp_path: Path, capsys: pytest
     assert [told["seed"] for told in lines] == [0, 1]
     for told in lines:
         assert told["outcome"] == "SOLVED" and told["verified"] is True
-        assert {"config", "commit", "machine", "load", "parts_s", "planning_s", "cpu_s"} <= told.keys()
+        assert {
+            "config",
+            "commit",
+            "machine",
+            "load",
+            "parts_s",
+            "planning_s",
+            "cpu_s",
+        } <= told.keys()
         assert {"calls", "successes", "seconds", "reasons"} == told["streams"]["sample-on"].keys()
     shown = capsys.readouterr()
     assert "2/2" in shown.out

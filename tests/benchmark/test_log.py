@@ -45,7 +45,14 @@ def test_a_first_line_that_is_half_written_leaves_nothing(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     "damage",
-    ["", "nonsense", "[]", "{}", '{"config": {}}', json.dumps({**line(some(1)[0]), "planning_s": "soon"})],
+    [
+        "",
+        "nonsense",
+        "[]",
+        "{}",
+        '{"config": {}}',
+        json.dumps({**line(some(1)[0]), "planning_s": "soon"}),
+    ],
 )
 def test_a_damaged_line_is_named(damage: str, tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
@@ -63,7 +70,9 @@ def test_other_settings_are_refused(tmp_path: Path) -> None:
     with Log(path) as log:
         log.add(line(some(1)[0]))
         log.check(30.0, "adaptive")
-        with pytest.raises(InputError, match=r"log\.jsonl:1: a run of 30 s with 'adaptive' among those of 10 s"):
+        with pytest.raises(
+            InputError, match=r"log\.jsonl:1: a run of 30 s with 'adaptive' among those of 10 s"
+        ):
             log.check(10.0, "adaptive")
         with pytest.raises(InputError, match="'incremental'"):
             log.check(30.0, "incremental")
@@ -132,9 +141,17 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("name", "value", "message"), WRONG, ids=range(len(WRONG)))
-def test_a_field_that_is_wrong_is_named(name: str, value: object, message: str, tmp_path: Path) -> None:
+def test_a_field_that_is_wrong_is_named(
+    name: str, value: object, message: str, tmp_path: Path
+) -> None:
     path = tmp_path / "log.jsonl"
-    good = line(some(1)[0], explanation=[], parts_s={"ik": 1.0}, machine={"cpu": "x", "cores": 2}, commit="abc")
+    good = line(
+        some(1)[0],
+        explanation=[],
+        parts_s={"ik": 1.0},
+        machine={"cpu": "x", "cores": 2},
+        commit="abc",
+    )
     bad = json.loads(json.dumps(good))
     *inside, last = name.split(".")
     (bad[inside[0]] if inside else bad)[last] = value
@@ -149,8 +166,13 @@ def test_a_field_that_is_wrong_is_named(name: str, value: object, message: str, 
 @pytest.mark.parametrize("name", ["config", "seed", "outcome", "solved", "verified", "planning_s"])
 def test_a_field_that_is_missing_is_named(name: str, tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
-    path.write_text(json.dumps({n: v for n, v in line(some(1)[0]).items() if n != name}) + "\n", encoding="utf-8")
-    with pytest.raises(InputError, match=rf"log\.jsonl:1: no result of tamp-bench: '{name}' is missing"):
+    path.write_text(
+        json.dumps({n: v for n, v in line(some(1)[0]).items() if n != name}) + "\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(
+        InputError, match=rf"log\.jsonl:1: no result of tamp-bench: '{name}' is missing"
+    ):
         read_log(path)
 
 

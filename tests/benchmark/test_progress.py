@@ -46,7 +46,10 @@ def test_a_terminals_line_is_rewritten_and_ends_at_the_end(clock: Clock) -> None
     assert stream.getvalue().count("\n") == 1 and stream.getvalue().endswith("\x1b[K\n")
     lines = [one.removesuffix("\x1b[K") for one in stream.getvalue().strip().split("\r") if one]
     assert lines[0] == "1/4 runs · 1 of 1 solved · 0:30 left · swap default seed 0: SOLVED 2.00 s"
-    assert lines[1] == "2/4 runs · 1 of 2 solved · 0:20 left · swap default seed 1: SOLVED REJECTED 3.00 s"
+    assert (
+        lines[1]
+        == "2/4 runs · 1 of 2 solved · 0:20 left · swap default seed 1: SOLVED REJECTED 3.00 s"
+    )
     assert lines[2] == "3/4 runs · 1 of 3 solved · 0:10 left · swap default seed 2: TIMEOUT 4.00 s"
     assert lines[3].startswith("4/4 runs · 2 of 4 solved · 0:00 left")
 

@@ -32,7 +32,9 @@ def processes(work: Callable[..., Any]) -> WorkerPool:
 
 @pytest.mark.parametrize("pool", [processes, pytest.param(ray, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("default")  # Ray's own
-def test_a_killed_worker_loses_no_run_and_doubles_none(pool: Callable[..., WorkerPool], tmp_path: Path) -> None:
+def test_a_killed_worker_loses_no_run_and_doubles_none(
+    pool: Callable[..., WorkerPool], tmp_path: Path
+) -> None:
     traces = tmp_path / "traces"
     traces.mkdir()
     left: list[int] = []
@@ -81,7 +83,9 @@ def test_nobody_at_an_address_is_an_error_at_once(address: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default")
-def test_no_cluster_at_an_address_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_cluster_at_an_address_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("RAY_TMPDIR", str(tmp_path))
     with pytest.raises(InputError, match="no Ray cluster at 'nonsense'"):
         RayPool("nonsense", note, nothing)

@@ -21,7 +21,10 @@ def results() -> list[dict]:
     """Default solves all four seeds in 1, 2, 3, 4 s; uniform two of them in 10 and 10 s, and one plan is refused."""
     default, uniform = some(4), some(4, ("uniform",))
     return [
-        *(line(case, 1.0 + case.seed, parts_s=PARTS, cpu_s=0.5, commit="abc", load=1.0) for case in default),
+        *(
+            line(case, 1.0 + case.seed, parts_s=PARTS, cpu_s=0.5, commit="abc", load=1.0)
+            for case in default
+        ),
         *(line(case, 10.0, parts_s=PARTS, load=2.5) for case in uniform[:2]),
         line(uniform[2], 5.0, verified=False),
         line(uniform[3], 30.1, **TIMEOUT),
@@ -71,7 +74,9 @@ def test_the_pictures_are_drawn_from_any_results(tmp_path: Path) -> None:
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
 
 
-def test_pictures_without_matplotlib_or_a_folder_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pictures_without_matplotlib_or_a_folder_are_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="cannot be written"):
         draw(results(), tmp_path / "file")

@@ -74,32 +74,117 @@ class Case:
 
 CASES = [
     # Names that nobody knows
-    Case("unknown-body", "goal: (on can", "goal: (on cann", r"unknown object 'cann'.*can.*Did you mean 'can'", 8),
-    Case("unknown-surface", "(on can table)", "(on can tabel)", r"unknown object 'tabel'.*Did you mean 'table'", 8),
-    Case("unknown-support", "on: table", "on: tabel", r"unknown surface.*'tabel'.*Did you mean 'table'", 7),
-    Case("unknown-robot", "panda_mobile", "pnada_mobile", r"'pnada_mobile'.*Did you mean 'panda_mobile'", 3),
-    Case("unknown-predicate", "(on can table)", "(onn can table)", r"unknown predicate 'onn'.*Did you mean 'on'", 8),
+    Case(
+        "unknown-body",
+        "goal: (on can",
+        "goal: (on cann",
+        r"unknown object 'cann'.*can.*Did you mean 'can'",
+        8,
+    ),
+    Case(
+        "unknown-surface",
+        "(on can table)",
+        "(on can tabel)",
+        r"unknown object 'tabel'.*Did you mean 'table'",
+        8,
+    ),
+    Case(
+        "unknown-support",
+        "on: table",
+        "on: tabel",
+        r"unknown surface.*'tabel'.*Did you mean 'table'",
+        7,
+    ),
+    Case(
+        "unknown-robot",
+        "panda_mobile",
+        "pnada_mobile",
+        r"'pnada_mobile'.*Did you mean 'panda_mobile'",
+        3,
+    ),
+    Case(
+        "unknown-predicate",
+        "(on can table)",
+        "(onn can table)",
+        r"unknown predicate 'onn'.*Did you mean 'on'",
+        8,
+    ),
     Case("unknown-key", "name: mine", "nme: mine", r"unknown key 'nme'.*Did you mean 'name'", 1),
-    Case("unknown-type", "(holding ?o - movable", "(holding ?o - movble", r"'movble'.*Did you mean 'movable'"),
+    Case(
+        "unknown-type",
+        "(holding ?o - movable",
+        "(holding ?o - movble",
+        r"'movble'.*Did you mean 'movable'",
+    ),
     Case("unknown-shape", "cylinder: {", "cylindr: {", r"Did you mean 'cylinder'", 7),
-    Case("unknown-domain", "domain: cupboard", "domain: cupbord", r"'cupbord'.*Did you mean 'cupboard'", 2),
-    Case("unknown-sampler", "domain: cupboard", "samplers: {on: unifrm}", r"'unifrm'.*Did you mean 'uniform'", 2),
-    Case("unknown-relation", "domain: cupboard", "samplers: {onn: uniform}", r"'onn'.*Did you mean 'on'", 2),
-    Case("unknown-stream", ":stream sample-on", ":stream sampel-on", r"'sampel-on'.*Did you mean 'sample-on'"),
+    Case(
+        "unknown-domain",
+        "domain: cupboard",
+        "domain: cupbord",
+        r"'cupbord'.*Did you mean 'cupboard'",
+        2,
+    ),
+    Case(
+        "unknown-sampler",
+        "domain: cupboard",
+        "samplers: {on: unifrm}",
+        r"'unifrm'.*Did you mean 'uniform'",
+        2,
+    ),
+    Case(
+        "unknown-relation",
+        "domain: cupboard",
+        "samplers: {onn: uniform}",
+        r"'onn'.*Did you mean 'on'",
+        2,
+    ),
+    Case(
+        "unknown-stream",
+        ":stream sample-on",
+        ":stream sampel-on",
+        r"'sampel-on'.*Did you mean 'sample-on'",
+    ),
     Case(
         "unknown-predicate-of-a-stream",
         ":inputs (?o ?s) :domain (and (movable ?o) (surface ?s))",
         ":inputs (?o ?s) :domain (and (movble ?o) (surface ?s))",
         r"'movble'.*Did you mean 'movable'",
     ),
-    Case("unknown-predicate-of-an-action", "(not (loaded ?o)) ", "(not (loadd ?o)) ", r"Did you mean 'loaded'"),
-    Case("unknown-option", says=r"'--sed'.*--time, --seed.*Did you mean '--seed'", options=("--sed", "1")),
-    Case("unknown-algorithm", says=r"'adaptve'.*Did you mean 'adaptive'", options=("--algorithm", "adaptve")),
-    Case("unknown-steering", says=r"'se3'.*se2, reeds-shepp.*Did you mean 'se2'", options=("--steering", "se3")),
-    Case("unknown-sampler-option", says=r"'unifrm'.*Did you mean 'uniform'", options=("--sampler", "on=unifrm")),
-    Case("unknown-relation-option", says=r"'onn'.*Did you mean 'on'", options=("--sampler", "onn=uniform")),
     Case(
-        "sampler-mode", says=r"unknown mode 'allone'.*Did you mean 'alone'", options=("--sampler", "on=uniform:allone")
+        "unknown-predicate-of-an-action",
+        "(not (loaded ?o)) ",
+        "(not (loadd ?o)) ",
+        r"Did you mean 'loaded'",
+    ),
+    Case(
+        "unknown-option",
+        says=r"'--sed'.*--time, --seed.*Did you mean '--seed'",
+        options=("--sed", "1"),
+    ),
+    Case(
+        "unknown-algorithm",
+        says=r"'adaptve'.*Did you mean 'adaptive'",
+        options=("--algorithm", "adaptve"),
+    ),
+    Case(
+        "unknown-steering",
+        says=r"'se3'.*se2, reeds-shepp.*Did you mean 'se2'",
+        options=("--steering", "se3"),
+    ),
+    Case(
+        "unknown-sampler-option",
+        says=r"'unifrm'.*Did you mean 'uniform'",
+        options=("--sampler", "on=unifrm"),
+    ),
+    Case(
+        "unknown-relation-option",
+        says=r"'onn'.*Did you mean 'on'",
+        options=("--sampler", "onn=uniform"),
+    ),
+    Case(
+        "sampler-mode",
+        says=r"unknown mode 'allone'.*Did you mean 'alone'",
+        options=("--sampler", "on=uniform:allone"),
     ),
     Case(
         "sampler-mode-in-the-file",
@@ -108,8 +193,16 @@ CASES = [
         r"'mxed'.*Did you mean 'mixed'",
         2,
     ),
-    Case("sampler-without-a-name", says=r"RELATION=NAME.*on=uniform", options=("--sampler", "uniform")),
-    Case("missing-streams", says=r"nowhere\.pddl: no such file", options=("--streams", "nowhere.pddl")),
+    Case(
+        "sampler-without-a-name",
+        says=r"RELATION=NAME.*on=uniform",
+        options=("--sampler", "uniform"),
+    ),
+    Case(
+        "missing-streams",
+        says=r"nowhere\.pddl: no such file",
+        options=("--streams", "nowhere.pddl"),
+    ),
     # The goal
     Case("goal-arity", "(on can table)", "(on can)", r"'on'.* 2 .*1", 8),
     Case("goal-type", "(on can table)", "(on table can)", r"'can'.*surface", 8),
@@ -123,11 +216,29 @@ CASES = [
         r"expected the end of the text after one condition",
         8,
     ),
-    Case("goal-unknown-later", "(on can table)", ">\n  (and (on can table)\n    (on cap table))", r"'cap'.*'can'", 10),
-    Case("init-arity", "domain: cupboard", "init: ['(hand-empty can)']", r"'hand-empty'.* 0 .*1", 2),
-    Case("init-unknown", "domain: cupboard", "init: ['(hand-emty)']", r"'hand-emty'.*Did you mean 'hand-empty'", 2),
     Case(
-        "metric", "domain: cupboard", "metric: (maximize (beauty))", r"unknown metric.*\(minimize \(total-cost\)\)", 2
+        "goal-unknown-later",
+        "(on can table)",
+        ">\n  (and (on can table)\n    (on cap table))",
+        r"'cap'.*'can'",
+        10,
+    ),
+    Case(
+        "init-arity", "domain: cupboard", "init: ['(hand-empty can)']", r"'hand-empty'.* 0 .*1", 2
+    ),
+    Case(
+        "init-unknown",
+        "domain: cupboard",
+        "init: ['(hand-emty)']",
+        r"'hand-emty'.*Did you mean 'hand-empty'",
+        2,
+    ),
+    Case(
+        "metric",
+        "domain: cupboard",
+        "metric: (maximize (beauty))",
+        r"unknown metric.*\(minimize \(total-cost\)\)",
+        2,
     ),
     # The file
     Case("a-list", PROBLEM, "- a\n- b\n", r"expected a mapping", 1),
@@ -136,7 +247,13 @@ CASES = [
     Case("syntax", PROBLEM, "a: [1, 2\nb: 3\n", r"not valid YAML", 2),
     Case("tabs", PROBLEM, "bodies:\n\ttable: {}\n", r"not valid YAML", 2),
     Case("twice", "  can: ", "  table: ", r"'table' stands twice, first in line 6", 7),
-    Case("twice-at-the-top", "name: mine", "goal: (on can table)", r"'goal' stands twice, first in line 1", 8),
+    Case(
+        "twice-at-the-top",
+        "name: mine",
+        "goal: (on can table)",
+        r"'goal' stands twice, first in line 1",
+        8,
+    ),
     Case("missing-goal", "goal: (on can table)\n", "", r"'goal' is missing", 1),
     Case("missing-size", ", size: [1.2, 0.7, 0.72]", "", r"'size' is missing", 6),
     Case("missing-domain", "domain: cupboard\n", "", r"no domain", options=("only-the-problem",)),
@@ -150,10 +267,19 @@ CASES = [
     Case("nan-pose", "at: [0.2, 0.1]", "at: [.nan, 0.1]", r"not a finite number", 7),
     # Meshes
     Case("mesh-missing", CAN, MESH, r"no mesh file 'thing\.obj'", 7),
-    Case("mesh-typo", CAN, "{mesh: objects/mg.obj, on: table}", r"Did you mean 'objects/mug\.obj'", 7),
+    Case(
+        "mesh-typo", CAN, "{mesh: objects/mg.obj, on: table}", r"Did you mean 'objects/mug\.obj'", 7
+    ),
     Case("mesh-empty", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": ""}),
     Case("mesh-comment-only", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": "# nothing\n"}),
-    Case("mesh-nan", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": TETRAHEDRON.replace("0.05 0 0", "nan 0 0")}),
+    Case(
+        "mesh-nan",
+        CAN,
+        MESH,
+        r"thing\.obj.*",
+        7,
+        files={"thing.obj": TETRAHEDRON.replace("0.05 0 0", "nan 0 0")},
+    ),
     Case(
         "mesh-one-triangle",
         CAN,
@@ -163,15 +289,50 @@ CASES = [
         files={"thing.obj": TETRAHEDRON.partition("f")[0] + "f 1 2 3\n"},
     ),
     Case(
-        "mesh-flat", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": TETRAHEDRON.replace("0 0 0.05", "0.05 0.05 0")}
+        "mesh-flat",
+        CAN,
+        MESH,
+        r"thing\.obj.*",
+        7,
+        files={"thing.obj": TETRAHEDRON.replace("0 0 0.05", "0.05 0.05 0")},
     ),
-    Case("mesh-index", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": TETRAHEDRON + "f 1 2 99\n"}),
+    Case(
+        "mesh-index", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": TETRAHEDRON + "f 1 2 99\n"}
+    ),
     Case("mesh-binary", CAN, MESH, r"thing\.obj.*", 7, files={"thing.obj": bytes(range(256)) * 40}),
-    Case("mesh-stl-garbage", CAN, MESH.replace("obj", "stl"), r"thing\.stl.*", 7, files={"thing.stl": b"\xff" * 300}),
-    Case("mesh-format", CAN, MESH.replace("obj", "blend"), r"thing\.blend.*", 7, files={"thing.blend": "x"}),
+    Case(
+        "mesh-stl-garbage",
+        CAN,
+        MESH.replace("obj", "stl"),
+        r"thing\.stl.*",
+        7,
+        files={"thing.stl": b"\xff" * 300},
+    ),
+    Case(
+        "mesh-format",
+        CAN,
+        MESH.replace("obj", "blend"),
+        r"thing\.blend.*",
+        7,
+        files={"thing.blend": "x"},
+    ),
     Case("mesh-folder", CAN, "{mesh: ., on: table}", r"mesh", 7),
-    Case("urdf-many-links", CAN, MESH.replace("obj", "urdf"), r"2 links", 7, files={"thing.urdf": CHAIN}),
-    Case("urdf-broken", CAN, MESH.replace("obj", "urdf"), r"thing\.urdf.*", 7, files={"thing.urdf": "<robot"}),
+    Case(
+        "urdf-many-links",
+        CAN,
+        MESH.replace("obj", "urdf"),
+        r"2 links",
+        7,
+        files={"thing.urdf": CHAIN},
+    ),
+    Case(
+        "urdf-broken",
+        CAN,
+        MESH.replace("obj", "urdf"),
+        r"thing\.urdf.*",
+        7,
+        files={"thing.urdf": "<robot"},
+    ),
     # The start
     Case(
         "overlap",
@@ -180,8 +341,20 @@ CASES = [
         r"'can' and 'box' overlap at the start, \d+\.\d mm deep",
         8,
     ),
-    Case("overlap-furniture", "on: table, at: [0.2, 0.1]", "at: [1.6, 0.0, 0.7]", r"'table' and 'can' overlap", 7),
-    Case("robot-in-furniture", "base: [0, 0, 0]", "base: [1.2, 0, 0]", r"starts in collision: \w+ hits table", 3),
+    Case(
+        "overlap-furniture",
+        "on: table, at: [0.2, 0.1]",
+        "at: [1.6, 0.0, 0.7]",
+        r"'table' and 'can' overlap",
+        7,
+    ),
+    Case(
+        "robot-in-furniture",
+        "base: [0, 0, 0]",
+        "base: [1.2, 0, 0]",
+        r"starts in collision: \w+ hits table",
+        3,
+    ),
     Case(
         "robot-in-movable",
         "goal: (on can",
@@ -198,12 +371,43 @@ CASES = [
     ),
     Case("robot-outside", "base: [0, 0, 0]", "base: [0, 9, 0]", r"out of the room: y = 9", 3),
     # The domain and its streams
-    Case("domain-unclosed", "(hand-empty)\n    (at-base", "(hand-empty\n    (at-base", r"never closed"),
-    Case("domain-surplus", "(hand-empty)\n    (at-base", "(hand-empty))\n    (at-base", r"closes nothing"),
-    Case("domain-unclosed-action", "(pick-motion ?o ?p ?g ?b ?q ?t)\n", "(pick-motion ?o ?p ?g ?b ?q ?t\n", r"never"),
-    Case("streams-unclosed", ":certified (grasp ?o ?g))", ":certified (grasp ?o ?g)", r"never closed", 3),
-    Case("streams-surplus", ":certified (grasp ?o ?g))", ":certified (grasp ?o ?g)))", r"closes nothing"),
-    Case("stream-arity", ":outputs (?g) :certified (grasp ?o ?g)", ":outputs (?g) :certified (grasp ?g)", r"grasp"),
+    Case(
+        "domain-unclosed",
+        "(hand-empty)\n    (at-base",
+        "(hand-empty\n    (at-base",
+        r"never closed",
+    ),
+    Case(
+        "domain-surplus",
+        "(hand-empty)\n    (at-base",
+        "(hand-empty))\n    (at-base",
+        r"closes nothing",
+    ),
+    Case(
+        "domain-unclosed-action",
+        "(pick-motion ?o ?p ?g ?b ?q ?t)\n",
+        "(pick-motion ?o ?p ?g ?b ?q ?t\n",
+        r"never",
+    ),
+    Case(
+        "streams-unclosed",
+        ":certified (grasp ?o ?g))",
+        ":certified (grasp ?o ?g)",
+        r"never closed",
+        3,
+    ),
+    Case(
+        "streams-surplus",
+        ":certified (grasp ?o ?g))",
+        ":certified (grasp ?o ?g)))",
+        r"closes nothing",
+    ),
+    Case(
+        "stream-arity",
+        ":outputs (?g) :certified (grasp ?o ?g)",
+        ":outputs (?g) :certified (grasp ?g)",
+        r"grasp",
+    ),
     Case("domain-empty", DOMAIN, "", r"empty"),
     Case("streams-empty", STREAMS, "", r"empty"),
     Case("domain-garbage", DOMAIN, "\0\1\2 what (", r"my\.pddl:1"),
@@ -219,7 +423,13 @@ def folder(tmp_path: Path) -> Path:
 
 
 def arguments(folder: Path, *options: str) -> list[str]:
-    return [str(folder / "my.pddl"), str(folder / "mine.yaml"), "--out", str(folder / "plan.json"), *options]
+    return [
+        str(folder / "my.pddl"),
+        str(folder / "mine.yaml"),
+        "--out",
+        str(folder / "plan.json"),
+        *options,
+    ]
 
 
 def check_one_error(code: int, out: str, err: str) -> str:
@@ -238,7 +448,9 @@ def test_one_clear_error(
     monkeypatch.chdir(folder)
     place, line = None, case.line
     if case.old:
-        sources = [file for file in sorted(folder.iterdir()) if file.read_text().count(case.old) == 1]
+        sources = [
+            file for file in sorted(folder.iterdir()) if file.read_text().count(case.old) == 1
+        ]
         assert len(sources) == 1, "the passage to be spoilt stands in one file, once"
         text = sources[0].read_text()
         sources[0].write_text(text.replace(case.old, case.new))
@@ -264,7 +476,9 @@ def test_one_clear_error(
     assert sorted(folder.iterdir()) == before, "something was written"
 
 
-def test_a_mesh_that_is_not_watertight_is_mended_or_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_mesh_that_is_not_watertight_is_mended_or_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "mine.yaml").write_text(PROBLEM.replace(CAN, MESH))
     (folder / "thing.obj").write_text(TETRAHEDRON.removesuffix("f 1 4 3\n"))
     code = run(arguments(folder))
@@ -292,7 +506,9 @@ def test_a_mesh_that_is_not_watertight_is_mended_or_refused(folder: Path, capsys
     ],
     ids=lambda value: "-".join(value)[:20] if isinstance(value, tuple) else "",
 )
-def test_options(option: tuple[str, ...], says: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options(
+    option: tuple[str, ...], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     message = check_one_error(run(arguments(folder, *option)), *capsys.readouterr())
     assert re.search(says, message), message
     assert not (folder / "plan.json").exists()
@@ -302,15 +518,22 @@ def test_no_files_at_all(capsys: pytest.CaptureFixture[str]) -> None:
     assert "expected [DOMAIN] PROBLEM" in check_one_error(run([]), *capsys.readouterr())
 
 
-def test_domain_and_problem_in_the_wrong_order(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    message = check_one_error(run([str(folder / "mine.yaml"), str(folder / "my.pddl")]), *capsys.readouterr())
+def test_domain_and_problem_in_the_wrong_order(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    message = check_one_error(
+        run([str(folder / "mine.yaml"), str(folder / "my.pddl")]), *capsys.readouterr()
+    )
     assert "expected [DOMAIN] PROBLEM" in message
 
 
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["for_objects"], r"unknown problem 'for_objects'.*four_objects.*Did you mean 'four_objects'"),
+        (
+            ["for_objects"],
+            r"unknown problem 'for_objects'.*four_objects.*Did you mean 'four_objects'",
+        ),
         (["cupbord", "one_object"], r"unknown domain 'cupbord'.*Did you mean 'cupboard'"),
         (["nowhere/mine.yaml"], r"no such file: nowhere/mine\.yaml"),
         (["nowhere/my.pddl", "one_object"], r"no such file: nowhere/my\.pddl"),
@@ -322,7 +545,11 @@ def test_domain_and_problem_in_the_wrong_order(folder: Path, capsys: pytest.Capt
     ids=lambda value: value[0][:12] if isinstance(value, list) else "",
 )
 def test_names_of_files(
-    words: list[str], says: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    words: list[str],
+    says: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     message = check_one_error(run(words), *capsys.readouterr())
@@ -343,7 +570,9 @@ def test_names_of_files(
     ],
     ids=["png", "utf-16", "latin-1", "parentheses", "brackets", "10 MB"],
 )
-def test_files_of_something_else(file: str, content: bytes, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_of_something_else(
+    file: str, content: bytes, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / file).write_bytes(content)
     message = check_one_error(run(arguments(folder)), *capsys.readouterr())
     assert message.startswith(str(folder / file)), message
@@ -372,7 +601,9 @@ def test_where_the_plan_cannot_be_written(folder: Path, capsys: pytest.CaptureFi
 def test_a_folder_without_permission(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     locked = folder / "locked"
     locked.mkdir(mode=0o500)
-    message = check_one_error(run([str(folder / "mine.yaml"), "--out", str(locked / "p.json")]), *capsys.readouterr())
+    message = check_one_error(
+        run([str(folder / "mine.yaml"), "--out", str(locked / "p.json")]), *capsys.readouterr()
+    )
     assert "Permission denied" in message
 
 
@@ -380,7 +611,9 @@ def test_as_a_command(folder: Path) -> None:
     """The same through a process of its own: nothing is printed that this process would have swallowed."""
     (folder / "mine.yaml").write_text(PROBLEM.replace("(on can table)", "(on can tabel)"))
     command = [str(Path(sys.executable).with_name("tamp-solve")), "mine.yaml", "--json"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=60, check=False
+    )
     message = check_one_error(done.returncode, done.stdout, done.stderr)
     assert message.startswith("mine.yaml:8:15: unknown object 'tabel'")
     assert not (folder / "plan.json").exists()

@@ -19,11 +19,15 @@ def test_defaults_and_what_is_said_counts() -> None:
         10,
         30.0,
     )
-    assert (plain.jobs, plain.out, plain.first, plain.algorithm) == (None, Path("bench.jsonl"), 0, "adaptive")
-
-    words = (
-        "run --problems swap packed --samplers on=uniform --seeds 3 --first 7 --time 2.5 --jobs 2 --out r.jsonl --quiet"
+    assert (plain.jobs, plain.out, plain.first, plain.algorithm) == (
+        None,
+        Path("bench.jsonl"),
+        0,
+        "adaptive",
     )
+
+    words = "run --problems swap packed --samplers on=uniform --seeds 3 --first 7 --time 2.5 "
+    words += "--jobs 2 --out r.jsonl --quiet"
     said = parsed(words.split())
     assert isinstance(said, Run) and said.quiet
     assert (said.problems, said.samplers, said.seeds) == (("swap", "packed"), ("on=uniform",), 3)
@@ -37,7 +41,9 @@ def test_the_papers_comparison_has_its_own_defaults() -> None:
 
 
 def test_tables_and_pictures_take_a_log() -> None:
-    assert parsed(["table", "a.jsonl", "--against", "uniform"]) == Tabulate(Path("a.jsonl"), "uniform")
+    assert parsed(["table", "a.jsonl", "--against", "uniform"]) == Tabulate(
+        Path("a.jsonl"), "uniform"
+    )
     assert parsed(["table", "a.jsonl"]) == Tabulate(Path("a.jsonl"), None)
     assert parsed(["draw", "a.jsonl", "--out", "b"]) == Draw(Path("a.jsonl"), Path("b"))
 

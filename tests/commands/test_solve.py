@@ -53,7 +53,9 @@ def command(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.fixture(scope="module")
-def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
+def solved(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> tuple[Path, subprocess.CompletedProcess[str]]:
     """A plan by the name of a shipped problem from an empty folder, written into folders that do not exist yet."""
     folder = tmp_path_factory.mktemp("elsewhere")
     done = command(SOLVE, "cupboard", "one_object", "--out", "my plans/today/plan.json", cwd=folder)
@@ -77,7 +79,10 @@ def test_the_summary(solved: tuple[Path, subprocess.CompletedProcess[str]]) -> N
         assert re.fullmatch(row, line), line
     assert re.search(r"^  time     .*(ik|motion|search|timing) \d+ %", done.stdout, re.MULTILINE)
     assert re.search(r"sample-on \d+ of \d+", done.stdout)
-    assert lines[-1] == "my plans/today/plan.json written. Check it: tamp-verify 'my plans/today/plan.json'"
+    assert (
+        lines[-1]
+        == "my plans/today/plan.json written. Check it: tamp-verify 'my plans/today/plan.json'"
+    )
     assert max(len(line) for line in lines) <= 120
     assert [file.name for file in plan.parent.iterdir()] == ["plan.json"]
 
@@ -95,7 +100,9 @@ def test_the_plan_file_conforms_to_its_schema(
     assert {fact[0] for fact in document["certified"]} >= {"supported", "kin", "pick-motion"}
 
 
-def test_tamp_verify_accepts_the_plan(solved: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
+def test_tamp_verify_accepts_the_plan(
+    solved: tuple[Path, subprocess.CompletedProcess[str]],
+) -> None:
     done = command(VERIFY, str(solved[0]), cwd=solved[0].parent)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "plan.json holds: 4 actions" in done.stdout and not done.stderr
@@ -103,7 +110,9 @@ def test_tamp_verify_accepts_the_plan(solved: tuple[Path, subprocess.CompletedPr
 
 def test_json_is_pure_also_with_warnings_and_a_verdict(tmp_path: Path) -> None:
     text = find_problem("one_object").read_text()
-    floating = "  lamp: {sphere: 0.05, at: [0.0, 2.0, 2.0]}\n\ngoal:"  # movable, and on nothing: a warning
+    floating = (
+        "  lamp: {sphere: 0.05, at: [0.0, 2.0, 2.0]}\n\ngoal:"  # movable, and on nothing: a warning
+    )
     (tmp_path / "mine.yaml").write_text(text.replace("\ngoal:", floating))
     done = command(SOLVE, "mine.yaml", "--json", "--verify", "--out", "p.json", cwd=tmp_path)
     assert done.returncode == SOLVED, done.stdout + done.stderr
@@ -112,7 +121,9 @@ def test_json_is_pure_also_with_warnings_and_a_verdict(tmp_path: Path) -> None:
     assert document["outcome"] == "solved" and document["plan"] == "p.json"
     assert [action["name"] for action in document["actions"]] == ["move", "pick", "move", "place"]
     assert any("lamp" in warning for warning in document["warnings"])
-    assert document["verification"]["holds"] is True and document["verification"]["violations"] == []
+    assert (
+        document["verification"]["holds"] is True and document["verification"]["violations"] == []
+    )
     assert json.loads((tmp_path / "p.json").read_text())["format"] == "tamp-plan"
 
 
@@ -128,7 +139,9 @@ def test_quiet_still_says_what_is_wrong(capfd: pytest.CaptureFixture[str]) -> No
     assert out == "" and "unknown problem 'one_objct'" in err
 
 
-def test_no_plan_exits_with_1_and_the_reason(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_plan_exits_with_1_and_the_reason(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "plan.json"
     out.write_text("an older plan")
     assert run(["impossible_size", "--out", str(out)]) == NO_PLAN
@@ -137,7 +150,11 @@ def test_no_plan_exits_with_1_and_the_reason(tmp_path: Path, capsys: pytest.Capt
     assert out.read_text() == "an older plan"
     assert run(["impossible_size", "--json", "--out", str(out)]) == NO_PLAN
     document = json.loads(capsys.readouterr().out)
-    assert document["outcome"] == "infeasible" and document["plan"] is None and document["actions"] == []
+    assert (
+        document["outcome"] == "infeasible"
+        and document["plan"] is None
+        and document["actions"] == []
+    )
     assert "pitcher" in document["explanation"][0]
 
 
@@ -152,7 +169,9 @@ def test_verify_judges_before_anything_is_written(
 
     def refuse(document: dict[str, Any], *, classifiers: object) -> Report:
         assert document["format"] == "tamp-plan" and not out.exists()
-        violation = Violation("collision", "panda_hand and table penetrate", 1, "pick", 2.5, ("table",), 0.01)
+        violation = Violation(
+            "collision", "panda_hand and table penetrate", 1, "pick", 2.5, ("table",), 0.01
+        )
         return Report("the plan", (violation,), 4, 12.0, 100, None, {}, (), 0.1)
 
     monkeypatch.setattr("tamp.verification.verify.verify", refuse)
@@ -166,7 +185,9 @@ def test_verify_judges_before_anything_is_written(
 def test_an_interrupt_ends_with_130_and_what_is_known(tmp_path: Path) -> None:
     (tmp_path / "enclosed.yaml").write_text(ENCLOSED)
     words = [SOLVE, "enclosed.yaml", "--algorithm", "incremental", "--time", "60"]
-    with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("enclosed: 1 goal")
         time.sleep(1.0)  # into the middle of planning
@@ -191,23 +212,34 @@ def test_an_interrupt_inside_a_stream(
     assert run(["one_object", "--json", "--out", str(tmp_path / "plan.json")]) == INTERRUPTED
     out, err = capsys.readouterr()
     document = json.loads(out)
-    assert document["outcome"] == "interrupted" and document["actions"] == [] and document["plan"] is None
+    assert (
+        document["outcome"] == "interrupted"
+        and document["actions"] == []
+        and document["plan"] is None
+    )
     assert document["statistics"]["streams"] and not err
     assert not list(tmp_path.iterdir())
 
 
 def test_an_interrupt_before_planning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("tamp.planner.problem.load_scene", lambda *_: signal.raise_signal(signal.SIGINT))
+        patch.setattr(
+            "tamp.planner.problem.load_scene", lambda *_: signal.raise_signal(signal.SIGINT)
+        )
         assert run(["one_object", "--out", str(tmp_path / "plan.json")]) == INTERRUPTED
     assert capsys.readouterr() == ("", "interrupted\n")
 
 
 @pytest.mark.parametrize(
     ("words", "says"),
-    [("--seed x", "error: --seed: no whole number: 'x'."), ("--time soon", "error: --time: no number: 'soon'.")],
+    [
+        ("--seed x", "error: --seed: no whole number: 'x'."),
+        ("--time soon", "error: --time: no number: 'soon'."),
+    ],
 )
-def test_a_value_that_is_no_number_is_said_in_words(words: str, says: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_value_that_is_no_number_is_said_in_words(
+    words: str, says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["one_object", *words.split()]) == BAD_INPUT
     assert capsys.readouterr().err.startswith(says)
 
@@ -224,7 +256,20 @@ def test_a_domain_beside_the_problem_and_streams_from_elsewhere(
     monkeypatch.chdir(tmp_path)
     assert run(["mine.yaml"]) == BAD_INPUT  # there is no mine.streams.pddl
     assert "mine.streams.pddl: no such file" in capsys.readouterr().err
-    assert run(["mine.yaml", "--streams", "streams/other.pddl", "--sampler", "on=surface", "--seed", "3"]) == SOLVED
+    assert (
+        run(
+            [
+                "mine.yaml",
+                "--streams",
+                "streams/other.pddl",
+                "--sampler",
+                "on=surface",
+                "--seed",
+                "3",
+            ]
+        )
+        == SOLVED
+    )
     capsys.readouterr()
     document = json.loads((tmp_path / "plan.json").read_text())
     assert document["inputs"]["streams"]["path"] == str(tmp_path / "streams/other.pddl")
@@ -241,40 +286,62 @@ def test_samplers_that_grounding_supplies(
     supplied.GROUNDINGS = {"on": {"flow": SurfacePlacements}}  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "grounding.registry", supplied)
     for word in ("flow", "flow:alone"):
-        assert run(["one_object", "--sampler", f"on={word}", "--out", str(tmp_path / "plan.json")]) == SOLVED
+        assert (
+            run(["one_object", "--sampler", f"on={word}", "--out", str(tmp_path / "plan.json")])
+            == SOLVED
+        )
         assert json.loads((tmp_path / "plan.json").read_text())["options"]["samplers"]["on"] == word
     assert run(["one_object", "--sampler", "on=flaw"]) == BAD_INPUT
-    assert "unknown sampler 'flaw' for 'on'. Choices: surface, uniform, flow. Did you mean 'flow'?" in (
-        capsys.readouterr().err
+    assert (
+        "unknown sampler 'flaw' for 'on'. Choices: surface, uniform, flow. Did you mean 'flow'?"
+        in (capsys.readouterr().err)
     )
 
 
 def test_names_in_upper_case_and_names_that_are_taken(tmp_path: Path) -> None:
     """PDDL knows no upper case; and what the planner calls its own values must not be a body's name."""
-    text = find_problem("one_object").read_text().replace("soup_can", "Mug").replace("(on Mug", "(on mug")
+    text = (
+        find_problem("one_object")
+        .read_text()
+        .replace("soup_can", "Mug")
+        .replace("(on Mug", "(on mug")
+    )
     others = "".join(
         f"  {name}: {{sphere: 0.03, on: floor, at: [{at}, 2.0]}}\n"
         for at, name in enumerate(("mug_start", "base_start", "p1", "B1"), start=-2)
     )
     metric = "metric: (minimize (total-cost))\n"
     (tmp_path / "mine.yaml").write_text(text.replace("\ngoal:", f"\n{others}\n{metric}goal:"))
-    assert run([str(tmp_path / "mine.yaml"), "--verify", "--out", str(tmp_path / "plan.json")]) == SOLVED
+    assert (
+        run([str(tmp_path / "mine.yaml"), "--verify", "--out", str(tmp_path / "plan.json")])
+        == SOLVED
+    )
     grasped = [segment for segment in _segments(tmp_path / "plan.json") if "attach" in segment]
     assert [segment["attach"]["body"] for segment in grasped] == ["mug"]
 
 
 def _segments(plan: Path) -> list[dict[str, Any]]:
-    return [segment for action in json.loads(plan.read_text())["actions"] for segment in action["segments"]]
+    return [
+        segment
+        for action in json.loads(plan.read_text())["actions"]
+        for segment in action["segments"]
+    ]
 
 
 @pytest.mark.parametrize("options", [(), ("--json",)])
-def test_a_reader_that_stops_reading_loses_no_plan(options: tuple[str, ...], tmp_path: Path) -> None:
+def test_a_reader_that_stops_reading_loses_no_plan(
+    options: tuple[str, ...], tmp_path: Path
+) -> None:
     words = [SOLVE, "one_object", *options]
-    with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         assert process.stdout is not None and process.stderr is not None
         process.stdout.close()
         assert process.wait(60) == BAD_INPUT
-        assert process.stderr.read() == "error: the standard output cannot be written: Broken pipe\n"
+        assert (
+            process.stderr.read() == "error: the standard output cannot be written: Broken pipe\n"
+        )
     assert (tmp_path / "plan.json").is_file()
 
 
@@ -288,12 +355,23 @@ def test_help_is_readable(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["tamp-solve", "tamp-verify", "tamp-execute", "tamp-export", "tamp-demo", "tamp-view", "tamp-bench"]
+    "name",
+    [
+        "tamp-solve",
+        "tamp-verify",
+        "tamp-execute",
+        "tamp-export",
+        "tamp-demo",
+        "tamp-view",
+        "tamp-bench",
+    ],
 )
 def test_help_that_nobody_reads_is_no_error(name: str) -> None:
     ours, theirs = os.pipe()
     os.close(ours)
     with os.fdopen(theirs, "w") as closed:
         program = Path(sys.executable).with_name(name)
-        ended = subprocess.run([program, "--help"], stdout=closed, stderr=subprocess.PIPE, timeout=100, check=False)
+        ended = subprocess.run(
+            [program, "--help"], stdout=closed, stderr=subprocess.PIPE, timeout=100, check=False
+        )
     assert (ended.returncode, ended.stderr) == (0, b"")

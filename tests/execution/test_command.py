@@ -23,22 +23,34 @@ def copy(plan_file: Path, folder: Path, **changed: object) -> Path:
     return folder / "plan.json"
 
 
-def test_a_plan_that_works_exits_with_0(plan_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_plan_that_works_exits_with_0(
+    plan_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert exit_of(str(plan_file), "--json", "--grasp", "constraint") == 0
     document = json.loads(capsys.readouterr().out)
     assert document["format"] == "tamp-execution" and document["reached"] is True
     assert len(document["actions"]) == 4 and document["grasp"] == "constraint"
 
 
-def test_a_goal_that_is_missed_exits_with_1(plan_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_goal_that_is_missed_exits_with_1(
+    plan_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert exit_of(str(plan_file), "--disturb", "object-dropped") == 1
     said = capsys.readouterr().out
-    assert "is dropped" in said and "lost: Can is not in the hand" in said and "Goal not reached" in said
+    assert (
+        "is dropped" in said
+        and "lost: Can is not in the hand" in said
+        and "Goal not reached" in said
+    )
 
 
-def test_solve_can_execute(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_solve_can_execute(
+    plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     problem = plan_file.with_name("short_way.yaml")
-    assert run([str(problem), "--seed", "1", "--execute", "--out", str(tmp_path / "plan.json")]) == 0
+    assert (
+        run([str(problem), "--seed", "1", "--execute", "--out", str(tmp_path / "plan.json")]) == 0
+    )
     assert "Goal reached" in capsys.readouterr().out
     assert run(["d.pddl", "p.pddl", "--execute"]) == 2
     assert "--execute is for problems with a scene" in capsys.readouterr().err
@@ -55,7 +67,9 @@ def test_solve_can_execute(plan_file: Path, tmp_path: Path, capsys: pytest.Captu
         (["--problem", "nowhere.yaml"], "no such file: nowhere.yaml"),
     ],
 )
-def test_bad_options(plan_file: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_options(
+    plan_file: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert exit_of(str(plan_file), *words) == 2
     assert said in capsys.readouterr().err
 
@@ -80,7 +94,9 @@ def test_bad_plans(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "is not the one that the plan was made from" in error(changed)
 
 
-def test_pauses_of_hours_are_left_out(plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_pauses_of_hours_are_left_out(
+    plan_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan = json.loads(plan_file.read_text(encoding="utf-8"))
     segment = next(one for one in plan["actions"][1]["segments"] if one["part"] == "arm")
     segment["times"].append(segment["times"][-1] + 20_000.0)

@@ -38,8 +38,12 @@ def test_a_plan_reaches_its_goal(stored: Stored, grasp: str) -> None:
     sceptic = Sceptic()
     done = execute(stored, Circumstances(grasp=grasp, classifiers={"on": ("sceptic", sceptic)}))
     assert done.reached and not done.explanation
-    assert [action.name for action in done.actions] == [action.name for action in stored.plan.actions]
-    assert [(part.fact, part.holds, part.probability) for part in done.goal] == [("(on can left)", True, 0.25)]
+    assert [action.name for action in done.actions] == [
+        action.name for action in stored.plan.actions
+    ]
+    assert [(part.fact, part.holds, part.probability) for part in done.goal] == [
+        ("(on can left)", True, 0.25)
+    ]
     assert sceptic.asked == [["Can", "left"]]
     assert not done.kinds and not any(action.displaced for action in done.actions)
     assert max(action.base for action in done.actions) < 0.01
@@ -52,7 +56,9 @@ def test_the_same_seed_gives_the_same_run(stored: Stored) -> None:
     assert mended(stored, "object-dropped", 3) == mended(stored, "object-dropped", 3)
 
 
-@pytest.mark.parametrize("name", ["object-moved", "object-dropped", "grasp-slips", "surface-blocked"])
+@pytest.mark.parametrize(
+    "name", ["object-moved", "object-dropped", "grasp-slips", "surface-blocked"]
+)
 def test_a_disturbed_plan_is_mended(stored: Stored, name: str) -> None:
     done = mended(stored, name, seed=1)
     assert done.disturbance

@@ -25,13 +25,21 @@ DOMAIN = parse_domain("""(define (domain d) (:requirements :typing :derived-pred
   (:action place :parameters (?o - movable ?p - pose ?g - grasp)
     :effect (and (at-pose ?o ?p) (not (holding ?o ?g)) (hand-empty))))""")
 SCENE = scene(table(), crate(), body("Cup", Box((0.1, 0.1, 0.1)), (0.2, 0, 0.551)))
-START, GOAL, GRASP = Pose((0.2, 0, 0.551)).matrix, Pose((2.0, 0, 0.071)).matrix, Pose((0, 0, 0.1)).matrix
+START, GOAL, GRASP = (
+    Pose((0.2, 0, 0.551)).matrix,
+    Pose((2.0, 0, 0.071)).matrix,
+    Pose((0, 0, 0.1)).matrix,
+)
 
 
 @pytest.fixture
 def expected() -> Expected:
     plan = plan_of(
-        values={"p0": Value("pose", START), "p1": Value("pose", GOAL), "g": Value("grasp", Hold("cup", GRASP, 0.05))},
+        values={
+            "p0": Value("pose", START),
+            "p1": Value("pose", GOAL),
+            "g": Value("grasp", Hold("cup", GRASP, 0.05)),
+        },
         initial=[("at-pose", "cup", "p0"), ("hand-empty",), ("supported", "cup", "p0", "table")],
         certified=[("contained", "cup", "p1", "crate_inside")],
     )
@@ -82,7 +90,9 @@ def test_what_is_not_seen_is_not_accepted(expected: Expected) -> None:
 
 
 @pytest.mark.parametrize("action", [act("fly", "cup"), act("pick", "cup")])
-def test_an_action_that_the_domain_does_not_know_has_no_effect(expected: Expected, action: TimedAction) -> None:
+def test_an_action_that_the_domain_does_not_know_has_no_effect(
+    expected: Expected, action: TimedAction
+) -> None:
     expected.apply(action)
     assert expected.facts == {("on", "cup", "table")} and expected.held is None
 

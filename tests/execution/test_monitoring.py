@@ -17,7 +17,10 @@ def watched(world: Noting, active: str | None = None) -> Watch:
 def test_the_largest_lag_is_kept_of_base_and_arm_apart() -> None:
     world = Noting()
     watch = watched(world)
-    for lag in ([0.003, 0.004, 1.0, 0.02, 0, 0, 0, 0, 0, 0], [0.001, 0, 0, 0, 0, 0, 0, 0, 0, -0.05]):
+    for lag in (
+        [0.003, 0.004, 1.0, 0.02, 0, 0, 0, 0, 0, 0],
+        [0.001, 0, 0, 0, 0, 0, 0, 0, 0, -0.05],
+    ):
         world.lag = np.array(lag)
         watch.look()
     assert watch.base == pytest.approx(0.005)  # a distance on the floor: the yaw is no metre

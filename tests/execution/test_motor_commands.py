@@ -33,7 +33,9 @@ def test_the_base_follows_its_segment_in_time_and_the_arm_stands() -> None:
 
     aimed = np.array([conf for conf, _ in world.ticks])
     assert len(aimed) == 3 * RATE + RESTING
-    assert aimed[RATE // 2 - 1, :3] == pytest.approx([0.5, 0, 0])  # the k-th step aims at (k + 1) / RATE seconds
+    assert aimed[RATE // 2 - 1, :3] == pytest.approx(
+        [0.5, 0, 0]
+    )  # the k-th step aims at (k + 1) / RATE seconds
     assert aimed[2 * RATE - 1, :3] == pytest.approx([1, 0.25, 0.1])
     assert aimed[-1, :3] == pytest.approx([1, 0.5, 0.2])
     assert (aimed[:, 3:] == 0.0).all()
@@ -48,7 +50,9 @@ def test_speeds_are_those_of_the_trajectory_and_zero_at_rest() -> None:
     assert (rates[:, :3] == 0.0).all() and (rates[2 * RATE :] == 0.0).all()
 
 
-def test_somebody_looks_now_and_then_from_the_first_step_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_somebody_looks_now_and_then_from_the_first_step_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     world, looks = Noting(), list[int]()
     player, watch = playing(world)
     monkeypatch.setattr(watch, "look", lambda: looks.append(len(world.ticks)))
@@ -61,7 +65,13 @@ def test_somebody_looks_now_and_then_from_the_first_step_on(monkeypatch: pytest.
 def test_something_happens_once_at_its_share_of_the_time(share: float) -> None:
     world, happened = Noting(), list[int]()
     player, watch = playing(world)
-    player.play(base([0, 1], [[0, 0, 0], [1, 0, 0]]), None, watch, lambda: happened.append(len(world.ticks)), share)
+    player.play(
+        base([0, 1], [[0, 0, 0], [1, 0, 0]]),
+        None,
+        watch,
+        lambda: happened.append(len(world.ticks)),
+        share,
+    )
     assert happened == [min(int(share * RATE), RATE - 1)]
 
 
@@ -77,7 +87,9 @@ def test_the_base_stops_where_it_is_when_what_it_carries_is_gone() -> None:
     stopped = len(world.ticks) - RESTING
     assert RATE <= stopped <= RATE + EVERY + 1
     assert world.conf[0] == pytest.approx(stopped / RATE)
-    assert player.play(arm([0, 1], [np.zeros(7), np.ones(7)]), None, watch, guard="cup")  # the arm is not stopped
+    assert player.play(
+        arm([0, 1], [np.zeros(7), np.ones(7)]), None, watch, guard="cup"
+    )  # the arm is not stopped
 
 
 def test_a_constraint_binds_what_is_between_the_fingers() -> None:
@@ -85,7 +97,9 @@ def test_a_constraint_binds_what_is_between_the_fingers() -> None:
     player, watch = playing(world)
     assert player.play(close("cup", 0.05), "cup", watch)
     assert world.opening == 0.05 and not world.squeezing and world.bound == "cup"
-    assert len(world.ticks) == round(CLOSING * RATE)  # half a second in the file is less than it takes
+    assert len(world.ticks) == round(
+        CLOSING * RATE
+    )  # half a second in the file is less than it takes
 
 
 @pytest.mark.parametrize(("near", "body"), [(False, "cup"), (True, None), (True, "gone")])

@@ -30,17 +30,26 @@ def test_bodies_are_seen_where_they_are(stored: Stored) -> None:
         for name, T in poses.items():  # the planner's air is under them again
             assert truth.scene.bodies[name].pose.matrix == pytest.approx(T, abs=1e-4)
             assert truth.scene.bodies[name].support == "right"
-        assert "rests on right" in truth.reasons["on", "can", "left"] or "mm" in truth.reasons["on", "can", "left"]
+        assert (
+            "rests on right" in truth.reasons["on", "can", "left"]
+            or "mm" in truth.reasons["on", "can", "left"]
+        )
 
         fallen = {**sunk, "Can": raised(poses["Can"], x=-0.5, z=-0.5)}
         truth = observer.see(fallen, base, None)
         assert truth.facts == {("on", "block", "right")}
         assert truth.scene.bodies["Can"].support is None
-        assert truth.scene.bodies["Can"].pose.position[2] == pytest.approx(0.05 + CONTACT_GAP, abs=2e-4)
+        assert truth.scene.bodies["Can"].pose.position[2] == pytest.approx(
+            0.05 + CONTACT_GAP, abs=2e-4
+        )
 
         stacked = {**sunk, "Can": raised(poses["block"], z=0.11 - CONTACT_GAP)}
         truth = observer.see(stacked, base, None)
-        assert ("on", "can", "block") in truth.facts and truth.scene.bodies["Can"].support == "block"
+        assert ("on", "can", "block") in truth.facts and truth.scene.bodies[
+            "Can"
+        ].support == "block"
 
         truth = observer.see(stacked, base, "Can")
-        assert truth.facts == {("on", "block", "right")} and truth.scene.bodies["Can"].support is None
+        assert (
+            truth.facts == {("on", "block", "right")} and truth.scene.bodies["Can"].support is None
+        )

@@ -46,18 +46,30 @@ def run(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize(
-    "goal", ["(not (upright milk table))", "(forall (?o - movable) (not (upright ?o shelf)))", "(untidy table)"]
+    "goal",
+    [
+        "(not (upright milk table))",
+        "(forall (?o - movable) (not (upright ?o shelf)))",
+        "(untidy table)",
+    ],
 )
-def test_what_must_not_hold_needs_a_classifier(folder: Path, goal: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_must_not_hold_needs_a_classifier(
+    folder: Path, goal: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan = str(plan_for(folder, goal))
     code, said = run(capsys, plan)
-    assert code == 2 and "does not hold has to be known at the end, and 'upright' has no classifier here" in said
+    assert (
+        code == 2
+        and "does not hold has to be known at the end, and 'upright' has no classifier here" in said
+    )
     assert "--sampler upright=FILE" in said
     code, said = run(capsys, plan, "--sampler", f"upright={folder / 'upright.py'}")
     assert code == 0 and "Goal reached: 0 actions" in said, said
 
 
-def test_what_holds_is_on_trust_without_one(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_holds_is_on_trust_without_one(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan = str(plan_for(folder, "(upright tea table)"))
     code, said = run(capsys, plan)
     assert code == 0 and "Goal reached, on trust: upright: 0 actions" in said
@@ -91,7 +103,9 @@ def test_the_goal_is_what_is_seen(folder: Path, goal: str, holds: tuple[bool, bo
     domain = parse_domain(file.read_text(), file)
     expected = Expected(stored.plan, domain, stored.loaded.scene)
     wanted = parse_goal(goal, domain, expected.semantics.objects)
-    own = own_relations(stored, domain, wanted, {"upright": ("mine", python_grounding(folder / "upright.py"))})  # type: ignore[dict-item]
+    own = own_relations(
+        stored, domain, wanted, {"upright": ("mine", python_grounding(folder / "upright.py"))}
+    )  # type: ignore[dict-item]
     T = stored.loaded.scene.bodies["Tea"].pose.matrix.copy()
     assert not own.missed(seen(stored, {}), None, expected)
     T[:3, :3] = T[:3, :3] @ np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
@@ -134,11 +148,15 @@ def test_what_should_hold_and_does_not_is_a_deviation(folder: Path) -> None:
     own = {"upright": ("never", Never(None))}
     done = execute(stored, Circumstances(grasp="constraint", own=own))
     assert not done.reached and done.goal[0].probability == 0.0
-    assert "(upright milk shelf) does not hold" in {one.message for one in done.actions[-1].deviations}
+    assert "(upright milk shelf) does not hold" in {
+        one.message for one in done.actions[-1].deviations
+    }
 
 
 @pytest.mark.slow
-def test_planning_anew_starts_from_what_is_seen(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_planning_anew_starts_from_what_is_seen(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Pushed on its way, the tea stands where it stood: whatever is planned anew ends as the classifier wants it."""
     plan = str(plan_for(folder, "(and (upright milk shelf) (upright tea table))"))
     words = ["--grasp", "constraint", "--replan", "--disturb", "object-moved"]
@@ -155,7 +173,9 @@ def test_a_scene_that_is_seen_is_asked_about(folder: Path) -> None:
     start = tamp.load_problem(path, groundings={"upright": upright})
     body = start.scene.bodies["Tea"]
     x, y, z = body.pose.position
-    fallen = replace(body, pose=tamp.Pose((x, y, z - 0.045), (np.sin(np.pi / 4), 0.0, 0.0, np.cos(np.pi / 4))))
+    fallen = replace(
+        body, pose=tamp.Pose((x, y, z - 0.045), (np.sin(np.pi / 4), 0.0, 0.0, np.cos(np.pi / 4)))
+    )
     scene = replace(start.scene, bodies=MappingProxyType({**start.scene.bodies, "Tea": fallen}))
     later = tamp.load_problem(path, groundings={"upright": upright}, scene=scene)
     assert ("stood", "tea", "tea_start", "table") in start.stream_task.task.initial

@@ -22,7 +22,9 @@ def test_a_plan_without_long_pauses_is_itself() -> None:
 
 def test_what_stands_still_for_an_hour_stands_for_ten_seconds() -> None:
     rows = [[0, 0, 0], [1, 0, 0], [1, 0, 0], [2, 0, 0]]
-    plan = plan_of(("move", (), [base([0, 4, 3604, 3608], rows)]), ("pick", ("cup",), [close("cup")]))
+    plan = plan_of(
+        ("move", (), [base([0, 4, 3604, 3608], rows)]), ("pick", ("cup",), [close("cup")])
+    )
     shortened, cut = without_pauses(plan)
     assert cut == pytest.approx(3600 - PAUSE)
     (segment,) = shortened.actions[0].segments
@@ -57,7 +59,9 @@ def test_times_that_run_backwards_are_refused() -> None:
 
 def test_hours_of_motion_are_refused_and_of_pauses_not() -> None:
     one = base([0, MOST_SECONDS / 2 + 1], [[0, 0, 0], [1, 0, 0]])
-    with pytest.raises(InputError, match="its motions last 7,202 s; physics carries out at most 7,200 s"):
+    with pytest.raises(
+        InputError, match="its motions last 7,202 s; physics carries out at most 7,200 s"
+    ):
         without_pauses(plan_of(("move", (), [one]), ("move", (), [one])))
     still = replace(one, positions=np.zeros((2, 3)))
     assert without_pauses(plan_of(("wait", (), [still]), ("wait", (), [still])))[1] > 0.0

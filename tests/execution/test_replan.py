@@ -24,7 +24,9 @@ from tamp.system.files import find_domain
 
 def expectation(stored: Stored) -> Expected:
     file = find_domain("cupboard")
-    return Expected(stored.plan, parse_domain(file.read_text(encoding="utf-8"), file), stored.loaded.scene)
+    return Expected(
+        stored.plan, parse_domain(file.read_text(encoding="utf-8"), file), stored.loaded.scene
+    )
 
 
 def moved(scene: Scene, name: str, x: float, y: float) -> Scene:
@@ -55,7 +57,9 @@ def test_what_is_in_the_hand_is_not_picked_again(stored: Stored) -> None:
     [("block", 0.05, -0.05, True), ("Can", 0.002, 0.0, True), ("Can", 0.06, 0.0, False)],
     ids=["out of the way", "where the hand closes", "elsewhere"],
 )
-def test_the_rest_is_kept_when_it_still_holds(stored: Stored, name: str, x: float, y: float, keeps: bool) -> None:
+def test_the_rest_is_kept_when_it_still_holds(
+    stored: Stored, name: str, x: float, y: float, keeps: bool
+) -> None:
     expected = expectation(stored)
     scene = moved(stored.loaded.scene, name, x, y)
     truth = Truth(scene, expected.facts, {})
@@ -75,7 +79,9 @@ def test_a_body_where_another_one_should_go_is_in_the_way(stored: Stored) -> Non
     scene = moved(scene, "block", float(where[0, 3]) - block[0], float(where[1, 3]) - block[1])
     found = [Deviation("displaced", "block", "it moved")]
     first = expectation(stored)
-    mended = Replanner(stored).mend(Truth(scene, frozenset(), {}), None, stored.plan, stored.plan.actions, found, first)
+    mended = Replanner(stored).mend(
+        Truth(scene, frozenset(), {}), None, stored.plan, stored.plan.actions, found, first
+    )
     assert not mended.keeps and mended.plan is not None, mended.explanation
 
 
@@ -87,7 +93,11 @@ def test_what_is_accepted_is_expected_until_the_plan_moves_it(stored: Stored) ->
     for action in stored.plan.actions:
         expected.apply(action)
         if action.name == "pick":
-            assert "Can" not in expected.poses and expected.held is not None and expected.held[0] == "Can"
+            assert (
+                "Can" not in expected.poses
+                and expected.held is not None
+                and expected.held[0] == "Can"
+            )
     assert expected.held is None
     assert expected.poses["Can"][2, 3] < 1.0
     assert ("on", "can", "left") in expected.facts and ("on", "block", "right") in expected.facts

@@ -18,7 +18,14 @@ PICK = Done(
     (Deviation("lost", "cup", "cup is not in the hand"),), "cup is dropped", "planned anew",
 )  # fmt: skip
 RUN = Execution(
-    "plan", "friction", 0, (MOVE, PICK), (GoalFact("(on cup table)", True),), True, simulated=8.25, seconds=2.0
+    "plan",
+    "friction",
+    0,
+    (MOVE, PICK),
+    (GoalFact("(on cup table)", True),),
+    True,
+    simulated=8.25,
+    seconds=2.0,
 )
 
 
@@ -58,8 +65,14 @@ def test_the_last_line_sums_up(change: dict, last: str) -> None:
     [
         (GoalFact("(on cup table)", True), "(on cup table) holds"),
         (GoalFact("(on cup table)", False), "(on cup table) does not hold"),
-        (GoalFact("(on cup table)", False, "it is in the hand"), "(on cup table) does not hold: it is in the hand"),
-        (GoalFact("(upright cup)", True, None, "mine.py", 0.876), "(upright cup) holds   mine.py says 0.88"),
+        (
+            GoalFact("(on cup table)", False, "it is in the hand"),
+            "(on cup table) does not hold: it is in the hand",
+        ),
+        (
+            GoalFact("(upright cup)", True, None, "mine.py", 0.876),
+            "(upright cup) holds   mine.py says 0.88",
+        ),
     ],
 )
 def test_a_part_of_the_goal_says_whether_and_why_not(fact: GoalFact, line: str) -> None:
@@ -74,13 +87,19 @@ def test_names_do_nothing_to_a_terminal() -> None:
 
 def test_kinds_are_counted_in_order() -> None:
     lost, moved = Deviation("lost", "a", ""), Deviation("displaced", "b", "")
-    made = replace(RUN, actions=(replace(MOVE, deviations=(lost, moved)), replace(MOVE, deviations=(lost,))))
+    made = replace(
+        RUN, actions=(replace(MOVE, deviations=(lost, moved)), replace(MOVE, deviations=(lost,)))
+    )
     assert list(made.kinds.items()) == [("displaced", 1), ("lost", 2)]
 
 
 def test_programs_get_everything_as_json() -> None:
     document = json.loads(json.dumps(RUN.json()))
-    assert (document["format"], document["version"], document["kinds"]) == ("tamp-execution", 1, {"lost": 1})
+    assert (document["format"], document["version"], document["kinds"]) == (
+        "tamp-execution",
+        1,
+        {"lost": 1},
+    )
     assert document["actions"][1]["touches"] == [{"first": "hand", "second": "box", "force": 12.4}]
     assert document["goal"][0]["holds"] is True and document["simulated"] == 8.25
 

@@ -44,7 +44,9 @@ def test_json_has_every_motion_of_the_plan(stored_plan: Path, tmp_path: Path) ->
             looked_at += 1
     assert looked_at >= 8
     assert clock == pytest.approx(plan["duration"])
-    assert [s["attach"] for a in document["actions"] for s in a["segments"] if "attach" in s] == ["soup_can"]
+    assert [s["attach"] for a in document["actions"] for s in a["segments"] if "attach" in s] == [
+        "soup_can"
+    ]
 
 
 def test_velocities_rest_at_the_ends_and_keep_the_limits(stored_plan: Path, tmp_path: Path) -> None:
@@ -71,36 +73,52 @@ def test_csv_has_all_joints_in_every_row(stored_plan: Path, tmp_path: Path) -> N
     rows = list(csv.DictReader(io.StringIO(exported(stored_plan, "csv", tmp_path))))
     joints = [*BASE, *ARM, *FINGERS]
     assert list(rows[0])[5:] == [*joints, *(f"v_{name}" for name in joints)]
-    assert [float(rows[0][name]) for name in joints] == pytest.approx([0.0] * 3 + list(PANDA.home) + [0.04] * 2)
+    assert [float(rows[0][name]) for name in joints] == pytest.approx(
+        [0.0] * 3 + list(PANDA.home) + [0.04] * 2
+    )
     times = [float(row["time"]) for row in rows]
     assert times == sorted(times)
     standing = [row for row in rows if row["part"] == "arm"]
     assert standing and {row["v_base_x"] for row in standing} == {"0.0"}
     where = {(row["base_x"], row["base_y"], row["base_yaw"]) for row in standing}
     assert len(where) == 2  # at the table, at the cupboard
-    jump = max(abs(float(b[name]) - float(a[name])) for a, b in itertools.pairwise(rows) for name in (*BASE, *ARM))
+    jump = max(
+        abs(float(b[name]) - float(a[name]))
+        for a, b in itertools.pairwise(rows)
+        for name in (*BASE, *ARM)
+    )
     assert jump < 0.2
 
 
-def test_ros_messages_have_the_shape_of_joint_trajectories(stored_plan: Path, tmp_path: Path) -> None:
+def test_ros_messages_have_the_shape_of_joint_trajectories(
+    stored_plan: Path, tmp_path: Path
+) -> None:
     document = json.loads(exported(stored_plan, "ros", tmp_path))
     assert len(document["trajectories"]) >= 8
     for item in document["trajectories"]:
         message: dict[str, Any] = item["message"]
         assert set(message) == {"header", "joint_names", "points"}
-        assert message["joint_names"] == {"base": BASE, "arm": ARM, "gripper": FINGERS}[item["controller"]]
+        assert (
+            message["joint_names"]
+            == {"base": BASE, "arm": ARM, "gripper": FINGERS}[item["controller"]]
+        )
         stamps = [
-            point["time_from_start"]["sec"] + 1e-9 * point["time_from_start"]["nanosec"] for point in message["points"]
+            point["time_from_start"]["sec"] + 1e-9 * point["time_from_start"]["nanosec"]
+            for point in message["points"]
         ]
         assert stamps[0] == 0.0 and stamps == sorted(stamps)
         for point in message["points"]:
-            assert len(point["positions"]) == len(point["velocities"]) == len(message["joint_names"])
+            assert (
+                len(point["positions"]) == len(point["velocities"]) == len(message["joint_names"])
+            )
             assert 0 <= point["time_from_start"]["nanosec"] < 10**9
     starts = [item["start"] for item in document["trajectories"]]
     assert starts == sorted(starts)
 
 
-def test_without_out_it_goes_to_the_standard_output(stored_plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_out_it_goes_to_the_standard_output(
+    stored_plan: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main([str(stored_plan)]) == 0
     assert json.loads(capsys.readouterr().out)["format"] == "tamp-trajectory"
 
@@ -120,7 +138,10 @@ def test_bad_input_is_one_line_and_exit_code_two(
     symbolic = tmp_path / "symbolic.json"
     symbolic.write_text('{"format": "tamp-symbolic-plan", "version": 1}', encoding="utf-8")
     cases = [
-        ([str(stored_plan), "--format", "rso"], "unknown format 'rso'. Choices: json, csv, ros. Did you mean 'ros'?"),
+        (
+            [str(stored_plan), "--format", "rso"],
+            "unknown format 'rso'. Choices: json, csv, ros. Did you mean 'ros'?",
+        ),
         ([str(tmp_path / "none.json")], "no such file"),
         ([str(broken)], "broken.json:1:"),
         ([str(symbolic)], "has no scene and no motion"),
@@ -152,7 +173,10 @@ def test_a_plan_whose_problem_changed_is_refused(
     problem.write_text(problem.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
     assert main([str(plan)]) == 2
     said = capsys.readouterr().err
-    assert f"the problem {problem} is not the one that the plan was made from. Plan again with tamp-solve" in said
+    assert (
+        f"the problem {problem} is not the one that the plan was made from. Plan again with tamp-solve"
+        in said
+    )
     with pytest.raises(Exception, match="is not the one that the plan was made from"):
         open_plan(plan)
     problem.unlink()

@@ -23,7 +23,11 @@ DOWN = HOME + np.array([0.1, 0, 0, 0, 0, 0, 0])
 
 PLAN = plan_of(
     ("move", ("b1",), [base([0, 1, 2], [[0, 0, 0], [0.5, 0, 0.1], [1, 0, 0.2]])]),
-    ("pick", ("cup",), [arm([0, 1], [HOME, DOWN]), close("cup", 0.05), arm([0, 1], [DOWN, HOME], 0.05, "cup")]),
+    (
+        "pick",
+        ("cup",),
+        [arm([0, 1], [HOME, DOWN]), close("cup", 0.05), arm([0, 1], [DOWN, HOME], 0.05, "cup")],
+    ),
     ("place", ("cup",), [let_go("cup", 0.05)]),
 )
 ACTIONS = timed_actions(PLAN, ROBOT)
@@ -56,7 +60,11 @@ def test_rates_lie_between_the_slopes_beside_them_and_rest_at_the_ends() -> None
 
 def test_json_tells_what_is_grasped_only_where_it_is() -> None:
     document = json.loads(json_text(PLAN, ROBOT, ACTIONS))
-    assert document["joints"] == {"base": list(BASE_JOINTS), "arm": list(ARM), "gripper": list(FINGERS)}
+    assert document["joints"] == {
+        "base": list(BASE_JOINTS),
+        "arm": list(ARM),
+        "gripper": list(FINGERS),
+    }
     segments = [segment for action in document["actions"] for segment in action["segments"]]
     assert [segment.get("attach") for segment in segments] == [None, None, "cup", None, None]
     assert [segment.get("detach") for segment in segments] == [None, None, None, None, "cup"]
@@ -83,9 +91,14 @@ def test_csv_says_of_every_joint_where_it_is_also_while_it_stands() -> None:
 
 
 def test_before_its_first_move_the_base_is_where_the_plan_starts() -> None:
-    start = {"b": Value("base-conf", np.array([0.5, -1.0, 2.0])), "c": Value("base-conf", np.zeros(3))}
+    start = {
+        "b": Value("base-conf", np.array([0.5, -1.0, 2.0])),
+        "c": Value("base-conf", np.zeros(3)),
+    }
     still = plan_of(
-        ("pick", ("cup",), [arm([0, 1], [HOME, DOWN])]), values=start, initial=[("goes-to", "c"), ("at-base", "b")]
+        ("pick", ("cup",), [arm([0, 1], [HOME, DOWN])]),
+        values=start,
+        initial=[("goes-to", "c"), ("at-base", "b")],
     )
     text = csv_text(still, ROBOT, timed_actions(still, ROBOT))
     row = next(csv.DictReader(io.StringIO(text)))

@@ -25,7 +25,9 @@ from tamp.geometric.scene.scene import (
 )
 
 
-def body(name: str, shape: Shape, at: tuple[float, float, float], *, movable: bool = True, **more: object) -> Body:
+def body(
+    name: str, shape: Shape, at: tuple[float, float, float], *, movable: bool = True, **more: object
+) -> Body:
     """A body of one part at a position, upright."""
     return Body(name, (Part(shape),), Pose(at), movable, **more)  # type: ignore[arg-type]
 
@@ -42,10 +44,15 @@ def crate(name: str = "crate", at: tuple[float, float] = (2.0, 0.0)) -> Body:
     return body(name, Box((0.4, 0.4, 0.02)), (*at, 0.01), movable=False, cavities=(inside,))
 
 
-def scene(*bodies: Body, base: tuple[float, float, float] = (0.0, -2.0, 0.0), half: float = 3.0) -> Scene:
+def scene(
+    *bodies: Body, base: tuple[float, float, float] = (0.0, -2.0, 0.0), half: float = 3.0
+) -> Scene:
     """A square room of `half` metres each way with those bodies in it."""
     return Scene(
-        "made", {one.name: one for one in bodies}, RobotStart("panda_mobile", base), Room((-half, half), (-half, half))
+        "made",
+        {one.name: one for one in bodies},
+        RobotStart("panda_mobile", base),
+        Room((-half, half), (-half, half)),
     )
 
 
@@ -69,4 +76,6 @@ def yaml(folder: Path, text: str) -> Node:
 
 def drafts(folder: Path, text: str) -> dict[str, Draft]:
     """The bodies of a YAML text, one a line as in `bodies:`, read but not placed."""
-    return {name: read_body(name, node, folder) for name, node in yaml(folder, text).mapping().items()}
+    return {
+        name: read_body(name, node, folder) for name, node in yaml(folder, text).mapping().items()
+    }

@@ -21,7 +21,11 @@ collect_ignore = [] if HAS_TORCH else TRAINING
 
 
 def pytest_report_header() -> str | None:
-    return None if HAS_TORCH else f"torch is not installed: left out in tests/grounding: {', '.join(TRAINING)}"
+    return (
+        None
+        if HAS_TORCH
+        else f"torch is not installed: left out in tests/grounding: {', '.join(TRAINING)}"
+    )
 
 
 @pytest.hookimpl(wrapper=True)

@@ -22,5 +22,7 @@ def at(form: BodyGeometry, x: float, y: float, z: float, yaw: float = 0.0) -> Pl
     return Placed(form, Pose.from_xyz_yaw(x, y, z, yaw).matrix)
 
 
-def turned(roll: float, pitch: float, yaw: float, position: tuple[float, float, float] = (0, 0, 0)) -> np.ndarray:
+def turned(
+    roll: float, pitch: float, yaw: float, position: tuple[float, float, float] = (0, 0, 0)
+) -> np.ndarray:
     return Pose.from_xyz_rpy(position, (roll, pitch, yaw)).matrix

@@ -18,13 +18,30 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_commands_with_their_words() -> None:
     made = parsed(
-        ["generate", "on", "--split", "test", "--count", "50", "--seed", "3", "--out", "d.npz", "--workers", "2"]
+        [
+            "generate",
+            "on",
+            "--split",
+            "test",
+            "--count",
+            "50",
+            "--seed",
+            "3",
+            "--out",
+            "d.npz",
+            "--workers",
+            "2",
+        ]
     )
     assert isinstance(made, Generate)
     assert (made.relation, made.split, made.count, made.seed) == ("on", "test", 50, 3)
     assert (made.out, made.workers, made.mesh_scale) == (Path("d.npz"), 2, 1.0)
     trained = parsed(["train", "inside", "--model", "flow", "--samples", "100", "--data", "d.npz"])
-    assert isinstance(trained, Train) and (trained.model, trained.samples, trained.data) == ("flow", 100, Path("d.npz"))
+    assert isinstance(trained, Train) and (trained.model, trained.samples, trained.data) == (
+        "flow",
+        100,
+        Path("d.npz"),
+    )
     judged = parsed(["evaluate", "on=surface", "--scenes", "10"])
     assert isinstance(judged, Evaluate) and (judged.weights, judged.scenes) == ("on=surface", 10)
 
@@ -32,7 +49,10 @@ def test_commands_with_their_words() -> None:
 def test_a_relation_of_ones_own_is_collected_and_trained_on_its_data(folder: Path) -> None:
     collected = parsed(["collect", "upright", "a.yaml", "b"])
     assert isinstance(collected, Collect) and collected.files == (Path("a.yaml"), Path("b"))
-    with pytest.raises(InputError, match=r"unknown relation 'upright'.*Of one's own: tamp-learn collect upright FILES"):
+    with pytest.raises(
+        InputError,
+        match=r"unknown relation 'upright'.*Of one's own: tamp-learn collect upright FILES",
+    ):
         parsed(["train", "upright"])
     assert isinstance(parsed(["train", "upright", "--data", "u.npz"]), Train)
     (folder / "data").mkdir()

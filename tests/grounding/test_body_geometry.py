@@ -40,12 +40,24 @@ def test_parts_are_forms_of_their_own() -> None:
 def test_a_scaled_form_is_what_its_scaled_parts_would_be(factor: float) -> None:
     form = geometry_of(L_SHAPE)
     scaled, anew = form.scaled(factor), BodyGeometry(form.scaled(factor).parts)
-    for name in ("corners", "vertices", "outer", "outer_box", "radius", "centre_of_mass", "piece_boxes"):
+    for name in (
+        "corners",
+        "vertices",
+        "outer",
+        "outer_box",
+        "radius",
+        "centre_of_mass",
+        "piece_boxes",
+    ):
         assert getattr(scaled, name) == pytest.approx(getattr(anew, name)), name
     assert len(scaled.faces) == len(anew.faces)
     for one, other in zip(scaled.faces, anew.faces, strict=True):
-        assert (one.height, one.extent, one.angle) == pytest.approx((other.height, other.extent, other.angle))
-        assert one.outline == pytest.approx(other.outline) and one.centre == pytest.approx(other.centre)
+        assert (one.height, one.extent, one.angle) == pytest.approx(
+            (other.height, other.extent, other.angle)
+        )
+        assert one.outline == pytest.approx(other.outline) and one.centre == pytest.approx(
+            other.centre
+        )
 
 
 def test_scaling_again_starts_from_the_unit() -> None:

@@ -31,7 +31,9 @@ def made(root: Path, tmp_path: Path) -> Made:
     """Labelled scenes in which the milk stands or lies, on the table or on the shelf."""
 
     class Proposing:
-        def propose(self, scene: object, arguments: object, count: int, rng: object) -> list[tamp.Pose]:
+        def propose(
+            self, scene: object, arguments: object, count: int, rng: object
+        ) -> list[tamp.Pose]:
             return []
 
     path = write_problem(tmp_path, "(upright milk shelf)")
@@ -47,7 +49,9 @@ def made(root: Path, tmp_path: Path) -> Made:
             x, y = rng.uniform(-0.25, 0.25), rng.uniform(-0.1, 0.1)
             yaw = rng.uniform(-np.pi, np.pi)
             turn = tamp.Pose((0, 0, 0), (0, 0, np.sin(yaw / 2), np.cos(yaw / 2)))
-            lie = tamp.Pose((0, 0, 0), (0, 0, 0, 1) if stands else (np.sqrt(0.5), 0, 0, np.sqrt(0.5)))
+            lie = tamp.Pose(
+                (0, 0, 0), (0, 0, 0, 1) if stands else (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
+            )
             height = 0.1 if stands else 0.035
             pose = scene.world_pose(surface) @ tamp.Pose((x, y, height + 0.001)) @ turn @ lie
             milk = replace(scene.bodies["milk"], pose=pose)
@@ -73,7 +77,9 @@ def test_chance_is_told_from_knowledge() -> None:
     guesses = [chance(holds, rng.random(200) < 0.5) is None for _ in range(400)]
     assert np.mean(guesses) < 0.06  # two standard errors
     rare = np.arange(200) < 20
-    assert chance(rare, rng.random(200) < 0.1) is not None  # right about 82 %, as saying no always is about 90 %
+    assert (
+        chance(rare, rng.random(200) < 0.1) is not None
+    )  # right about 82 %, as saying no always is about 90 %
     shown: list[int] = []
 
     def fit(train_rows: np.ndarray, test_rows: np.ndarray) -> np.ndarray:
@@ -97,9 +103,17 @@ def test_what_does_not_know_does_not_classify(
     count: int, kind: str, why: str | None, made: Made, tmp_path: Path
 ) -> None:
     rng = np.random.default_rng(1)
-    labels = {"stands": lambda stands: stands, "all": lambda stands: True, "chance": lambda stands: rng.random() < 0.5}
+    labels = {
+        "stands": lambda stands: stands,
+        "all": lambda stands: True,
+        "chance": lambda stands: rng.random() < 0.5,
+    }
     weights = train(made(count, labels[kind]), "transfer")
-    assert (cannot_tell(weights.card) or "") == "" if why is None else why in str(cannot_tell(weights.card))
+    assert (
+        (cannot_tell(weights.card) or "") == ""
+        if why is None
+        else why in str(cannot_tell(weights.card))
+    )
     write_weights(tmp_path / "upright.safetensors", weights)
     grounding = file_grounding("upright", tmp_path / "upright.safetensors")
     if why is None:
@@ -111,20 +125,29 @@ def test_what_does_not_know_does_not_classify(
 def test_a_tree_is_held_to_the_same(made: Made) -> None:
     rng = np.random.default_rng(1)
     assert cannot_tell(train(made(120, lambda stands: stands), "tree-bb").card) is None
-    assert "chance" in str(cannot_tell(train(made(120, lambda stands: rng.random() < 0.5), "tree-bb").card))
+    assert "chance" in str(
+        cannot_tell(train(made(120, lambda stands: rng.random() < 0.5), "tree-bb").card)
+    )
     assert "30 labels" in str(
         cannot_tell(train(made(30, lambda stands: stands), "tree-bb", TrainArgs(samples=30)).card)
     )
 
 
 def test_training_says_so_and_the_planner_refuses(
-    root: Path, made: Made, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    root: Path,
+    made: Made,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     write_dataset(tmp_path / "data.npz", made(20, lambda stands: stands))
     assert run(["train", "upright", "--data", "data.npz", "--out", "upright.safetensors"]) == DONE
     said = capsys.readouterr().err
-    assert "warning: it only proposes, and cannot tell yet where 'upright' holds: it was trained on 20 labels" in said
+    assert (
+        "warning: it only proposes, and cannot tell yet where 'upright' holds: it was trained on 20 labels"
+        in said
+    )
 
     write_domain(root, tmp_path, TESTED)
     write_problem(tmp_path, "(upright milk table)")
@@ -138,10 +161,16 @@ def test_training_says_so_and_the_planner_refuses(
     assert cli.run(line) == cli.SOLVED
     assert judge(["plan.json"]) == 0 and "holds, on trust: upright" in capsys.readouterr().out
     assert judge(["plan.json", "--sampler", "upright=upright.safetensors"]) == 2
-    assert "the classifier of 'upright' cannot tell yet: it was trained on 20" in capsys.readouterr().err
+    assert (
+        "the classifier of 'upright' cannot tell yet: it was trained on 20"
+        in capsys.readouterr().err
+    )
     write_problem(tmp_path, "(not (upright milk table))")
     assert cli.run(line) == cli.BAD_INPUT
-    assert "'upright' is unknown until a plan makes it true: its classifier cannot tell yet" in capsys.readouterr().err
+    assert (
+        "'upright' is unknown until a plan makes it true: its classifier cannot tell yet"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_learned_classifier_decides_everywhere(root: Path, made: Made, tmp_path: Path) -> None:
@@ -158,7 +187,9 @@ def test_a_learned_classifier_decides_everywhere(root: Path, made: Made, tmp_pat
         ("(upright milk shelf)", ["move", "pick", "move", "place"]),
     ):
         problem = tamp.load_problem(
-            write_problem(tmp_path, goal), samplers={"upright": str(weights)}, registry=cli.registry()
+            write_problem(tmp_path, goal),
+            samplers={"upright": str(weights)},
+            registry=cli.registry(),
         )
         assert {*problem.classifiers} == {"upright"}
         solution = tamp.solve(problem, max_time=60.0, seed=0)

@@ -38,7 +38,9 @@ def learn(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.
     def learned(line: str) -> str:
         assert run(line.split()) == DONE
         said = capsys.readouterr()
-        told = [line for line in said.err.splitlines() if not re.fullmatch(r"  .* [\d.]+ s", line)]  # how far it is
+        told = [
+            line for line in said.err.splitlines() if not re.fullmatch(r"  .* [\d.]+ s", line)
+        ]  # how far it is
         few = "warning: it only proposes, and cannot tell yet where 'on' holds: it was trained on 2"  # 20 or 24 labels
         assert "\n".join(told).startswith(few) if line.startswith("train") else told == []
         return said.out
@@ -46,7 +48,11 @@ def learn(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.
     return learned
 
 
-TRAININGS = ["--model mlp-bb --iterations 4 --scheme classifier", "--model tree-bb --samples 20", "--model transfer"]
+TRAININGS = [
+    "--model mlp-bb --iterations 4 --scheme classifier",
+    "--model tree-bb --samples 20",
+    "--model transfer",
+]
 
 
 @pytest.mark.parametrize("options", TRAININGS)
@@ -69,19 +75,31 @@ def test_models_without_weights_of_their_own(learn: Run) -> None:
     found = json.loads(learn("evaluate on=surface --scenes 6").splitlines()[-1])
     assert found["mca"] > 0.3 and found["accuracy"] > 0.6
     learn("train on --model mlp-bb --iterations 4")
-    found = json.loads(learn("evaluate weights/on_mlp-bb.safetensors --model uniform+mlp --scenes 3").splitlines()[-1])
+    found = json.loads(
+        learn("evaluate weights/on_mlp-bb.safetensors --model uniform+mlp --scenes 3").splitlines()[
+            -1
+        ]
+    )
     assert found["accuracy"] is not None
 
 
 def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     few = encoders.Args(batch=2, validation=2)
     monkeypatch.setattr(encoders, "Args", lambda seed: few)
-    assert "weights/on_encoder.safetensors written" in learn("encoder on --iterations 1 --points 64")
+    assert "weights/on_encoder.safetensors written" in learn(
+        "encoder on --iterations 1 --points 64"
+    )
     learn("train on --model tree-pc")
-    assert json.loads((folder / "weights/on_tree-pc.json").read_text())["architecture"]["features"] == 135
+    assert (
+        json.loads((folder / "weights/on_tree-pc.json").read_text())["architecture"]["features"]
+        == 135
+    )
     learn("evaluate weights/on_tree-pc.safetensors --scenes 2")
     learn("encoder on --iterations 1 --points 64 --kind dense --out weights/dense.safetensors")
-    assert run(["train", "on", "--model", "tree-pc", "--encoder", "weights/dense.safetensors"]) == BAD_INPUT
+    assert (
+        run(["train", "on", "--model", "tree-pc", "--encoder", "weights/dense.safetensors"])
+        == BAD_INPUT
+    )
 
 
 def test_an_interrupted_training_goes_on(
@@ -98,7 +116,10 @@ def test_an_interrupted_training_goes_on(
     assert capsys.readouterr().err == "interrupted\n"
     assert (folder / "weights/whole.state").is_file()
     assert run(f"{command} --seed 1".split()) == BAD_INPUT
-    assert "whole.state: the state of another training. Train from the beginning: delete" in capsys.readouterr().err
+    assert (
+        "whole.state: the state of another training. Train from the beginning: delete"
+        in capsys.readouterr().err
+    )
     monkeypatch.setattr(cli, "_show", lambda text, **_: shown.append(text))
     learn(command)
     assert shown[0] == "going on after 3 + 3 iterations"
@@ -119,7 +140,10 @@ def test_an_interrupted_training_goes_on(
         ("train on --model flow --scheme both", "model 'flow' has no scheme"),
         ("train on --model mlp-bb --scheme critic", "unknown scheme 'critic'"),
         ("train on --model mlp-bb --samples 1000", "the data set has 24 scenes, not 1,000"),
-        ("train on --model gnn-pc --encoder none.safetensors", "none.safetensors: no such weight file"),
+        (
+            "train on --model gnn-pc --encoder none.safetensors",
+            "none.safetensors: no such weight file",
+        ),
         ("train on --samples 0", "--samples must be positive, not 0"),
         ("train on --seed -1", "--seed must be between 0 and 2**63, not -1"),
         ("train on --out weights/on.bin", "the file must end in .safetensors"),
@@ -144,7 +168,11 @@ def test_an_interrupted_training_goes_on(
     ],
 )
 def test_a_mistake_is_one_line(
-    line: str, message: str, folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    line: str,
+    message: str,
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(folder)
     capsys.readouterr()

@@ -26,18 +26,24 @@ from tamp.simulation.engines import open_drops
 
 @pytest.fixture(scope="module", params=["on", "inside"])
 def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Dataset:
-    return explore(Exploration(request.param, 30), tmp_path_factory.mktemp("explored") / "small.npz", workers=1)
+    return explore(
+        Exploration(request.param, 30), tmp_path_factory.mktemp("explored") / "small.npz", workers=1
+    )
 
 
 def test_labels_are_what_happened(data: Dataset) -> None:
     items = ItemOf()
     with open_drops() as drops:
         for example in data:
-            verdict = settled(example.situation, example.situation.body.matrix[None], drops, items)[0]
+            verdict = settled(example.situation, example.situation.body.matrix[None], drops, items)[
+                0
+            ]
             assert (verdict is Verdict.HOLDS) == example.holds == (example.kind in (STAYED, RESTED))
             assert example.holds or verdict == example.kind
             pose, others = example.situation.body, Obstacles(example.situation.others)
-            assert not example.holds or (separations(pose.form, pose.matrix[None], others) > 0.0).all()
+            assert (
+                not example.holds or (separations(pose.form, pose.matrix[None], others) > 0.0).all()
+            )
     assert data.holds.tolist() == [True, False] * 15
     assert data.kinds == KINDS and sum(data.card["by type"].values()) == 30
     assert data.card["trials"] >= 30 * 12 and data.card["drawn by"] == "random"
@@ -55,7 +61,10 @@ def test_a_grounding_learned_from_it_proposes(tmp_path: Path) -> None:
     with open_drops() as drops:
         for _ in range(12):
             situation = scenes.draw(rng).situation(np.eye(4))
-            held += settled(situation, model.propose(situation, 1, rng), drops, items)[0] is Verdict.HOLDS
+            held += (
+                settled(situation, model.propose(situation, 1, rng), drops, items)[0]
+                is Verdict.HOLDS
+            )
     assert held >= 6
     again = explore(Exploration("on", 4, weights=path), tmp_path / "second.npz", workers=1)
     assert again.card["drawn by"]["model"] == "transfer" and again.card["drawn by"]["samples"] == 16
@@ -90,14 +99,25 @@ def test_poses_are_moved_rigidly_and_by_any_measure() -> None:
     rng, far = np.random.default_rng(0), []
     for _ in range(200):
         pose = moved(np.eye(4), rng)
-        assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3)) and pose[3].tolist() == [0, 0, 0, 1]
+        assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3)) and pose[3].tolist() == [
+            0,
+            0,
+            0,
+            1,
+        ]
         far.append(np.linalg.norm(pose[:3, 3]))
     assert min(far) < 0.006 and 0.2 < max(far) < 0.3 + 1e-9
 
 
-def test_same_seed_same_bytes_also_after_an_interruption(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_same_seed_same_bytes_also_after_an_interruption(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(chunks, "CHUNK", 2)
-    job, whole, resumed = Exploration("on", 4, seed=3), tmp_path / "whole.npz", tmp_path / "resumed.npz"
+    job, whole, resumed = (
+        Exploration("on", 4, seed=3),
+        tmp_path / "whole.npz",
+        tmp_path / "resumed.npz",
+    )
     explore(job, whole, workers=1)
 
     def stop(done: int, total: int) -> None:
@@ -130,5 +150,8 @@ def test_from_the_command_line(
 
 def test_fewer_scenes_are_the_first_of_more(tmp_path: Path) -> None:
     """What a chunk begins with does not depend on how many are wanted."""
-    few, more = (explore(Exploration("on", count, seed=5), tmp_path / f"{count}.npz", workers=1) for count in (2, 5))
+    few, more = (
+        explore(Exploration("on", count, seed=5), tmp_path / f"{count}.npz", workers=1)
+        for count in (2, 5)
+    )
     assert all(np.array_equal(few.arrays[name], more.arrays[name][:2]) for name in few.arrays)

@@ -43,7 +43,12 @@ GOAL = "(and (upright jar table) (not (upright can table)))"
 
 
 def scene(
-    path: Path, goal: str = GOAL, height: float = 0.7, tall: float = 0.15, yaw: float = 0, x: float = 0.3
+    path: Path,
+    goal: str = GOAL,
+    height: float = 0.7,
+    tall: float = 0.15,
+    yaw: float = 0,
+    x: float = 0.3,
 ) -> Path:
     path.write_text(SCENE.format(goal=goal, height=height, tall=tall, yaw=yaw, x=x))
     return path
@@ -52,7 +57,10 @@ def scene(
 @pytest.fixture
 def stored(tmp_path: Path) -> Path:
     """A data set of four scenes, in a file."""
-    files = [scene(tmp_path / f"{n}.yaml", height=0.6 + 0.05 * n, tall=0.1 + 0.02 * n, yaw=30 * n) for n in range(2)]
+    files = [
+        scene(tmp_path / f"{n}.yaml", height=0.6 + 0.05 * n, tall=0.1 + 0.02 * n, yaw=30 * n)
+        for n in range(2)
+    ]
     write_dataset(tmp_path / "d.npz", collect("upright", read_demonstrations("upright", files)))
     return tmp_path / "d.npz"
 
@@ -89,7 +97,10 @@ def cut(name: str) -> Callable[[Arrays], None]:
 
 
 WRONG: list[tuple[Callable[[Arrays], object], str]] = [
-    *((lambda a, n=n: a.pop(n), f"array '{n}' is missing") for n in ("holds", "pose", "part_size", "vertices")),
+    *(
+        (lambda a, n=n: a.pop(n), f"array '{n}' is missing")
+        for n in ("holds", "pose", "part_size", "vertices")
+    ),
     *(
         (cut(n), f"array '{n}' has 1 rows, 'holds' has 4")
         for n in ("pose", "body", "kind", "hollow", "size", "feasible")
@@ -100,7 +111,10 @@ WRONG: list[tuple[Callable[[Arrays], object], str]] = [
     (cast("body", float), "array 'body' holds 'float64', not integers"),
     (cast("scale", int), "array 'scale' holds 'int64', not numbers"),
     (put("holds", 0, 1), ""),
-    (lambda a: a.update(holds=np.array([0, 1, 7, 1])), "array 'holds', row 2: it is neither 0 nor 1"),
+    (
+        lambda a: a.update(holds=np.array([0, 1, 7, 1])),
+        "array 'holds', row 2: it is neither 0 nor 1",
+    ),
     (put("kind", 3, 9), "array 'kind', row 3: it is none of the card's 2 kinds"),
     (put("kind", 3, -1), "array 'kind', row 3: it is none"),
     (put("body", (1, 2), 99), "array 'body', row 1, entry 2: it is none of the card's"),
@@ -111,7 +125,10 @@ WRONG: list[tuple[Callable[[Arrays], object], str]] = [
     (put("pose", (1, 1, 0, 3), np.inf), "array 'pose', row 1, entry 1, 0, 3: it is not finite"),
     (put("pose", (1, 1, 0, 3), 1e9), "array 'pose', row 1, entry 1: it is too far away"),
     (put("pose", (1, 1), np.zeros((4, 4))), "array 'pose', row 1, entry 1: it is no pose"),
-    (put("pose", (1, 1), np.diag([1.0, 1.0, -1.0, 1.0])), "array 'pose', row 1, entry 1: it is no pose"),
+    (
+        put("pose", (1, 1), np.diag([1.0, 1.0, -1.0, 1.0])),
+        "array 'pose', row 1, entry 1: it is no pose",
+    ),
     (put("region", (0, 3, 0), 1.0), "array 'region', row 0: it is no pose"),
     (put("size", (0, 1), -1.0), "array 'size', row 0, entry 1: it is no size"),
     (put("size", (0, 2), np.nan), "array 'size', row 0, entry 2: it is not a number"),
@@ -134,7 +151,10 @@ WRONG: list[tuple[Callable[[Arrays], object], str]] = [
 
 @pytest.mark.parametrize(("change", "message"), WRONG, ids=range(len(WRONG)))
 def test_an_array_that_is_wrong_is_named_with_its_row(
-    change: Callable[[Arrays], object], message: str, stored: Path, capsys: pytest.CaptureFixture[str]
+    change: Callable[[Arrays], object],
+    message: str,
+    stored: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     changed(stored, change)
     if not message:
@@ -159,7 +179,11 @@ def test_an_array_that_is_wrong_is_named_with_its_row(
         ("templates", [1, 2], "'templates' of the card is [1, 2]"),
         ("templates", ["table", "table", "can"], "'templates' of the card has a name twice"),
         ("templates", ["table"], "array 'body'"),
-        ("templates", ["table", "can", "jar", "jar#2", "x", "y"], "template 5 of the card has no part"),
+        (
+            "templates",
+            ["table", "can", "jar", "jar#2", "x", "y"],
+            "template 5 of the card has no part",
+        ),
         ("relation", 3, "'relation' of the card is 3, not a name"),
         ("relation", "a\x1b[31m", "'relation' of the card is"),
         ("count", "4", "'count' of the card is '4'"),
@@ -183,7 +207,10 @@ CARDS = {
     "empty": (b"", "damaged"),
     "no object": (b"[1]", "not a card"),
     "deep": (b"[" * 200_000, "nested too deeply"),
-    "digits": (b'{"format": "tamp demonstrations 1", "count": ' + b"9" * 6000 + b"}", "an integer of 6000 digits"),
+    "digits": (
+        b'{"format": "tamp demonstrations 1", "count": ' + b"9" * 6000 + b"}",
+        "an integer of 6000 digits",
+    ),
     "nan": (b'{"format": "tamp demonstrations 1", "count": NaN}', "NaN"),
     "overflow": (b'{"format": "tamp demonstrations 1", "feasible": 1e999}', "not finite"),
     "latin": ('{"relation": "säge"}'.encode("latin-1"), "not UTF-8 text"),
@@ -217,7 +244,9 @@ def npz(*members: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> byte
 
 def header(shape: tuple[int, ...], kind: str = "<f8") -> bytes:
     buffer = io.BytesIO()
-    np.lib.format.write_array_header_1_0(buffer, {"descr": kind, "fortran_order": False, "shape": shape})
+    np.lib.format.write_array_header_1_0(
+        buffer, {"descr": kind, "fortran_order": False, "shape": shape}
+    )
     return buffer.getvalue()
 
 
@@ -234,11 +263,20 @@ def archives() -> dict[str, tuple[bytes, str]]:
         ),
         "overflow": (npz(("holds.npy", header((2**40, 2**40)))), "array 'holds' claims"),
         "negative": (npz(("holds.npy", header((-1, -8)) + b"0" * 64)), "array 'holds' claims"),
-        "bomb": (npz(*((f"{n}.npy", b"\0" * 50_000_000) for n in range(9))), "its arrays take 450 MB"),
-        "objects": (npz(("holds.npy", header((1,), "|O") + b"x" * 8)), "array 'holds' holds objects"),
+        "bomb": (
+            npz(*((f"{n}.npy", b"\0" * 50_000_000) for n in range(9))),
+            "its arrays take 450 MB",
+        ),
+        "objects": (
+            npz(("holds.npy", header((1,), "|O") + b"x" * 8)),
+            "array 'holds' holds objects",
+        ),
         "text": (npz(("holds.npy", header((1,), "<U2") + b"x" * 8)), "array 'holds' holds text"),
         "no array": (npz(("holds.npy", b"hello")), "array 'holds' is damaged"),
-        "code": (npz(("holds.npy", b"\x93NUMPY\x01\x00\x20\x00__import__('os').system('false')")), "array 'holds' is"),
+        "code": (
+            npz(("holds.npy", b"\x93NUMPY\x01\x00\x20\x00__import__('os').system('false')")),
+            "array 'holds' is",
+        ),
         "packed": (npz(("holds.npy", b"x"), method=zipfile.ZIP_BZIP2), "packed in a way"),
         "members": (npz(*((f"{n}.npy", b"") for n in range(200))), "more than 100 members"),
         "lies": (bytes(lies), "more than 100 members"),
@@ -268,12 +306,22 @@ def test_an_archive_that_is_none_costs_nothing(case: str) -> None:
         (struct.pack("<Q", 2) + b"[]", "its header is no object"),
         (struct.pack("<Q", 4) + b"\xff\xfe{}", "no text"),
         (struct.pack("<Q", 200_000) + b"[" * 200_000, "nested too deeply"),
-        (struct.pack("<Q", 60) + b'{"a":{"dtype":"F64","shape":[99999999999],"data_offsets":[0,9'.ljust(60), "damaged"),
         (
-            struct.pack("<Q", 59) + b'{"a":{"dtype":"BF16","shape":[1],"data_offsets":[0,2]}}    ' + b"00",
+            struct.pack("<Q", 60)
+            + b'{"a":{"dtype":"F64","shape":[99999999999],"data_offsets":[0,9'.ljust(60),
+            "damaged",
+        ),
+        (
+            struct.pack("<Q", 59)
+            + b'{"a":{"dtype":"BF16","shape":[1],"data_offsets":[0,2]}}    '
+            + b"00",
             "of type 'BF16'",
         ),
-        (struct.pack("<Q", 65) + b'{"a":{"dtype":"F64","shape":[99999999],"data_offsets":[0,800]}}  ', "damaged"),
+        (
+            struct.pack("<Q", 65)
+            + b'{"a":{"dtype":"F64","shape":[99999999],"data_offsets":[0,800]}}  ',
+            "damaged",
+        ),
     ],
 )
 def test_weights_that_claim_what_is_not_there(content: bytes, message: str, tmp_path: Path) -> None:
@@ -315,7 +363,9 @@ def test_a_card_of_another_file_is_found_out(stored: Path, tmp_path: Path) -> No
         read_dataset(path)
     write_dataset(path, data.take([1, 0, 2, 3]))
     path.with_suffix(".json").write_bytes(stored.with_suffix(".json").read_bytes())
-    with pytest.raises(InputError, match=r"d.json: d.npz and its card do not belong together.*take 'sha256' out"):
+    with pytest.raises(
+        InputError, match=r"d.json: d.npz and its card do not belong together.*take 'sha256' out"
+    ):
         read_dataset(path)
     weights = [tmp_path / f"{name}.safetensors" for name in "ab"]
     for number, file in enumerate(weights):
@@ -342,7 +392,10 @@ def test_who_is_killed_leaves_the_old_pair_or_the_new(
     steps: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "w.safetensors"
-    old, new = (Weights({"x": np.full(3, value)}, {"model": name}) for value, name in ((1.0, "old"), (2.0, "new")))
+    old, new = (
+        Weights({"x": np.full(3, value)}, {"model": name})
+        for value, name in ((1.0, "old"), (2.0, "new"))
+    )
     write_weights(path, old)
     left = steps
     replace, write = Path.replace, pair.write_whole
@@ -429,7 +482,9 @@ def test_contradicting_rows_are_warned_of(stored: Path, capsys: pytest.CaptureFi
     out = stored.with_name("w.safetensors")
     assert run(["train", "upright", "--data", str(stored), "--out", str(out)]) == DONE
     said = capsys.readouterr().err
-    assert f"{stored}: array 'holds', rows 0 and 4 are the same situation, labelled both ways" in said
+    assert (
+        f"{stored}: array 'holds', rows 0 and 4 are the same situation, labelled both ways" in said
+    )
 
 
 def demonstrations(folder: Path, count: int = 6, goal: str = GOAL, **same: float) -> Dataset:
@@ -449,7 +504,9 @@ def demonstrations(folder: Path, count: int = 6, goal: str = GOAL, **same: float
         ({"tall": 0.15}, "the size of the body (m) is the same (0.05, 0.06, 0.15)"),
     ],
 )
-def test_what_is_the_same_in_all_is_warned_of(same: dict[str, float], words: str, tmp_path: Path) -> None:
+def test_what_is_the_same_in_all_is_warned_of(
+    same: dict[str, float], words: str, tmp_path: Path
+) -> None:
     warned = monotony(demonstrations(tmp_path, **same))
     assert any(words in text for text in warned), warned
     assert len(warned) == 2  # the table's sides are the same, too
@@ -491,4 +548,7 @@ def test_a_demonstration_that_hangs_is_warned_of_with_its_place(
     path.write_text(path.read_text().replace("on: table, at: [-0.3, 0.1]", "at: [1.3, 0.1, 0.9]"))
     assert run(["collect", "upright", str(path), "--out", str(tmp_path / "x.npz")]) == DONE
     said = capsys.readouterr().err
-    assert f"warning: {path}:7:7: jar hangs 125 mm above the place (1 scene): no plan will put it down so" in said
+    assert (
+        f"warning: {path}:7:7: jar hangs 125 mm above the place (1 scene): no plan will put it down so"
+        in said
+    )

@@ -19,7 +19,9 @@ from tamp.simulation.engines import open_drops
 
 @pytest.fixture(scope="module", params=["on", "inside"])
 def data(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Dataset:
-    return generate(Job(request.param, "train", 40), tmp_path_factory.mktemp("data") / "small.npz", workers=1)
+    return generate(
+        Job(request.param, "train", 40), tmp_path_factory.mktemp("data") / "small.npz", workers=1
+    )
 
 
 def test_labels_are_what_physics_says(data: Dataset) -> None:
@@ -37,18 +39,28 @@ def test_kinds_have_the_papers_shares() -> None:
     for relation, shares in KINDS.items():
         kinds = kinds_of(relation, 400)
         assert sum(shares.values()) == pytest.approx(1.0)
-        assert {kind: kinds.count(kind) / 400 for kind in shares} == pytest.approx(shares, abs=0.005)
+        assert {kind: kinds.count(kind) / 400 for kind in shares} == pytest.approx(
+            shares, abs=0.005
+        )
 
 
 def test_training_and_test_share_no_body(data: Dataset, tmp_path: Path) -> None:
     test = generate(Job(data.relation, "test", 4), tmp_path / "test.npz", workers=1)
     for card in ("objects", "supports"):
-        assert data.card[card] and test.card[card] and not set(data.card[card]) & set(test.card[card])
+        assert (
+            data.card[card] and test.card[card] and not set(data.card[card]) & set(test.card[card])
+        )
 
 
-def test_same_seed_same_bytes_also_after_an_interruption(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_same_seed_same_bytes_also_after_an_interruption(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(module, "CHUNK", 4)
-    job, whole, resumed = Job("on", "train", 8, seed=3), tmp_path / "whole.npz", tmp_path / "resumed.npz"
+    job, whole, resumed = (
+        Job("on", "train", 8, seed=3),
+        tmp_path / "whole.npz",
+        tmp_path / "resumed.npz",
+    )
     generate(job, whole, workers=1)
 
     def stop(done: int, total: int) -> None:
@@ -62,7 +74,10 @@ def test_same_seed_same_bytes_also_after_an_interruption(tmp_path: Path, monkeyp
     generate(job, resumed, workers=1, progress=lambda done, total: seen.append(done))
     assert seen == [4, 8] and whole.read_bytes() == resumed.read_bytes()
     again = read_dataset(whole)
-    assert all(np.array_equal(again.arrays[name], read_dataset(resumed).arrays[name]) for name in again.arrays)
+    assert all(
+        np.array_equal(again.arrays[name], read_dataset(resumed).arrays[name])
+        for name in again.arrays
+    )
 
 
 def test_a_damaged_data_set_is_refused(data: Dataset, tmp_path: Path) -> None:
@@ -81,7 +96,9 @@ def test_separations_never_promise_too_much(data: Dataset) -> None:
     with open_drops() as drops:
         for example in data:
             situation, pose = example.situation, example.situation.body.matrix
-            drops.set_up(items(situation.body.form), [(items(o.form), o.matrix) for o in situation.others])
+            drops.set_up(
+                items(situation.body.form), [(items(o.form), o.matrix) for o in situation.others]
+            )
             bounds = separations(situation.body.form, pose[None], Obstacles(situation.others))[0]
             for contact in drops.contacts(pose, 0.05):
                 if contact.obstacle >= 0 and contact.distance > 0.0:

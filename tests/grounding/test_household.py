@@ -51,13 +51,17 @@ def test_what_is_hollow_has_room_inside(name: str) -> None:
         vertices, triangles = part_mesh(part)
         a, b, c = vertices[triangles].transpose(1, 0, 2)
         normals = np.cross(b - a, c - a)
-        assert (np.einsum("ij,ij->i", normals, top - a) > 0.0).any()  # the point is beyond one of its faces
+        assert (
+            np.einsum("ij,ij->i", normals, top - a) > 0.0
+        ).any()  # the point is beyond one of its faces
     assert low[2] == pytest.approx(0.0, abs=1e-9)  # on its foot
 
 
 def test_a_bottles_neck_is_above_its_shoulder() -> None:
     body, shoulder, neck = SHAPES["bottle"](np.random.default_rng(2))
-    (_, top), (low, high), (bottom, _) = (bounds((part,), Pose()) for part in (body, shoulder, neck))
+    (_, top), (low, high), (bottom, _) = (
+        bounds((part,), Pose()) for part in (body, shoulder, neck)
+    )
     assert top[2] == pytest.approx(low[2]) and high[2] == pytest.approx(bottom[2])
 
 
@@ -98,5 +102,7 @@ def test_a_scaled_region_is_larger_about_its_supports_origin() -> None:
     scaled = scaled_region(region, 2.0)
     assert scaled.matrix[:3, 3] == pytest.approx(2.0 * region.matrix[:3, 3])
     assert (scaled.matrix[:3, :3] == region.matrix[:3, :3]).all()
-    assert scaled.size == pytest.approx(2.0 * region.size) and scaled.box == pytest.approx(2.0 * region.box)
+    assert scaled.size == pytest.approx(2.0 * region.size) and scaled.box == pytest.approx(
+        2.0 * region.box
+    )
     assert scaled.hollow

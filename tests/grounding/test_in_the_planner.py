@@ -24,7 +24,9 @@ def weights(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_file_serves_a_relation(weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_serves_a_relation(
+    weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan = tmp_path / "plan.json"
     line = f"one_object --sampler on={weights}:alone --time 30 --quiet --verify --out {plan}"
     assert cli.run(line.split()) == cli.SOLVED, capsys.readouterr()
@@ -49,10 +51,15 @@ def test_a_problem_names_files_from_where_it_is(weights: Path, root: Path, tmp_p
         ("inside={}", "mine.safetensors: these are weights for 'on', not 'inside'"),
         ("on=none.safetensors", "none.safetensors: no such weight file"),
         ("on={}:alnoe", "unknown sampler"),
-        ("lying=fast", "unknown relation 'lying'. Choices: on, inside. Of one's own: lying=FILE.safetensors"),
+        (
+            "lying=fast",
+            "unknown relation 'lying'. Choices: on, inside. Of one's own: lying=FILE.safetensors",
+        ),
     ],
 )
-def test_what_is_wrong_is_said(choice: str, message: str, weights: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_wrong_is_said(
+    choice: str, message: str, weights: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert cli.run(["one_object", "--sampler", choice.format(weights)]) == cli.BAD_INPUT
     assert message in capsys.readouterr().err
 
@@ -61,7 +68,9 @@ def test_a_learned_grounding_says_what_it_takes(weights: Path) -> None:
     scene = tamp.load_problem("two_objects").scene
     grounding, bodies = load_grounding(weights), list(scene.movable)
     for arguments in (bodies[:2], ["nobody", "table"]):
-        with pytest.raises(tamp.InputError, match=f"a surface or container: not .{', '.join(arguments)}.") as raised:
+        with pytest.raises(
+            tamp.InputError, match=f"a surface or container: not .{', '.join(arguments)}."
+        ) as raised:
             grounding.propose(scene, arguments, 1, np.random.default_rng(0))
         assert "takes a body" in str(raised.value)
 

@@ -65,7 +65,9 @@ def test_data_are_made_with_it(folder: Path, tmp_path: Path) -> None:
     own = MeshFolder(folder)
     data = generate(Job("on", "train", 4, folder=own), tmp_path / "own.npz", workers=1)
     assert {"003_cracker_box", "ring"} <= {*data.card["objects"]}
-    assert json.loads((tmp_path / "own.json").read_text())["objects"][-4:] == [*read_folder(own).templates]
+    assert json.loads((tmp_path / "own.json").read_text())["objects"][-4:] == [
+        *read_folder(own).templates
+    ]
 
 
 def test_a_changed_mesh_makes_another_job(folder: Path) -> None:
@@ -76,7 +78,9 @@ def test_a_changed_mesh_makes_another_job(folder: Path) -> None:
     assert before != Job("on", "train", 4, folder=MeshFolder(folder)).key
 
 
-def test_a_mesh_that_is_not_watertight_is_repaired_and_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_mesh_that_is_not_watertight_is_repaired_and_said(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     open_box = box()
     open_box.update_faces(np.arange(len(open_box.faces)) > 1)
     put(folder, "open/open.stl", open_box)
@@ -86,13 +90,18 @@ def test_a_mesh_that_is_not_watertight_is_repaired_and_said(folder: Path, capsys
     assert "open.stl" in warning and "is not watertight (4 open edges): they were closed" in warning
 
 
-def test_millimetres_are_seen_and_mended_by_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_millimetres_are_seen_and_mended_by_an_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     put(tmp_path, "mm/box/box.stl", box((60.0, 80.0, 100.0)))
     line = ["generate", "on", "--count", "2", "--workers", "1", "--meshes", str(tmp_path / "mm")]
     line += ["--out", str(tmp_path / "x.npz")]
     assert run(line) == BAD_INPUT
     said = capsys.readouterr().err
-    assert "box.stl: the mesh 'box.stl' is 60 x 80 x 100 m large" in said and "say --mesh-scale 0.001" in said
+    assert (
+        "box.stl: the mesh 'box.stl' is 60 x 80 x 100 m large" in said
+        and "say --mesh-scale 0.001" in said
+    )
     assert run([*line, "--mesh-scale", "0.001"]) == DONE
     assert json.loads((tmp_path / "x.json").read_text())["objects"][-1] == "box"
     assert run([*line, "--mesh-scale", "0"]) == BAD_INPUT
@@ -103,13 +112,18 @@ def test_what_no_hand_moves_is_left_out_with_a_warning(folder: Path, tmp_path: P
     put(folder, "wardrobe/wardrobe.obj", box((0.8, 0.5, 1.9)))
     loaded = read_folder(MeshFolder(folder))
     assert "wardrobe" not in loaded.templates
-    assert "wardrobe.obj: left out, it is 1.9 m large, and not between 0.02 and 0.28 m" in loaded.warnings[0]
+    assert (
+        "wardrobe.obj: left out, it is 1.9 m large, and not between 0.02 and 0.28 m"
+        in loaded.warnings[0]
+    )
     put(tmp_path / "large", "wardrobe.obj", box((0.8, 0.5, 1.9)))
     with pytest.raises(InputError, match="none of its meshes can be used"):
         read_folder(MeshFolder(tmp_path / "large"))
 
 
-def test_what_is_no_mesh_is_one_line(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_no_mesh_is_one_line(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for name, content in {
         "broken.obj": b"v 1 2\nf 1 2 3\n",
         "broken.stl": b"\x00\x01",
@@ -118,10 +132,19 @@ def test_what_is_no_mesh_is_one_line(folder: Path, tmp_path: Path, capsys: pytes
         place = tmp_path / name.replace(".", "_") / "thing"
         place.mkdir(parents=True)
         (place / name).write_bytes(content)
-        assert run(["explore", "on", "--meshes", str(place.parent), "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+        assert (
+            run(["explore", "on", "--meshes", str(place.parent), "--out", str(tmp_path / "x.npz")])
+            == BAD_INPUT
+        )
         said = capsys.readouterr().err
         assert said.startswith("error: ") and said.count("\n") == 1 and name in said
     (tmp_path / "nothing").mkdir()
-    for place, message in ((tmp_path / "nothing", "no meshes in this folder"), (tmp_path / "none", "no such folder")):
-        assert run(["generate", "on", "--meshes", str(place), "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+    for place, message in (
+        (tmp_path / "nothing", "no meshes in this folder"),
+        (tmp_path / "none", "no such folder"),
+    ):
+        assert (
+            run(["generate", "on", "--meshes", str(place), "--out", str(tmp_path / "x.npz")])
+            == BAD_INPUT
+        )
         assert message in capsys.readouterr().err

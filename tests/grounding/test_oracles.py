@@ -48,7 +48,9 @@ def inside() -> RelationScene:
     box = np.array([[-0.2, -0.15, 0.0], [0.2, 0.15, 0.2]])
     region = Region(True, at(0, 0, 0.02), np.array([0.36, 0.26, 0.18]), box)
     others = (Placed(BRICK, at(0.1, 0, 0.04)),)
-    return RelationScene(Placed(BodyGeometry(WALLS), np.eye(4)), region, Placed(BRICK, at(0, 0, 1.0)), others)
+    return RelationScene(
+        Placed(BodyGeometry(WALLS), np.eye(4)), region, Placed(BRICK, at(0, 0, 1.0)), others
+    )
 
 
 ON = [
@@ -77,7 +79,9 @@ CASES = [("on", *case) for case in ON] + [("inside", *case) for case in INSIDE]
 
 
 @pytest.mark.parametrize(("relation", "pose", "paper", "physics"), CASES)
-def test_each_failure_has_its_name(relation: str, pose: np.ndarray, paper: Verdict, physics: Verdict) -> None:
+def test_each_failure_has_its_name(
+    relation: str, pose: np.ndarray, paper: Verdict, physics: Verdict
+) -> None:
     situation = SCENES[relation]
     assert paper_verdicts(situation, pose[None]) == [paper]
     assert paper_oracle(situation, pose[None]).tolist() == [paper is Verdict.HOLDS]

@@ -55,9 +55,14 @@ def test_goals_say_what_holds(tmp_path: Path) -> None:
     assert data.relation == "stacked" and data.holds.tolist() == [True, False]
     write_dataset(tmp_path / "stacked.npz", data)
     again = read_dataset(tmp_path / "stacked.npz")
-    assert [example.names for example in again] == [("tray", "can", "table", "jar"), ("table", "jar", "tray", "can")]
+    assert [example.names for example in again] == [
+        ("tray", "can", "table", "jar"),
+        ("table", "jar", "tray", "can"),
+    ]
     situation = again[0].situation
-    assert np.allclose(situation.T_world_region, first.scene.world_pose(first.scene.surfaces["tray_top"]).matrix)
+    assert np.allclose(
+        situation.T_world_region, first.scene.world_pose(first.scene.surfaces["tray_top"]).matrix
+    )
     assert np.allclose(situation.body.matrix, first.scene.bodies["can"].pose.matrix)
 
 
@@ -72,9 +77,13 @@ def test_bodies_of_one_name_and_two_shapes_are_told_apart(tmp_path: Path) -> Non
     assert {"jar", "jar#2", "table"} <= {*data.templates} and len(data.templates) == 5
 
 
-def test_what_would_not_stay_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_would_not_stay_is_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = scene(tmp_path, "(and (stacked can tray_top) (stacked jar table))")
-    path.write_text(path.read_text().replace("at: [-0.3, 0.1]", "at: [-0.3, 0.1], rpy: [90 deg, 0 deg, 0 deg]"))
+    path.write_text(
+        path.read_text().replace("at: [-0.3, 0.1]", "at: [-0.3, 0.1], rpy: [90 deg, 0 deg, 0 deg]")
+    )
     assert run(["collect", "stacked", str(path), "--out", str(tmp_path / "x.npz")]) == DONE
     said = capsys.readouterr().err.splitlines()
     face = f"warning: {path}:9:35: jar stands on none of its stable faces (1 scene): no plan will put it down so"
@@ -94,7 +103,10 @@ def test_what_would_not_stay_is_warned_of(tmp_path: Path, capsys: pytest.Capture
 def test_what_is_wrong_with_a_demonstration(
     goal: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(["collect", "stacked", str(scene(tmp_path, goal)), "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+    assert (
+        run(["collect", "stacked", str(scene(tmp_path, goal)), "--out", str(tmp_path / "x.npz")])
+        == BAD_INPUT
+    )
     assert message in capsys.readouterr().err
 
 
@@ -114,29 +126,48 @@ def test_there_must_be_demonstrations(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_what_lies_is_learned_from_a_dozen_demonstrations(kitchen: Path, tmp_path: Path) -> None:
     """The milk stands at the start, and `on` would mostly leave it so; every proposal lays it down."""
     weights = tmp_path / "lying.safetensors"
-    write_weights(weights, train(collect("lying", read_demonstrations("lying", [kitchen / "lying"])), "transfer"))
+    write_weights(
+        weights,
+        train(collect("lying", read_demonstrations("lying", [kitchen / "lying"])), "transfer"),
+    )
     lying = load_grounding(weights)
     problem = tamp.load_problem(
-        kitchen / "kitchen.yaml", groundings={"lying": lying, "near": python_grounding(kitchen / "near.py")}
+        kitchen / "kitchen.yaml",
+        groundings={"lying": lying, "near": python_grounding(kitchen / "near.py")},
     )
     poses = lying.propose(problem.scene, ("milk", "sideboard"), 16, np.random.default_rng(0))
     faces = problem.context.stable_faces("milk")
     T_world_region = problem.scene.world_pose(problem.scene.region("sideboard"))
-    placed = [one if isinstance(one, Pose) else placed_pose(faces, one, T_world_region) for one in poses]
+    placed = [
+        one if isinstance(one, Pose) else placed_pose(faces, one, T_world_region) for one in poses
+    ]
     assert len(placed) == 16 and all(abs(pose.matrix[2, 2]) < 0.05 for pose in placed)
 
 
 def test_both_from_the_command_line(
-    kitchen: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    kitchen: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(["collect", "lying", str(kitchen / "lying")]) == DONE
-    assert "data/lying_train.npz written: 14 scenes, {'holds': 12, 'does not hold': 2}" in capsys.readouterr().out
+    assert (
+        "data/lying_train.npz written: 14 scenes, {'holds': 12, 'does not hold': 2}"
+        in capsys.readouterr().out
+    )
     assert run(["train", "lying"]) == DONE
     line = [str(kitchen / "kitchen.pddl"), str(kitchen / "kitchen.yaml"), "--time", "30", "--quiet"]
-    assert cli.run([*line, "--sampler", "lying=weights/lying_transfer.safetensors"]) == cli.BAD_INPUT
+    assert (
+        cli.run([*line, "--sampler", "lying=weights/lying_transfer.safetensors"]) == cli.BAD_INPUT
+    )
     assert "Give 'near' a grounding: --sampler near=FILE" in capsys.readouterr().err
-    line += ["--sampler", "lying=weights/lying_transfer.safetensors", "--sampler", f"near={kitchen / 'near.py'}"]
+    line += [
+        "--sampler",
+        "lying=weights/lying_transfer.safetensors",
+        "--sampler",
+        f"near={kitchen / 'near.py'}",
+    ]
     assert cli.run(line) == cli.SOLVED, capsys.readouterr()
     assert verify(json.loads(Path("plan.json").read_text())).holds
 
@@ -151,21 +182,35 @@ def executed(line: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
 
 
 def test_execution_and_planning_anew(
-    kitchen: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    kitchen: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A relation of one's own holds where the plan put its bodies, and no longer when they are pushed away."""
     monkeypatch.chdir(tmp_path)
     for line in (f"collect lying {kitchen / 'lying'}", "train lying"):
         assert run(line.split()) == DONE
-    samplers = f"--sampler lying=weights/lying_transfer.safetensors --sampler near={kitchen / 'near.py'}"
+    samplers = (
+        f"--sampler lying=weights/lying_transfer.safetensors --sampler near={kitchen / 'near.py'}"
+    )
     solve = f"{kitchen / 'kitchen.pddl'} {kitchen / 'kitchen.yaml'} --time 30 --quiet {samplers}"
     assert cli.run(solve.split()) == cli.SOLVED
     code, said = executed("plan.json --grasp constraint", capsys)
-    assert code == 0 and "(lying milk sideboard) holds" in said and "(near can mug) holds" in said, said
+    assert (
+        code == 0 and "(lying milk sideboard) holds" in said and "(near can mug) holds" in said
+    ), said
     code, said = executed("plan.json --grasp constraint --disturb object-moved", capsys)
-    assert code == 1 and "(lying milk sideboard) does not hold: milk is not where the plan put it" in said, said
+    assert (
+        code == 1
+        and "(lying milk sideboard) does not hold: milk is not where the plan put it" in said
+    ), said
     code, said = executed("plan.json --replan", capsys)
-    assert code == 2 and "'near' needs the object in Python" in said and "--sampler near=FILE.py" in said
+    assert (
+        code == 2
+        and "'near' needs the object in Python" in said
+        and "--sampler near=FILE.py" in said
+    )
     again = f"plan.json --grasp constraint --disturb object-moved --replan --sampler near={kitchen / 'near.py'}"
     code, said = executed(again, capsys)
     assert code == 0 and "Goal reached" in said, said
@@ -207,7 +252,10 @@ def test_a_generator_sees_the_pose_that_the_stream_names(kitchen: Path, tmp_path
     [
         (None, "no such file"),
         ("grounding = ", "mine.py:1: it cannot be run: SyntaxError"),
-        ("import nothing_there", "it cannot be run: ModuleNotFoundError: No module named 'nothing_there'"),
+        (
+            "import nothing_there",
+            "it cannot be run: ModuleNotFoundError: No module named 'nothing_there'",
+        ),
         ("x = 1", "it defines no 'grounding'"),
         ("grounding = 1", "'grounding' has neither propose nor classify"),
         ("class grounding:\n    def propose(self): ...", "'grounding' is a class, not an object"),

@@ -29,12 +29,16 @@ def corners(pose: np.ndarray) -> np.ndarray:
     return FORM.vertices @ pose[:3, :3].T + pose[:3, 3]
 
 
-def rests(size: np.ndarray, overhang: bool, rng: np.random.Generator, count: int = 200) -> list[np.ndarray]:
+def rests(
+    size: np.ndarray, overhang: bool, rng: np.random.Generator, count: int = 200
+) -> list[np.ndarray]:
     found = [random_rest(FORM, size, overhang, rng) for _ in range(count)]
     return [pose for pose in found if pose is not None]
 
 
-def test_at_rest_its_lowest_points_are_a_contacts_gap_above_the_region(rng: np.random.Generator) -> None:
+def test_at_rest_its_lowest_points_are_a_contacts_gap_above_the_region(
+    rng: np.random.Generator,
+) -> None:
     for pose in rests(SIZE, False, rng):
         low = np.sort(corners(pose)[:, 2])
         assert low[:4] == pytest.approx(np.full(4, CONTACT_GAP))  # a whole side of the box

@@ -43,7 +43,9 @@ def test_every_name_ships(relation: str, name: str) -> None:
         card = read_weights(shipped_weights(relation, name)).card
         assert card["relation"] == relation
         assert card["commit"] and card["data"]["split"] == "train"
-        assert card.get("scheme", "both") == (name.rpartition("-")[2] if name in TRAINING_VARIANTS else "both")
+        assert card.get("scheme", "both") == (
+            name.rpartition("-")[2] if name in TRAINING_VARIANTS else "both"
+        )
 
 
 def test_what_ships_is_small() -> None:
@@ -52,9 +54,15 @@ def test_what_ships_is_small() -> None:
 
 def test_weights_that_do_not_ship(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "SHIPPED", tmp_path)
-    with pytest.raises(InputError, match=r"tamp-learn train inside --model gnn-bb --out .*inside_gnn-bb\.safetensors"):
+    with pytest.raises(
+        InputError,
+        match=r"tamp-learn train inside --model gnn-bb --out .*inside_gnn-bb\.safetensors",
+    ):
         shipped_model("inside", "uniform+gnn")
-    with pytest.raises(InputError, match=r"train on --model mlp-bb --scheme classifier --out .*on_mlp-bb-classifier"):
+    with pytest.raises(
+        InputError,
+        match=r"train on --model mlp-bb --scheme classifier --out .*on_mlp-bb-classifier",
+    ):
         shipped_model("on", "mlp-bb-classifier")
     with pytest.raises(InputError, match="Did you mean 'uniform'"):
         shipped_model("on", "unifrom")
@@ -68,12 +76,24 @@ def test_weights_that_do_not_ship(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     [
         {},
         {"x": np.zeros(3)},
-        {f"{part}.main.0.{key}": np.zeros((38,)) for part in ("classifier", "generator") for key in ("weight", "bias")},
-        {f"tree.{key}": np.zeros(19) for key in ("feature", "threshold", "left", "right", "positive", "low", "high")},
-        {name: np.zeros((2, 2)) for name in ("coordinates", "faces", "sizes", "rank.pose.0.weight")},
+        {
+            f"{part}.main.0.{key}": np.zeros((38,))
+            for part in ("classifier", "generator")
+            for key in ("weight", "bias")
+        },
+        {
+            f"tree.{key}": np.zeros(19)
+            for key in ("feature", "threshold", "left", "right", "positive", "low", "high")
+        },
+        {
+            name: np.zeros((2, 2))
+            for name in ("coordinates", "faces", "sizes", "rank.pose.0.weight")
+        },
     ],
 )
-def test_garbage_is_refused_in_one_line(tmp_path: Path, name: str, arrays: dict[str, np.ndarray]) -> None:
+def test_garbage_is_refused_in_one_line(
+    tmp_path: Path, name: str, arrays: dict[str, np.ndarray]
+) -> None:
     path = tmp_path / "some.safetensors"
     write_weights(path, Weights(arrays, {"model": name, "relation": "on"}))
     with pytest.raises(InputError, match="some") as caught:
@@ -84,13 +104,19 @@ def test_garbage_is_refused_in_one_line(tmp_path: Path, name: str, arrays: dict[
 @pytest.mark.parametrize(
     ("trained", "wanted", "message"),
     [
-        ("mlp-bb", "uniform+gnn", "these are weights of 'mlp-bb'; 'uniform\\+gnn' is not made of them"),
+        (
+            "mlp-bb",
+            "uniform+gnn",
+            "these are weights of 'mlp-bb'; 'uniform\\+gnn' is not made of them",
+        ),
         ("flow", "uniform", "these are weights of 'flow'; 'uniform' is not made of them"),
         ("mlp-bb", "uniform+mpl", "Did you mean 'uniform\\+mlp'"),
         ("encoder", None, "unknown model 'encoder'"),
     ],
 )
-def test_weights_of_something_else(tmp_path: Path, trained: str, wanted: str | None, message: str) -> None:
+def test_weights_of_something_else(
+    tmp_path: Path, trained: str, wanted: str | None, message: str
+) -> None:
     path = tmp_path / "some.safetensors"
     write_weights(path, Weights({}, {"model": trained, "relation": "on"}))
     with pytest.raises(InputError, match=message):

@@ -35,14 +35,19 @@ def test_the_only_cavity_of_a_container_has_all_of_it_around() -> None:
 def test_of_several_cavities_each_has_its_own_box() -> None:
     double = crate()
     second = type(double.cavities[0])("upper", "crate", double.cavities[0].pose, (0.4, 0.2, 0.25))
-    region = region_of(type(double)(**{**vars(double), "cavities": (double.cavities[0], second)}), second)
+    region = region_of(
+        type(double)(**{**vars(double), "cavities": (double.cavities[0], second)}), second
+    )
     assert region.box == pytest.approx(np.array([[-0.2, -0.1, 0.01], [0.2, 0.1, 0.26]]))
 
 
 def test_others_are_those_within_a_metre_of_an_argument() -> None:
     support, cup = at(box(1, 1, 1), 0, 0, 0), at(can(0.05, 0.1), 3.0, 0, 0)
     region = relation_scene_of(SCENE, ("cup", "table")).region
-    others = [at(box(0.2, 0.2, 0.2), x, 0, 0) for x in (0.5 + SURROUNDINGS, 0.7 + SURROUNDINGS, 2.0 + SURROUNDINGS, 9)]
+    others = [
+        at(box(0.2, 0.2, 0.2), x, 0, 0)
+        for x in (0.5 + SURROUNDINGS, 0.7 + SURROUNDINGS, 2.0 + SURROUNDINGS, 9)
+    ]
     found = near(support, region, cup, others)
     # The second is 1.1 m from the support, and 1.15 m from the cup; the third is at the cup.
     assert found.others == (others[0], others[2])
@@ -58,12 +63,18 @@ def test_the_two_arguments_are_none_of_the_others() -> None:
 def test_the_body_may_be_seen_elsewhere() -> None:
     elsewhere = at(can(0.04, 0.1), 5.0, 5.0, 0.05).matrix
     assert (relation_scene_of(SCENE, ("cup", "table"), elsewhere).body.matrix == elsewhere).all()
-    assert relation_scene_of(SCENE, ("cup", "table")).body.matrix[:3, 3] == pytest.approx([0.2, 0.1, 0.551])
+    assert relation_scene_of(SCENE, ("cup", "table")).body.matrix[:3, 3] == pytest.approx(
+        [0.2, 0.1, 0.551]
+    )
 
 
-@pytest.mark.parametrize("arguments", [("table", "cup"), ("cup", "crate"), ("ghost", "table"), ("cup", "ghost")])
+@pytest.mark.parametrize(
+    "arguments", [("table", "cup"), ("cup", "crate"), ("ghost", "table"), ("cup", "ghost")]
+)
 def test_other_arguments_are_refused(arguments: tuple[str, str]) -> None:
-    with pytest.raises(InputError, match=f"takes a body, and a surface or container: not .{', '.join(arguments)}."):
+    with pytest.raises(
+        InputError, match=f"takes a body, and a surface or container: not .{', '.join(arguments)}."
+    ):
         relation_scene_of(SCENE, arguments)
 
 

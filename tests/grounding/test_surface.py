@@ -19,12 +19,16 @@ from tests.geometric.making import body, crate, scene, table
 STANDS = 0.5 + CONTACT_GAP + 0.1
 
 
-def with_brick(x: float = 0.2, y: float = 0.1, z: float = STANDS, roll: float = 0.0, *, beside: float = 0.0) -> Scene:
+def with_brick(
+    x: float = 0.2, y: float = 0.1, z: float = STANDS, roll: float = 0.0, *, beside: float = 0.0
+) -> Scene:
     """A brick of 0.06 x 0.1 x 0.2 m on a table half a metre high, another one `beside` metres along x."""
     brick = body("brick", Box((0.06, 0.1, 0.2)), (x, y, z))
     pose = Pose.from_xyz_rpy((x, y, z), (roll, 0.0, 0.0))
     bodies = [table(), crate(), type(brick)(**{**vars(brick), "pose": pose})]
-    return scene(*bodies, *([body("other", Box((0.06, 0.1, 0.2)), (x + beside, y, z))] if beside else []))
+    return scene(
+        *bodies, *([body("other", Box((0.06, 0.1, 0.2)), (x + beside, y, z))] if beside else [])
+    )
 
 
 def holds(made: Scene, place: str = "table") -> float:
@@ -54,7 +58,9 @@ def test_inside_is_all_of_it_within_the_walls_and_under_the_ceiling() -> None:
     floor = 0.02 + CONTACT_GAP + 0.1
     assert holds(with_brick(2.0, 0.0, floor), "crate_inside") == 1.0
     assert holds(with_brick(2.15, 0.0, floor), "crate_inside") == 1.0
-    assert holds(with_brick(2.18, 0.0, floor), "crate_inside") == 0.0  # one centimetre over the edge
+    assert (
+        holds(with_brick(2.18, 0.0, floor), "crate_inside") == 0.0
+    )  # one centimetre over the edge
     low = body("brick", Box((0.06, 0.1, 0.31)), (2.0, 0.0, 0.02 + CONTACT_GAP + 0.155))
     assert holds(scene(crate(), low), "crate_inside") == 0.0
 
@@ -85,4 +91,6 @@ def test_a_pose_near_the_region_becomes_a_placement_on_its_face() -> None:
     assert (found.x, found.y) == pytest.approx((0.2, 0.1))
     high = Pose((0.2, 0.1, 2.0))
     assert laid(made, ("brick", "table"), rotation, high.matrix) == high
-    assert laid(made, ("brick", "table"), np.eye(3)[[1, 2, 0]] * 0.5, pose.matrix) == Pose.from_matrix(pose.matrix)
+    assert laid(
+        made, ("brick", "table"), np.eye(3)[[1, 2, 0]] * 0.5, pose.matrix
+    ) == Pose.from_matrix(pose.matrix)

@@ -21,9 +21,17 @@ COST = "(:function (Cost ?x ?p) (P ?x ?p))"
 
 
 def priced(functions: str, streams: str, **more: Callable[..., Any]) -> Solution:
-    known: dict[str, Any] = {"make": from_fn(lambda x: (x + "p",)), "Cost": lambda x, p: 2.0, **more}
+    known: dict[str, Any] = {
+        "make": from_fn(lambda x: (x + "p",)),
+        "Cost": lambda x, p: 2.0,
+        **more,
+    }
     texts = COSTS.format(functions=functions), f"(define (stream s) {streams})"
-    return solve(PDDLProblem(texts[0], {}, texts[1], known, [("B", "a")], ("exists", ("?p",), ("At", "a", "?p"))))
+    return solve(
+        PDDLProblem(
+            texts[0], {}, texts[1], known, [("B", "a")], ("exists", ("?p",), ("At", "a", "?p"))
+        )
+    )
 
 
 @pytest.mark.parametrize(
@@ -45,7 +53,9 @@ def test_a_function_of_the_streams_file(functions: str, note: str) -> None:
 def test_a_function_of_no_action_is_a_warning() -> None:
     solution = priced("", f"{MAKE}{COST}(:function (Duration ?x) (B ?x))", Duration=lambda x: 1.0)
     assert solution.cost == 2.0
-    assert [text for text in solution.warnings if "function 'duration' is the cost of no action" in text]
+    assert [
+        text for text in solution.warnings if "function 'duration' is the cost of no action" in text
+    ]
 
 
 TABLE = """(define (domain table) (:predicates (Thing ?o) (OnTable ?o) (Held ?o) (Free) (Done ?o))
@@ -60,9 +70,13 @@ def things() -> Iterator[tuple[str]]:
     return ((f"thing{number}",) for number in count())
 
 
-def found(goal: Any, algorithm: str, streams: str = FIND, domain: str = TABLE, **functions: Any) -> Solution:
+def found(
+    goal: Any, algorithm: str, streams: str = FIND, domain: str = TABLE, **functions: Any
+) -> Solution:
     known: dict[str, Any] = {"find": from_gen_fn(things), **functions}
-    return solve(PDDLProblem(domain, {}, streams, known, [("Free",)], goal), algorithm, max_time=20.0)
+    return solve(
+        PDDLProblem(domain, {}, streams, known, [("Free",)], goal), algorithm, max_time=20.0
+    )
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
@@ -81,7 +95,9 @@ def test_it_may_be_made_true_again_and_be_asked_to_be_false(algorithm: str) -> N
     solution = found(goal, algorithm)
     assert solution.plan is not None, solution.explanation
     assert [action.name for action in solution.plan] == ["pick", "drop"]
-    domain = TABLE.replace("(OnTable ?o) (Free) (not (Held ?o))", "(OnTable ?o) (Free) (Done ?o) (not (Held ?o))")
+    domain = TABLE.replace(
+        "(OnTable ?o) (Free) (not (Held ?o))", "(OnTable ?o) (Free) (Done ?o) (not (Held ?o))"
+    )
     both = ("exists", ("?o",), ("and", ("Done", "?o"), ("OnTable", "?o")))
     again = found(both, algorithm, domain=domain)
     assert again.plan is not None, again.explanation
@@ -124,9 +140,17 @@ PARTS: tuple[Any, ...] = (TABLE, {}, FIND, {"find": from_gen_fn(things)}, [("Fre
         (1, "debug", "constant_map: expected a dict"),
         (2, 3, "stream_pddl: expected"),
         (2, [3], "stream_pddl: expected"),
-        (3, "debug", "stream_map: expected a dict of functions by stream, found str 'debug'. tamp has no placeholder"),
+        (
+            3,
+            "debug",
+            "stream_map: expected a dict of functions by stream, found str 'debug'. tamp has no placeholder",
+        ),
         (3, None, "stream_map: expected"),
-        (3, {"find": "debug"}, r"stream_map\['find'\]: expected a function.*no placeholder streams"),
+        (
+            3,
+            {"find": "debug"},
+            r"stream_map\['find'\]: expected a function.*no placeholder streams",
+        ),
         (4, "Free", "init: expected a list"),
         (4, None, "init: expected a list"),
         (4, [3], "expected an initial fact"),
@@ -142,5 +166,7 @@ def test_parts_of_the_wrong_kind(index: int, part: Any, message: str) -> None:
 
 @pytest.mark.parametrize("problem", [PARTS[:5], (*PARTS, 1), None, "problem", 3])
 def test_a_problem_has_six_parts(problem: Any) -> None:
-    with pytest.raises(InputError, match="a problem is a tuple of 6 parts: domain_pddl, constant_map"):
+    with pytest.raises(
+        InputError, match="a problem is a tuple of 6 parts: domain_pddl, constant_map"
+    ):
         solve(problem)

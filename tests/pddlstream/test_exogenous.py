@@ -27,10 +27,15 @@ STREAMS = """
   (:stream cut :inputs (?c) :domain (Code ?c) :outputs (?k) :certified (and (Key ?k) (Turns ?k ?c))))
 """
 
-FUNCTIONS = {"read": from_fn(lambda s: (f"code of {s}",)), "cut": from_fn(lambda c: (f"key of {c}",))}
+FUNCTIONS = {
+    "read": from_fn(lambda s: (f"code of {s}",)),
+    "cut": from_fn(lambda c: (f"key of {c}",)),
+}
 
 
-def opened(algorithm: str, init: list[Any], domain: str = DOMAIN, streams: str = STREAMS) -> Solution:
+def opened(
+    algorithm: str, init: list[Any], domain: str = DOMAIN, streams: str = STREAMS
+) -> Solution:
     problem = PDDLProblem(domain, {}, streams, FUNCTIONS, [("Safe", "s"), *init], ("Open", "s"))
     return solve(problem, algorithm, max_time=20.0)
 
@@ -46,7 +51,10 @@ def test_what_has_been_true_is_enough(algorithm: str) -> None:
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_what_is_true_at_first_need_not_be_made_true(algorithm: str) -> None:
-    assert [action.name for action in opened(algorithm, [("Lit", "s")]).plan or []] == ["dim", "open"]
+    assert [action.name for action in opened(algorithm, [("Lit", "s")]).plan or []] == [
+        "dim",
+        "open",
+    ]
     known = [("Code", 7), ("Opens", 7, "s"), ("Key", 8), ("Turns", 8, 7), ("Dark", "s")]
     assert [action.args[:2] for action in opened(algorithm, known).plan or []] == [("s", 7)]
 
@@ -56,7 +64,10 @@ def test_what_never_comes_true_gives_nothing(algorithm: str) -> None:
     solution = opened(algorithm, [("Sealed", "s"), ("Dark", "s")])
     assert not solution.solved
     assert solution.outcome is Outcome.INFEASIBLE
-    assert [action.name for action in opened(algorithm, [("Dark", "s")]).plan or []] == ["light", "open"]
+    assert [action.name for action in opened(algorithm, [("Dark", "s")]).plan or []] == [
+        "light",
+        "open",
+    ]
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
@@ -68,5 +79,7 @@ def test_what_rules_derive_has_to_be_true_still(algorithm: str) -> None:
 
 def test_what_waits_cannot_be_asked_to_be_false() -> None:
     domain = DOMAIN.replace("(Dark ?s)) :effect (Open", "(not (Code ?s))) :effect (Open")
-    with pytest.raises(InputError, match=r"7:\d+: 'code' has to be false here, and its stream waits"):
+    with pytest.raises(
+        InputError, match=r"7:\d+: 'code' has to be false here, and its stream waits"
+    ):
         opened("adaptive", [], domain)

@@ -28,7 +28,9 @@ def test_equal_values_share_a_name_and_words_keep_theirs() -> None:
     assert names.of("mug") == "mug" and names.of("two words") == "v3"
     assert names.of(3) == names.of(3.0) != names.of("3")
     array = np.array([1.0, 2.0])
-    assert names.of(array) == names.of(array) != names.of(array.copy())  # what has no hash is one by identity
+    assert (
+        names.of(array) == names.of(array) != names.of(array.copy())
+    )  # what has no hash is one by identity
     assert names.values["base"] == (0.0, 1.0) and names.values["v3"] == "two words"
 
 
@@ -54,7 +56,10 @@ def test_a_made_name_does_not_take_a_constants() -> None:
         (("and", ("ready",), ("not", ("clean", "mug"))), "(and (ready) (not (clean mug)))"),
         (("imply", ("ready",), ("clean", "mug")), "(or (not (ready)) (clean mug))"),
         (("exists", "?x - body", ("on", "?x", "table")), "(exists (?x - body) (on ?x table))"),
-        (("forall", ["?x", "?y", "-", "body"], ("=", "?x", "?y")), "(forall (?x - body ?y - body) (= ?x ?y))"),
+        (
+            ("forall", ["?x", "?y", "-", "body"], ("=", "?x", "?y")),
+            "(forall (?x - body ?y - body) (= ?x ?y))",
+        ),
         (("exists", ("?x",), ("body", "?x")), "(exists (?x - object) (body ?x))"),
     ],
 )
@@ -101,7 +106,10 @@ def test_initial_facts_costs_types_and_what_nothing_asks_for() -> None:
     [
         ([("cleen", "mug")], "unknown predicate 'cleen'.*Did you mean 'clean'"),
         ([("on", "mug")], "'on' takes 2 arguments, found 1"),
-        ([("high", "mug")], "'high' is derived: its rules say where it holds, .* cannot be an initial fact"),
+        (
+            [("high", "mug")],
+            "'high' is derived: its rules say where it holds, .* cannot be an initial fact",
+        ),
         ([("=", ("weight", "mug"))], r"expected \('=', \(FUNCTION, ...\), NUMBER\)"),
         ([("=", ("weight",), 3)], "'weight' takes 1 argument, found 0"),
         (["ready"], "expected an initial fact such as"),

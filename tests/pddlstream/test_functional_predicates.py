@@ -60,7 +60,9 @@ def reached(plan: list[Action], near: set[tuple[str, str]], hot: set[str]) -> bo
             if peg in lit or peg in burnt:
                 return False
             healed = {other for other in burnt if (peg, other) not in near}
-            burnt = burnt - healed | {other for other in PEGS if (peg, other) in near and other != peg}
+            burnt = burnt - healed | {
+                other for other in PEGS if (peg, other) in near and other != peg
+            }
             lit.add(peg)
             todo -= {peg} if warm else set()
         elif peg not in lit or warm:
@@ -76,9 +78,18 @@ def test_conditions_of_effects_and_rules_needed_both_ways(algorithm: str) -> Non
     outcomes: dict[bool, int] = {True: 0, False: 0}
     for seed in range(25):
         near, hot = table(seed)
-        functions = {"near": lambda x, y, near=near: (x, y) in near, "hot": from_test(lambda x, hot=hot: x in hot)}
-        found = solve(PDDLProblem(DOMAIN, {}, STREAMS, functions, init(), GOAL), algorithm, max_time=30.0)
-        facts = [*init(), *(("Near", *pair) for pair in sorted(near)), *(("Hot", peg) for peg in sorted(hot))]
+        functions = {
+            "near": lambda x, y, near=near: (x, y) in near,
+            "hot": from_test(lambda x, hot=hot: x in hot),
+        }
+        found = solve(
+            PDDLProblem(DOMAIN, {}, STREAMS, functions, init(), GOAL), algorithm, max_time=30.0
+        )
+        facts = [
+            *init(),
+            *(("Near", *pair) for pair in sorted(near)),
+            *(("Hot", peg) for peg in sorted(hot)),
+        ]
         written = solve(PDDLProblem(DOMAIN, {}, None, {}, facts, GOAL), max_time=30.0)
         assert found.solved == written.solved, seed
         assert found.solved or found.outcome in (Outcome.INFEASIBLE, Outcome.EXHAUSTED), seed

@@ -19,7 +19,11 @@ def test_two_blocks_come_to_the_red_region(seed: int) -> None:
 def test_overlaps_and_blocks_left_behind_are_seen() -> None:
     problem = make(2, 0)
     at = {fact[1]: fact[2] for fact in problem.init if fact[0] == "AtPose"}
-    carry = [Action(name, (block, pose, None)) for block in at for name, pose in (("pick", at[block]), ("place", 6.0))]
+    carry = [
+        Action(name, (block, pose, None))
+        for block in at
+        for name, pose in (("pick", at[block]), ("place", 6.0))
+    ]
     assert not holds(carry, problem)
     carry[-1] = Action("place", ("b1", 7.2, None))
     assert holds(carry, problem)
@@ -31,4 +35,6 @@ def test_a_generator_goes_before_a_test_of_what_another_one_gives() -> None:
     solution = solve(make(4, 0), max_time=20.0)
     assert solution.solved
     assert solution.statistics["test-region"].calls <= 8
-    assert solution.effort.skeletons <= 4  # that no block is there already is learned at once, not one by one
+    assert (
+        solution.effort.skeletons <= 4
+    )  # that no block is there already is learned at once, not one by one

@@ -73,8 +73,17 @@ def test_sums_of_sums_do_not_hide_the_short_plan(algorithm: str) -> None:
     }
     init: list[Any] = [("Has", 2), ("Purse", 2), ("Price", 13)]
     for machine, stock in (("m1", 7), ("m2", 20)):
-        init += [("Machine", machine), ("Holds", machine, stock), ("Stock", stock), ("=", ("Fee", machine), 1)]
-    solution = solve(PDDLProblem(MONEY, {"@price": 13}, SUMS, functions, init, ("Done",)), algorithm, max_time=20.0)
+        init += [
+            ("Machine", machine),
+            ("Holds", machine, stock),
+            ("Stock", stock),
+            ("=", ("Fee", machine), 1),
+        ]
+    solution = solve(
+        PDDLProblem(MONEY, {"@price": 13}, SUMS, functions, init, ("Done",)),
+        algorithm,
+        max_time=20.0,
+    )
     assert solution.plan is not None
     purse = 2
     for action in solution.plan[:-1]:
@@ -96,15 +105,24 @@ LOOSE = """
 def test_loose_declarations_are_taken_as_they_are_meant() -> None:
     init: list[Any] = [("Ready", "a"), ("Ready", "b"), ("Kilometres", "a", 3)]
     init += [("=", ("Toll", *pair), 7) for pair in ("ab", "ba")]
-    loose = PDDLProblem(LOOSE, {"@elsewhere": 1}, "(define (stream none))", {"Collision": even}, init, ("Gone", "a"))
+    loose = PDDLProblem(
+        LOOSE, {"@elsewhere": 1}, "(define (stream none))", {"Collision": even}, init, ("Gone", "a")
+    )
     solution = solve(loose)
     assert [(action.name, action.args) for action in solution.plan or []] == [("leave", ("a", "b"))]
     assert solution.cost == 7
     for told in ("'near' is declared with 1", "'kilometres'", "'collision'", "'@elsewhere'"):
         assert [text for text in solution.warnings if told in text], told
-    for init_, functions, meant in (([("Raedy", "a")], {}, "ready"), ([("=", ("Tol", "a", "b"), 7)], {}, "toll")):
+    for init_, functions, meant in (
+        ([("Raedy", "a")], {}, "ready"),
+        ([("=", ("Tol", "a", "b"), 7)], {}, "toll"),
+    ):
         with pytest.raises(InputError, match=meant):
-            solve(PDDLProblem(LOOSE, {}, "(define (stream none))", functions, [*init, *init_], ("Gone", "a")))
+            solve(
+                PDDLProblem(
+                    LOOSE, {}, "(define (stream none))", functions, [*init, *init_], ("Gone", "a")
+                )
+            )
 
 
 def even(number: int) -> bool:
@@ -126,7 +144,9 @@ WAYS = """
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_wild_streams_tests_of_the_state_and_parameters_that_nothing_mentions(algorithm: str) -> None:
+def test_wild_streams_tests_of_the_state_and_parameters_that_nothing_mentions(
+    algorithm: str,
+) -> None:
     """A brick's way hits the one to its right; the tool makes no difference."""
 
     def way(brick: int) -> Iterator[WildOutput]:
@@ -134,7 +154,9 @@ def test_wild_streams_tests_of_the_state_and_parameters_that_nothing_mentions(al
         yield WildOutput([(("way", brick),)], right)
 
     functions = {"way": way, "firm": from_test(lambda fluents: len(fluents) > 0)}
-    init = [(name, brick) for brick in range(4) for name in ("Brick", "Standing")] + [("Tool", "drill")]
+    init = [(name, brick) for brick in range(4) for name in ("Brick", "Standing")] + [
+        ("Tool", "drill")
+    ]
     goal = ("and", *(("Gone", brick) for brick in range(4)))
     solution = solve(PDDLProblem(WALL, {}, WAYS, functions, init, goal), algorithm, max_time=20.0)
     assert [action.args[0] for action in solution.plan or []] == [3, 2, 1, 0]
@@ -155,7 +177,12 @@ NUMBERS = """
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_parameter_that_only_an_effect_mentions_is_drawn(algorithm: str) -> None:
-    functions = {"number": from_gen_fn(lambda: ((n,) for n in count())), "large": from_test(lambda n: n > 3)}
-    solution = solve(PDDLProblem(JUMP, {}, NUMBERS, functions, [("Ready",)], ("Done",)), algorithm, max_time=20.0)
+    functions = {
+        "number": from_gen_fn(lambda: ((n,) for n in count())),
+        "large": from_test(lambda n: n > 3),
+    }
+    solution = solve(
+        PDDLProblem(JUMP, {}, NUMBERS, functions, [("Ready",)], ("Done",)), algorithm, max_time=20.0
+    )
     assert [action.name for action in solution.plan or []] == ["jump", "finish"]
     assert {action.args[0] > 3 for action in solution.plan or []} == {True}

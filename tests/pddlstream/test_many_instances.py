@@ -60,7 +60,9 @@ def test_two_looks_are_found_among_thousands(algorithm: str) -> None:
     }
     start = (0.2,) * len(PLACES)
     init = [("Is", start), ("Belief", start), *(("Place", place) for place in PLACES)]
-    solution = solve(PDDLProblem(DOMAIN, {}, STREAMS, functions, init, ("Known", 2)), algorithm, max_time=60.0)
+    solution = solve(
+        PDDLProblem(DOMAIN, {}, STREAMS, functions, init, ("Known", 2)), algorithm, max_time=60.0
+    )
     assert solution.plan is not None, solution.outcome
     belief = start
     for action in solution.plan:

@@ -87,7 +87,11 @@ def walk(
     **functions: Any,
 ) -> Solution:
     """Walk along the integers; `functions` replace or join the usual ones, with _ for -."""
-    known: dict[str, Any] = {"next": from_fn(following), "test-even": from_test(even), "length": length}
+    known: dict[str, Any] = {
+        "next": from_fn(following),
+        "test-even": from_test(even),
+        "length": length,
+    }
     known |= {name.replace("_", "-"): function for name, function in functions.items()}
     for name in without:
         del known[name]
@@ -136,13 +140,25 @@ def lists(q: tuple[int, str]) -> Iterator[Any]:
         lists,
         lambda q: [following(q)],
     ],
-    ids=["fn", "gen_fn", "list_gen_fn", "list_fn", "sampler", "raw", "raw gen", "raw list gen", "raw list"],
+    ids=[
+        "fn",
+        "gen_fn",
+        "list_gen_fn",
+        "list_fn",
+        "sampler",
+        "raw",
+        "raw gen",
+        "raw list gen",
+        "raw list",
+    ],
 )
 def test_every_form_of_a_stream(following_: Any, algorithm: str) -> None:
     check_rested(walk(algorithm=algorithm, next=following_))
 
 
-@pytest.mark.parametrize("test", [from_test(even), even, lambda q: () if even(q) else None], ids=["test", "raw", "fn"])
+@pytest.mark.parametrize(
+    "test", [from_test(even), even, lambda q: () if even(q) else None], ids=["test", "raw", "fn"]
+)
 def test_every_form_of_a_test(test: Any) -> None:
     check_rested(walk(test_even=test))
 
@@ -192,7 +208,9 @@ def test_constants() -> None:
     domain = DOMAIN.replace("(At ?q) (Conf ?q) (Even ?q)", "(At @home) (Even ?q) (Conf ?q)")
     solution = walk(domain=domain)
     assert [action.name for action in planned(solution)] == ["rest"]
-    with pytest.raises(InputError, match=r"'@hme' is no constant of the domain.*Did you mean '@home'"):
+    with pytest.raises(
+        InputError, match=r"'@hme' is no constant of the domain.*Did you mean '@home'"
+    ):
         solve(PDDLProblem(domain, {"@hme": 1}, STREAMS, {}, [], ("Rested",)))
 
 
@@ -225,7 +243,8 @@ def test_a_predicate_that_must_be_true(condition: str, algorithm: str) -> None:
 def test_a_test_stream_that_must_fail(condition: str, algorithm: str) -> None:
     """What PDDLStream calls a negated stream: a plan rests on the test having been asked, and having failed."""
     streams = STREAMS.replace(
-        "(:stream next", "(:stream test-bad :inputs (?q) :domain (Conf ?q) :certified (Bad ?q))\n(:stream next"
+        "(:stream next",
+        "(:stream test-bad :inputs (?q) :domain (Conf ?q) :certified (Bad ?q))\n(:stream next",
     )
     domain = DOMAIN.replace("(Conf ?q) (Even ?q)", f"(Conf ?q) {condition}")
     asked: list[int] = []
@@ -249,7 +268,10 @@ def test_a_test_stream_that_must_fail(condition: str, algorithm: str) -> None:
 
 def test_rules() -> None:
     streams = STREAMS.replace(":certified (Even ?q)", ":certified (Mark ?q)")
-    streams = streams[: streams.rindex(")")] + "(:rule :inputs (?q) :domain (Mark ?q) :certified (Even ?q)))"
+    streams = (
+        streams[: streams.rindex(")")]
+        + "(:rule :inputs (?q) :domain (Mark ?q) :certified (Even ?q)))"
+    )
     check_rested(walk(streams=streams))
 
 
@@ -257,7 +279,11 @@ def test_undeclared_predicates_are_taken_from_the_streams() -> None:
     streams = STREAMS.replace(":certified (Even ?q)", ":certified (and (Even ?q) (Halved ?q ?q))")
     solution = walk(streams=streams)
     check_rested(solution)
-    assert [text for text in solution.warnings if "predicate 'halved' is not among the domain's :predicates" in text]
+    assert [
+        text
+        for text in solution.warnings
+        if "predicate 'halved' is not among the domain's :predicates" in text
+    ]
 
 
 def test_fluents() -> None:
@@ -281,7 +307,12 @@ def test_wild_facts_open_a_way_that_no_stream_promises(algorithm: str) -> None:
         yield WildOutput(facts=[("Near", HOME, far), ("Conf", far)])
         yield WildOutput(values=[following(q)], facts=[("Near", following(q)[0], far)])
 
-    solution = walk(("At", (8, "far")), next=from_gen_fn(found), algorithm=algorithm, init=(("Seen", (8, "far")),))
+    solution = walk(
+        ("At", (8, "far")),
+        next=from_gen_fn(found),
+        algorithm=algorithm,
+        init=(("Seen", (8, "far")),),
+    )
     assert solution.outcome is Outcome.SOLVED
     assert [action.name for action in planned(solution)] == ["hop"]
     assert ("near", HOME, (8, "far")) in solution.certificate
@@ -292,12 +323,16 @@ def test_a_stream_that_nothing_asks_for_may_be_wild(algorithm: str) -> None:
     """Looking around certifies nothing that a condition names; the doors that it finds do."""
     domain = """(define (domain rooms) (:predicates (Room ?r) (Door ?a ?b) (In ?r) (Seen ?r))
       (:action go :parameters (?a ?b) :precondition (and (Door ?a ?b) (In ?a)) :effect (and (In ?b) (not (In ?a)))))"""
-    streams = "(define (stream rooms) (:stream look :inputs (?r) :domain (Room ?r) :certified (Seen ?r)))"
+    streams = (
+        "(define (stream rooms) (:stream look :inputs (?r) :domain (Room ?r) :certified (Seen ?r)))"
+    )
 
     def around(r: int) -> WildOutput:
         return WildOutput(values=[()], facts=[("Room", r + 1), ("Door", r, r + 1)] if r < 4 else [])
 
-    problem = PDDLProblem(domain, {}, streams, {"look": around}, [("Room", 0), ("In", 0)], ("In", 3))
+    problem = PDDLProblem(
+        domain, {}, streams, {"look": around}, [("Room", 0), ("In", 0)], ("In", 3)
+    )
     solution = solve(problem, algorithm, max_time=20.0)
     assert [action.args for action in planned(solution)] == [(0, 1), (1, 2), (2, 3)]
     problem = problem._replace(goal=("exists", "?r", ("and", ("In", "?r"), ("Door", 7, "?r"))))
@@ -317,13 +352,20 @@ def test_equal_numbers_are_one_object() -> None:
     domain = """(define (domain n) (:predicates (Num ?a) (To ?a ?b) (At ?a))
       (:action go :parameters (?a ?b) :precondition (and (To ?a ?b) (At ?a)) :effect (and (At ?b) (not (At ?a)))))"""
     problem = PDDLProblem(
-        domain, {}, streams, {"half": from_fn(lambda a: (a / 2,))}, [("Num", 8), ("At", 8)], ("At", 2)
+        domain,
+        {},
+        streams,
+        {"half": from_fn(lambda a: (a / 2,))},
+        [("Num", 8), ("At", 8)],
+        ("At", 2),
     )
     assert [action.args for action in planned(solve(problem))] == [(8, 4.0), (4.0, 2)]
 
 
 def test_wild_tests() -> None:
-    solution = walk(test_even=lambda q: WildOutput(values=[()] if even(q) else [], facts=[("Mark", q)]))
+    solution = walk(
+        test_even=lambda q: WildOutput(values=[()] if even(q) else [], facts=[("Mark", q)])
+    )
     check_rested(solution)
 
 
@@ -345,7 +387,11 @@ def test_an_optimizer_that_streams_cannot_replace_proves_nothing() -> None:
     streams = STREAMS[: STREAMS.index("(:stream next")] + OPTIMIZER + ")"
     solution = walk(streams=streams, without=("next", "test-even"))
     assert solution.outcome is Outcome.EXHAUSTED
-    said = [text for text in solution.warnings if "optimizer 'solver' is not called, and no stream certifies" in text]
+    said = [
+        text
+        for text in solution.warnings
+        if "optimizer 'solver' is not called, and no stream certifies" in text
+    ]
     assert [text.partition(": ")[0] for text in said] == ["6:63", "6:63", "7:18"]
     assert set(said) <= set(solution.explanation)
 
@@ -360,25 +406,42 @@ def test_initial_facts_stand_for_what_an_optimizer_would_give() -> None:
 
 def test_a_malformed_optimizer_is_refused() -> None:
     with pytest.raises(
-        InputError, match=r"unknown part '\(:objectve \.\.\.\)' of optimizer.*Did you mean ':objective'"
+        InputError,
+        match=r"unknown part '\(:objectve \.\.\.\)' of optimizer.*Did you mean ':objective'",
     ):
-        walk(streams=STREAMS.replace("(:stream next", OPTIMIZER.replace(":objective", ":objectve") + "(:stream next"))
+        walk(
+            streams=STREAMS.replace(
+                "(:stream next", OPTIMIZER.replace(":objective", ":objectve") + "(:stream next"
+            )
+        )
 
 
 @pytest.mark.parametrize(
     ("run", "message"),
     [
         (lambda: walk(without=("next",)), r"4:3: 'next' has no function in the stream map"),
-        (lambda: walk(nxt=even), r"the stream map has 'nxt', which no stream is called.*Did you mean 'next'"),
+        (
+            lambda: walk(nxt=even),
+            r"the stream map has 'nxt', which no stream is called.*Did you mean 'next'",
+        ),
         (lambda: walk(("Restd",)), r"unknown predicate 'restd'.*Did you mean 'rested'"),
         (lambda: walk(("At",)), r"'at' takes 1 argument, found 0"),
         (lambda: walk(("not",)), r"'not' takes 1 part, found 0"),
         (lambda: walk(("At", "?q")), r"unknown variable '\?q'"),
         (lambda: walk("Rested"), r"expected a condition"),
         (lambda: walk(init=(("Atbad",),)), r"'atbad' is derived"),
-        (lambda: walk(init=(("=", ("Lenght", 1, 2), 3),)), r"unknown function 'lenght'.*Did you mean 'length'"),
-        (lambda: walk(algorithm="focused"), r"unknown algorithm 'focused'. Choices: adaptive, incremental"),
-        (lambda: walk(streams=STREAMS.replace("(Even ?q)))", "(AtBad)))")), r"'atbad' is derived, it cannot stand in"),
+        (
+            lambda: walk(init=(("=", ("Lenght", 1, 2), 3),)),
+            r"unknown function 'lenght'.*Did you mean 'length'",
+        ),
+        (
+            lambda: walk(algorithm="focused"),
+            r"unknown algorithm 'focused'. Choices: adaptive, incremental",
+        ),
+        (
+            lambda: walk(streams=STREAMS.replace("(Even ?q)))", "(AtBad)))")),
+            r"'atbad' is derived, it cannot stand in",
+        ),
         (lambda: walk(max_time=0.0), r"the time must be positive"),
     ],
 )

@@ -15,26 +15,41 @@ OPEN = 0.08
 
 
 def base(
-    times: Sequence[float], rows: Sequence[Sequence[float]], opening: float = OPEN, holding: str | None = None
+    times: Sequence[float],
+    rows: Sequence[Sequence[float]],
+    opening: float = OPEN,
+    holding: str | None = None,
 ) -> Segment:
     """The base through rows of x, y, yaw."""
-    return Segment("base", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding)
+    return Segment(
+        "base", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding
+    )
 
 
-def arm(times: Sequence[float], rows: Sequence[Array], opening: float = OPEN, holding: str | None = None) -> Segment:
+def arm(
+    times: Sequence[float], rows: Sequence[Array], opening: float = OPEN, holding: str | None = None
+) -> Segment:
     """The arm through rows of seven angles."""
-    return Segment("arm", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding)
+    return Segment(
+        "arm", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding
+    )
 
 
-def close(body: str, width: float = 0.05, seconds: float = 0.5, T_tool_body: Array | None = None) -> Segment:
+def close(
+    body: str, width: float = 0.05, seconds: float = 0.5, T_tool_body: Array | None = None
+) -> Segment:
     """The fingers close on a body."""
     hold = Hold(body, Pose().matrix if T_tool_body is None else T_tool_body, width)
-    return Segment("gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([OPEN, width]), attach=hold)
+    return Segment(
+        "gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([OPEN, width]), attach=hold
+    )
 
 
 def let_go(body: str, width: float = 0.05, seconds: float = 0.5) -> Segment:
     """The fingers open and let a body go."""
-    return Segment("gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([width, OPEN]), detach=body)
+    return Segment(
+        "gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([width, OPEN]), detach=body
+    )
 
 
 def plan_of(

@@ -36,7 +36,9 @@ def test_a_plan_with_its_problem(stored_plan: Path) -> None:
 
 
 def test_a_problem_that_is_gone_is_named_with_the_way_out(file: Path) -> None:
-    with pytest.raises(InputError, match=r"the plan's problem p.yaml is missing. Give --problem FILE"):
+    with pytest.raises(
+        InputError, match=r"the plan's problem p.yaml is missing. Give --problem FILE"
+    ):
         open_plan(file)
     assert read_motions(file).actions == ()  # who needs no scene does not mind
 
@@ -46,14 +48,19 @@ def test_a_problem_that_has_changed_is_refused(stored_plan: Path, tmp_path: Path
     problem = Path(document["inputs"]["problem"]["path"])
     changed = tmp_path / "changed.yaml"
     changed.write_text(problem.read_text() + "\n# another line\n")
-    with pytest.raises(InputError, match=r"changed.yaml is not the one that the plan was made from.*Plan again"):
+    with pytest.raises(
+        InputError, match=r"changed.yaml is not the one that the plan was made from.*Plan again"
+    ):
         open_plan(stored_plan, changed)
 
     document["inputs"]["domain"]["sha256"] = SHA
     spoilt = tmp_path / "plan.json"
     spoilt.write_text(json.dumps(document))
     for read in (open_plan, read_motions):
-        with pytest.raises(InputError, match=r"the domain .*cupboard.pddl is not the one that the plan was made from"):
+        with pytest.raises(
+            InputError,
+            match=r"the domain .*cupboard.pddl is not the one that the plan was made from",
+        ):
             read(spoilt)
 
 
@@ -61,7 +68,9 @@ def test_a_plan_in_pddl_alone_has_no_motion(file: Path) -> None:
     symbolic = {"format": FORMAT, "version": 1, "actions": []}
     file.write_text(json.dumps(symbolic))
     for read in (open_plan, read_motions):
-        with pytest.raises(InputError, match="a plan of a problem in PDDL alone has no scene and no motion"):
+        with pytest.raises(
+            InputError, match="a plan of a problem in PDDL alone has no scene and no motion"
+        ):
             read(file)
     assert is_symbolic(file) and is_symbolic(symbolic)
 
@@ -77,14 +86,20 @@ def test_a_robot_that_nobody_knows_is_refused_with_its_neighbour() -> None:
     from dataclasses import replace
 
     assert robot_of(plan_of()).name == "panda_mobile"
-    with pytest.raises(InputError, match=r"unknown robot 'panda_mobil'.*Did you mean 'panda_mobile'?"):
+    with pytest.raises(
+        InputError, match=r"unknown robot 'panda_mobil'.*Did you mean 'panda_mobile'?"
+    ):
         robot_of(replace(plan_of(), robot="panda_mobil"))
 
 
 def test_options_are_read_where_a_plan_tells_them(file: Path) -> None:
     plain = read_motions(file)
     assert (plain.algorithm, dict(plain.samplers)) == ("adaptive", {})
-    file.write_text(json.dumps({**DOCUMENT, "options": {"algorithm": "incremental", "samplers": {"on": "uniform"}}}))
+    file.write_text(
+        json.dumps(
+            {**DOCUMENT, "options": {"algorithm": "incremental", "samplers": {"on": "uniform"}}}
+        )
+    )
     told = read_motions(file)
     assert (told.algorithm, dict(told.samplers)) == ("incremental", {"on": "uniform"})
     assert told.source("mesh") is None and told.source("problem") is not None
@@ -109,5 +124,7 @@ def test_values_are_matrices_and_rows(file: Path) -> None:
 
     values["g"]["T_tool_body"]["position"] = [0, 0, 2.5]  # type: ignore[index]
     file.write_text(json.dumps({**DOCUMENT, "values": values}))
-    with pytest.raises(InputError, match=r"values.g.T_tool_body.position: farther from the hand than anything"):
+    with pytest.raises(
+        InputError, match=r"values.g.T_tool_body.position: farther from the hand than anything"
+    ):
         read_motions(file)

@@ -40,7 +40,9 @@ def test_the_hash_is_sha256_of_the_contents(mesh: Path) -> None:
 def test_a_source_is_where_the_plan_says_or_beside_the_plan(tmp_path: Path) -> None:
     there, beside = tmp_path / "far" / "p.yaml", tmp_path / "p.yaml"
     plan = made_from(tmp_path, problem=(there, "0" * 64))
-    with pytest.raises(InputError, match=r"the plan's problem .*p.yaml is missing. Give --problem FILE"):
+    with pytest.raises(
+        InputError, match=r"the plan's problem .*p.yaml is missing. Give --problem FILE"
+    ):
         source_file(plan, "problem", None)
     beside.write_text("")
     assert source_file(plan, "problem", None) == beside
@@ -60,7 +62,11 @@ def test_changed_missing_and_new_files_are_told(tmp_path: Path, mesh: Path) -> N
 
     problem.write_text("b")
     (changed,) = check_files(plan, {"problem": problem}, (mesh,))
-    assert changed.kind == "hash" and "the problem" in changed.message and "is not the one" in changed.message
+    assert (
+        changed.kind == "hash"
+        and "the problem" in changed.message
+        and "is not the one" in changed.message
+    )
     problem.write_text("a")
 
     new = tmp_path / "new.obj"
@@ -96,7 +102,10 @@ def test_a_file_that_is_known_already_is_quoted(tmp_path: Path, known: str) -> N
     file.write_text("top secret")
     plan = made_from(tmp_path, problem=(file, digest(file) if known == "hash" else "0" * 64))
     hashes = plan_hashes(plan, problem=file if known == "given" else None)
-    with pytest.raises(InputError, match="top secret"), unquoted(file if known == "plan" else plan.file, hashes):
+    with (
+        pytest.raises(InputError, match="top secret"),
+        unquoted(file if known == "plan" else plan.file, hashes),
+    ):
         quoting(file)
 
 

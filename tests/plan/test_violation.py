@@ -11,8 +11,14 @@ from tamp.plan.violation import KINDS, Violation
     ("violation", "text"),
     [
         (Violation("goal", "(on a b) does not hold"), "goal         (on a b) does not hold"),
-        (Violation("cost", "it costs 2, not 1", 0, "pick"), "cost         1 pick: it costs 2, not 1"),
-        (Violation("collision", "hand in cup", 2, "place", 1.234), "collision    3 place, 1.23 s: hand in cup"),
+        (
+            Violation("cost", "it costs 2, not 1", 0, "pick"),
+            "cost         1 pick: it costs 2, not 1",
+        ),
+        (
+            Violation("collision", "hand in cup", 2, "place", 1.234),
+            "collision    3 place, 1.23 s: hand in cup",
+        ),
         (Violation("support", "it falls", time=10.0), "support      10.00 s: it falls"),
     ],
 )

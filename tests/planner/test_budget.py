@@ -100,7 +100,9 @@ def slow_rejections(context: Context, *inputs: object, call: Call) -> Iterator[o
         yield Rejection("slow")
 
 
-def timed(problem: Problem, budget: float = BUDGET, algorithm: str = "adaptive") -> tuple[Solution, float]:
+def timed(
+    problem: Problem, budget: float = BUDGET, algorithm: str = "adaptive"
+) -> tuple[Solution, float]:
     started = unhindered()
     solution = solve(problem, max_time=budget, seed=0, algorithm=algorithm)
     return solution, unhindered() - started
@@ -127,7 +129,9 @@ def timed(problem: Problem, budget: float = BUDGET, algorithm: str = "adaptive")
         ("plan-pick", sleeping, "incremental"),
     ],
 )
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # the alarm may ring in a gc callback
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # the alarm may ring in a gc callback
 def test_a_sampler_that_never_ends(stream: str, function: Function, algorithm: str) -> None:
     problem = load_problem("one_object", functions={stream: function})
     solution, seconds = timed(problem, algorithm=algorithm)
@@ -142,7 +146,9 @@ def test_a_generator_that_never_ends() -> None:
     """The same for an object that grounds a relation."""
 
     class Endless:
-        def propose(self, scene: object, arguments: object, count: int, rng: object) -> list[object]:
+        def propose(
+            self, scene: object, arguments: object, count: int, rng: object
+        ) -> list[object]:
             while True:
                 time.sleep(0.01)
 
@@ -160,7 +166,9 @@ def test_no_plan_that_cannot_be_proven_names_the_object(algorithm: str, tmp_path
     assert seconds < budget + LATE
     assert solution.outcome in (Outcome.TIMEOUT, Outcome.EXHAUSTED, Outcome.INFEASIBLE)
     text = "\n".join(solution.explanation)
-    assert "can" in text and any(wall in text for wall in ("north", "south", "east", "west", "lid")), text
+    assert "can" in text and any(
+        wall in text for wall in ("north", "south", "east", "west", "lid")
+    ), text
 
 
 @pytest.mark.parametrize("budget", [1e-6, 0.05, 0.3])
@@ -183,9 +191,13 @@ def test_the_whole_command_keeps_the_time(tmp_path: Path) -> None:
     words = [SOLVE, "enclosed.yaml", "--algorithm", "incremental", "--time", "6", "--json"]
     started = time.monotonic()
     pipe, queued = subprocess.PIPE, 0.0
-    with subprocess.Popen(words, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True, start_new_session=True) as process:
+    with subprocess.Popen(
+        words, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True, start_new_session=True
+    ) as process:
         while process.poll() is None:  # it says less than a pipe holds
-            queued = max([queued, *map(waited, members(process.pid))])  # the one who works, not the one who watches
+            queued = max(
+                [queued, *map(waited, members(process.pid))]
+            )  # the one who works, not the one who watches
             time.sleep(0.02)
         out, err = process.communicate(timeout=60)
     seconds = time.monotonic() - started - queued

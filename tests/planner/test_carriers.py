@@ -74,7 +74,11 @@ def tower(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 def steps(document: dict[str, Any]) -> list[str]:
-    return [f"{action['name']} {action['arguments'][0]}" for action in document["actions"] if action["name"] != "move"]
+    return [
+        f"{action['name']} {action['arguments'][0]}"
+        for action in document["actions"]
+        if action["name"] != "move"
+    ]
 
 
 def violations(document: dict[str, Any]) -> str:
@@ -83,14 +87,23 @@ def violations(document: dict[str, Any]) -> str:
     return report.text()
 
 
-def test_what_is_on_a_body_is_unloaded_before_it_is_carried(problem_of: Callable[..., Problem]) -> None:
-    shelf = "  bench:  {furniture: table, size: [0.8, 0.5, 0.5], at: [-1.2, 0.0, 0.0], yaw: 90 deg}\n"
+def test_what_is_on_a_body_is_unloaded_before_it_is_carried(
+    problem_of: Callable[..., Problem],
+) -> None:
+    shelf = (
+        "  bench:  {furniture: table, size: [0.8, 0.5, 0.5], at: [-1.2, 0.0, 0.0], yaw: 90 deg}\n"
+    )
     done = steps(solved(problem_of("(on base bench)", TOWER + shelf)))
     assert done.index("pick can") < done.index("place can") < done.index("pick base")
 
 
-def test_a_tower_is_built_from_below_wherever_its_base_goes(problem_of: Callable[..., Problem]) -> None:
-    bodies = TOWER + "  bench:  {furniture: table, size: [0.8, 0.5, 0.5], at: [-1.2, 0.0, 0.0], yaw: 90 deg}\n"
+def test_a_tower_is_built_from_below_wherever_its_base_goes(
+    problem_of: Callable[..., Problem],
+) -> None:
+    bodies = (
+        TOWER
+        + "  bench:  {furniture: table, size: [0.8, 0.5, 0.5], at: [-1.2, 0.0, 0.0], yaw: 90 deg}\n"
+    )
     document = solved(problem_of("(and (on base bench) (on cube base) (on can cube))", bodies))
     last = {words: number for number, words in enumerate(steps(document))}
     assert last["place base"] < last["place-on cube"] < last["place-on can"]
@@ -120,7 +133,11 @@ def test_a_tilted_tray_is_rejected(tray: dict[str, Any]) -> None:
 
 def test_what_is_left_behind_is_found(tray: dict[str, Any]) -> None:
     spoilt = copy.deepcopy(tray)
-    gone = [a for a in spoilt["actions"] if a["name"] in ("ride", "alight") and a["arguments"][0] == "cup"]
+    gone = [
+        a
+        for a in spoilt["actions"]
+        if a["name"] in ("ride", "alight") and a["arguments"][0] == "cup"
+    ]
     assert len(gone) == 2
     spoilt["actions"] = [action for action in spoilt["actions"] if action not in gone]
     said = violations(spoilt)
@@ -129,17 +146,24 @@ def test_what_is_left_behind_is_found(tray: dict[str, Any]) -> None:
 
     spoilt = copy.deepcopy(tray)
     (attach,) = (
-        segment["attach"] for action in spoilt["actions"] for segment in action["segments"] if segment.get("attach")
+        segment["attach"]
+        for action in spoilt["actions"]
+        for segment in action["segments"]
+        if segment.get("attach")
     )
     attach["load"] = [one for one in attach["load"] if one["body"] != "cup"]
     assert "by the facts cup and glass and mug rides on it" in violations(spoilt)
-    attach["load"].append({"body": "cup", "T_body_rider": {"position": [0.0, 0.0, 0.5], "quaternion": [0, 0, 0, 1]}})
+    attach["load"].append(
+        {"body": "cup", "T_body_rider": {"position": [0.0, 0.0, 0.5], "quaternion": [0, 0, 0, 1]}}
+    )
     assert "from where the plan has it on tray" in violations(spoilt)
 
 
 def test_where_a_rider_gets_to_is_worked_out_again(tray: dict[str, Any]) -> None:
     spoilt = copy.deepcopy(tray)
-    (alights,) = (a for a in spoilt["actions"] if a["name"] == "alight" and a["arguments"][0] == "cup")
+    (alights,) = (
+        a for a in spoilt["actions"] if a["name"] == "alight" and a["arguments"][0] == "cup"
+    )
     spoilt["values"][alights["arguments"][-1]]["position"][0] += 0.02
     assert "carried along it would be" in violations(spoilt)
 
@@ -148,7 +172,9 @@ def test_a_body_is_not_taken_from_under_another(tower: dict[str, Any]) -> None:
     assert steps(tower).index("pick can") < steps(tower).index("place-on cube")
     spoilt = copy.deepcopy(tower)
     for fact in [
-        fact for fact in spoilt["initial"] if fact[0] in ("borne", "stacked", "rests-on") and fact[1] == "can"
+        fact
+        for fact in spoilt["initial"]
+        if fact[0] in ("borne", "stacked", "rests-on") and fact[1] == "can"
     ]:
         spoilt["initial"].remove(fact)
     spoilt["initial"].append(["grounded", "can", "can_start"])
@@ -181,8 +207,12 @@ def test_a_support_that_is_too_small_is_the_reason(problem_of: Callable[..., Pro
     bodies = TOWER.replace("[0.018, 0.018, 0.05]", "[0.024, 0.024, 0.05]")
     solution = solve(problem_of("(on base tiny)", bodies), max_time=4.0, seed=0)
     assert solution.outcome is not Outcome.SOLVED
-    assert any("tiny is too small to carry base (2.4 x 2.4 cm)" in line for line in solution.explanation)
-    with pytest.raises(InputError, match="'tiny' is a movable, not a surface"):  # under 2 cm it is no place
+    assert any(
+        "tiny is too small to carry base (2.4 x 2.4 cm)" in line for line in solution.explanation
+    )
+    with pytest.raises(
+        InputError, match="'tiny' is a movable, not a surface"
+    ):  # under 2 cm it is no place
         problem_of("(on base tiny)")
 
 
@@ -204,13 +234,19 @@ def test_pairs_are_those_that_the_goal_names(problem_of: Callable[..., Problem])
 
     assert pairs("(on cube base)") == {("cube", "base")}
     assert pairs("(on cube table)") == set()
-    assert pairs("(exists (?o - movable) (on ?o base))") == {("cube", "base"), ("tiny", "base"), ("can", "base")}
+    assert pairs("(exists (?o - movable) (on ?o base))") == {
+        ("cube", "base"),
+        ("tiny", "base"),
+        ("can", "base"),
+    }
 
 
 class Beside:
     """Proposes places on the body below, one beside its middle."""
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: np.random.Generator) -> list[Pose]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: np.random.Generator
+    ) -> list[Pose]:
         below = scene.bodies[arguments[1]].pose
         shifts = rng.uniform(-0.005, 0.005, size=(count, 2))
         return [below @ Pose((float(x), float(y), 0.0615)) for x, y in shifts]
@@ -218,7 +254,9 @@ class Beside:
 
 def test_a_relation_of_ones_own_on_a_movable_body(tmp_path: Path) -> None:
     folder = shipped("domains")
-    domain, streams = ((folder / f"carriers{end}").read_text() for end in (".pddl", ".streams.pddl"))
+    domain, streams = (
+        (folder / f"carriers{end}").read_text() for end in (".pddl", ".streams.pddl")
+    )
     domain = domain.replace(
         "    ; what follows\n",
         "    (crowns ?o - movable ?p - pose ?below - movable ?pb - pose)\n    ; what follows\n"

@@ -54,7 +54,9 @@ class Near:
         body, other = (scene.bodies[name] for name in arguments)
         x, y, z = other.pose.position
         spots = rng.uniform(-0.3, 0.3, (count, 2))
-        return [tamp.Pose((x + dx, y + dy, z - 0.15 + 0.051), body.pose.quaternion) for dx, dy in spots]
+        return [
+            tamp.Pose((x + dx, y + dy, z - 0.15 + 0.051), body.pose.quaternion) for dx, dy in spots
+        ]
 
 
 def near_domain(root: Path, folder: Path) -> Path:
@@ -80,7 +82,11 @@ def test_a_relation_of_ones_own(root: Path, tmp_path: Path) -> None:
     solution = tamp.solve(problem, max_time=30.0, seed=0)
     assert solution.solved
     (placed,) = [action for action in solution.plan if action.name == "place"]
-    pose = next(value for name in placed.arguments if isinstance(value := solution.values.get(name), tamp.Pose))
+    pose = next(
+        value
+        for name in placed.arguments
+        if isinstance(value := solution.values.get(name), tamp.Pose)
+    )
     lamp = problem.scene.bodies["lamp"].pose.position
     assert np.hypot(pose.position[0] - lamp[0], pose.position[1] - lamp[1]) < 0.2
     report = verify(tamp.write_plan(solution, tmp_path / "plan.json"))
@@ -104,7 +110,9 @@ def test_an_untyped_domain(root: Path, tmp_path: Path) -> None:
     domain = domain.replace(":typing ", "")
     assert " - " not in domain
     (tmp_path / "plain.pddl").write_text(domain)
-    (tmp_path / "plain.streams.pddl").write_text((root / "domains/cupboard.streams.pddl").read_text())
+    (tmp_path / "plain.streams.pddl").write_text(
+        (root / "domains/cupboard.streams.pddl").read_text()
+    )
     path = tmp_path / "plain.yaml"
     path.write_text(PROBLEM.format(domain="plain.pddl", goal="(on can cupboard_top)"))
     solution = tamp.solve(tamp.load_problem(path), max_time=30.0, seed=0)
@@ -115,24 +123,35 @@ def test_an_untyped_domain(root: Path, tmp_path: Path) -> None:
 
 def test_a_cost_that_python_computes(root: Path, tmp_path: Path) -> None:
     domain = (root / "domains/cupboard.pddl").read_text()
-    domain = domain.replace("(:functions (total-cost))", "(:functions (total-cost) (effort ?b - base-conf))")
     domain = domain.replace(
-        "(at-base ?b)\n                 (increase (total-cost) 1)", "(at-base ?b) (increase (total-cost) (effort ?b))"
+        "(:functions (total-cost))", "(:functions (total-cost) (effort ?b - base-conf))"
+    )
+    domain = domain.replace(
+        "(at-base ?b)\n                 (increase (total-cost) 1)",
+        "(at-base ?b) (increase (total-cost) (effort ?b))",
     )
     assert "(increase (total-cost) (effort ?b))" in domain
     (tmp_path / "dear.pddl").write_text(domain)
     streams = (root / "domains/cupboard.streams.pddl").read_text().rstrip().removesuffix(")")
-    (tmp_path / "dear.streams.pddl").write_text(streams + "\n  (:function (effort ?b) (standing ?b)))")
+    (tmp_path / "dear.streams.pddl").write_text(
+        streams + "\n  (:function (effort ?b) (standing ?b)))"
+    )
     path = tmp_path / "dear.yaml"
     path.write_text(PROBLEM.format(domain="dear.pddl", goal="(on can cupboard_top)"))
-    problem = tamp.load_problem(path, functions={"effort": lambda context, base: 3.0 + 0.5 * abs(base.array[0])})
+    problem = tamp.load_problem(
+        path, functions={"effort": lambda context, base: 3.0 + 0.5 * abs(base.array[0])}
+    )
     assert problem.warnings == ()
     solution = tamp.solve(problem, max_time=30.0, seed=0)
     assert solution.solved
     moves = [action for action in solution.plan if action.name == "move"]
     bases: list[Any] = [solution.values[action.arguments[0]] for action in moves]
     assert [action.cost for action in moves] == [3.0 + 0.5 * abs(base.array[0]) for base in bases]
-    (tmp_path / "dear.streams.pddl").write_text(streams + "\n  (:predicate (hot ?b) (standing ?b)))")
-    (tmp_path / "dear.pddl").write_text(domain.replace("(hand-empty)", "(hand-empty) (hot ?b - base-conf)", 1))
+    (tmp_path / "dear.streams.pddl").write_text(
+        streams + "\n  (:predicate (hot ?b) (standing ?b)))"
+    )
+    (tmp_path / "dear.pddl").write_text(
+        domain.replace("(hand-empty)", "(hand-empty) (hot ?b - base-conf)", 1)
+    )
     with pytest.raises(tamp.InputError, match="'hot' is a :predicate, which scenes do not have"):
         tamp.load_problem(path)

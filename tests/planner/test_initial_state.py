@@ -57,13 +57,20 @@ def test_bodies_are_where_they_start_and_on_what_they_stand() -> None:
 
 def test_only_what_moves_is_rested_on() -> None:
     rests = {fact for fact in facts(TYPED) if fact[0] == "rests-on"}
-    assert rests == {("rests-on", "lid", "lid_start", "cup")}  # once, though it is support and carrier
+    assert rests == {
+        ("rests-on", "lid", "lid_start", "cup")
+    }  # once, though it is support and carrier
 
 
 def test_a_surface_of_a_movable_body_carries_its_body_along() -> None:
     tray = replace(table("tray"), movable=True, pose=Pose((0, 0, 0.25)))
     found = facts(TYPED, tray, replace(CUP, support="tray"))
-    assert ("rests-on", "cup", "cup_start", "tray") in found and ("supported", "cup", "cup_start", "tray") in found
+    assert ("rests-on", "cup", "cup_start", "tray") in found and (
+        "supported",
+        "cup",
+        "cup_start",
+        "tray",
+    ) in found
 
 
 def test_what_is_in_the_hand_is_nowhere_else() -> None:
@@ -71,13 +78,21 @@ def test_what_is_in_the_hand_is_nowhere_else() -> None:
     state = initial_state(SCENE, TYPED, grasp)
     assert {("grasp", "cup", "cup_held"), ("holding", "cup", "cup_held")} <= state.facts
     assert ("hand-empty",) not in state.facts
-    assert not any(fact[0] in ("pose", "at-pose", "supported") and fact[1] == "cup" for fact in state.facts)
+    assert not any(
+        fact[0] in ("pose", "at-pose", "supported") and fact[1] == "cup" for fact in state.facts
+    )
     assert state.values["cup_held"] is grasp and "cup_start" not in state.objects
 
 
 def test_predicates_take_the_place_of_types() -> None:
     found = facts(UNTYPED)
-    assert {("movable", "cup"), ("body", "cup"), ("fixed", "table"), ("surface", "table"), ("body", "table")} <= found
+    assert {
+        ("movable", "cup"),
+        ("body", "cup"),
+        ("fixed", "table"),
+        ("surface", "table"),
+        ("body", "table"),
+    } <= found
     assert ("body", "crate_inside") not in found
     assert initial_state(SCENE, UNTYPED).objects["cup"] == ()
     assert initial_state(SCENE, UNTYPED).objects["cup_start"] == ("object",)

@@ -51,7 +51,9 @@ def test_the_improvements_repeat_as_far_as_both_runs_came() -> None:
 
 def test_two_processes_improve_and_the_best_plan_of_both_is_kept() -> None:
     told: list[Solution] = []
-    solution = solve_parallel(load_problem("one_object"), jobs=2, max_time=4.0, improved=told.append)
+    solution = solve_parallel(
+        load_problem("one_object"), jobs=2, max_time=4.0, improved=told.append
+    )
     assert solution.solved and {plan.seed for plan in told} <= {0, 1000}
     assert solution.duration == min(plan.duration for plan in told)
 
@@ -67,7 +69,11 @@ def test_the_command_reports_each_improvement(
     assert json.loads((tmp_path / "plan.json").read_text())["cost"] == 4.0
     assert run(["one_object", "--optimize", "--time", "3", "--json"]) == SOLVED
     document = json.loads(capsys.readouterr().out)["optimization"]
-    assert document["bound"] == 4.0 and document["gap"] == 0.0 and document["improvements"][0]["cost"] == 4.0
+    assert (
+        document["bound"] == 4.0
+        and document["gap"] == 0.0
+        and document["improvements"][0]["cost"] == 4.0
+    )
 
 
 def test_searches_are_not_chosen_for_it(capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,7 +25,9 @@ def upright(tmp_path: Path) -> Any:
     return python_grounding(tmp_path / "upright.py")
 
 
-def planned(folder: Path, goal: str, grounding: object, algorithm: str = "adaptive") -> tamp.Solution:
+def planned(
+    folder: Path, goal: str, grounding: object, algorithm: str = "adaptive"
+) -> tamp.Solution:
     problem = tamp.load_problem(write_problem(folder, goal), groundings={"upright": grounding})  # type: ignore[dict-item]
     return tamp.solve(problem, max_time=60.0, seed=0, algorithm=algorithm)
 
@@ -77,17 +79,25 @@ def test_what_is_made_upright_is_drunk(root: Path, tmp_path: Path, upright: Any)
     write_domain(root, tmp_path, SAMPLED)
     solution = planned(tmp_path, "(drunk milk)", upright)
     assert names(solution) == ["move", "pick", "move", "place", "drink"], solution.explanation
-    report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": upright})
+    report = verify(
+        tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": upright}
+    )
     assert report.holds and report.checked, report.text()
 
 
 @pytest.mark.parametrize("algorithm", ["adaptive", "incremental"])
-def test_a_pose_of_any_origin_is_asked_about(root: Path, tmp_path: Path, upright: Any, algorithm: str) -> None:
+def test_a_pose_of_any_origin_is_asked_about(
+    root: Path, tmp_path: Path, upright: Any, algorithm: str
+) -> None:
     """Put down again, the tea must not stand on the table; nearly all that sample-on proposes there would."""
     write_domain(root, tmp_path, TESTED)
-    solution = planned(tmp_path, "(and (on tea table) (not (upright tea table)))", upright, algorithm)
+    solution = planned(
+        tmp_path, "(and (on tea table) (not (upright tea table)))", upright, algorithm
+    )
     assert solution.solved, solution.explanation
-    report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": upright})
+    report = verify(
+        tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": upright}
+    )
     assert report.holds and report.checked, report.text()
 
 
@@ -102,24 +112,38 @@ def test_complements_stay_out_of_the_plan_file(root: Path, tmp_path: Path, uprig
 @pytest.mark.parametrize(
     ("goal", "line"),
     [
-        ("(not (upright tea table))", r"mine\.yaml:10:12: whether \(upright tea table\) does not hold has to be known"),
+        (
+            "(not (upright tea table))",
+            r"mine\.yaml:10:12: whether \(upright tea table\) does not hold has to be known",
+        ),
         ("(imply (on tea table) (looked))", None),
         ("(untidy table)", r"mine\.yaml:10:7: whether \(untidy table\)"),
-        ("(forall (?o - movable) (not (upright ?o shelf)))", r"mine\.yaml:10:\d+: whether \(upright \?o shelf\)"),
+        (
+            "(forall (?o - movable) (not (upright ?o shelf)))",
+            r"mine\.yaml:10:\d+: whether \(upright \?o shelf\)",
+        ),
         ("(upright milk shelf)", None),
     ],
 )
 def test_what_is_unknown_may_be_made_true_and_not_taken_to_be_false(
     root: Path, tmp_path: Path, upright: Any, goal: str, line: str | None
 ) -> None:
-    write_domain(root, tmp_path, SAMPLED, actions="  (:action look :parameters () :precondition () :effect (looked))\n")
+    write_domain(
+        root,
+        tmp_path,
+        SAMPLED,
+        actions="  (:action look :parameters () :precondition () :effect (looked))\n",
+    )
     if line is None:
         solution = planned(tmp_path, goal, Proposing(upright))
         assert solution.solved and solution.plan
         return
     with pytest.raises(tamp.InputError, match=line) as refused:
         planned(tmp_path, goal, Proposing(upright))
-    assert "'upright' is unknown until a plan makes it true: it has no classifier" in refused.value.message
+    assert (
+        "'upright' is unknown until a plan makes it true: it has no classifier"
+        in refused.value.message
+    )
     assert "--sampler upright=FILE" in str(refused.value)
 
 
@@ -127,7 +151,9 @@ def test_an_action_that_needs_it_to_be_false_is_refused_with_its_place(
     root: Path, tmp_path: Path, upright: Any
 ) -> None:
     write_domain(root, tmp_path, SAMPLED)
-    with pytest.raises(tamp.InputError, match=r"mine\.pddl:\d+:\d+: whether \(upright \?o \?s\) does not hold"):
+    with pytest.raises(
+        tamp.InputError, match=r"mine\.pddl:\d+:\d+: whether \(upright \?o \?s\) does not hold"
+    ):
         planned(tmp_path, "(upright milk shelf)", Proposing(upright))
 
 
@@ -142,38 +168,52 @@ class Odd:
             raise self.answer
         return self.answer(arguments) if callable(self.answer) else self.answer
 
-    def propose(self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: Any) -> list[tamp.Pose]:
+    def propose(
+        self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: Any
+    ) -> list[tamp.Pose]:
         return []
 
 
 @pytest.mark.parametrize("answer", [ValueError("no idea"), "yes", 2.0, None, float("inf")])
-def test_a_classifier_that_answers_nothing_is_refused(root: Path, tmp_path: Path, answer: Any) -> None:
+def test_a_classifier_that_answers_nothing_is_refused(
+    root: Path, tmp_path: Path, answer: Any
+) -> None:
     write_domain(root, tmp_path, TESTED)
-    with pytest.raises(tamp.InputError, match=r"classifier of 'upright' does not work: asked of \(upright "):
+    with pytest.raises(
+        tamp.InputError, match=r"classifier of 'upright' does not work: asked of \(upright "
+    ):
         planned(tmp_path, "(upright tea table)", Odd(answer))
 
 
 def test_what_it_cannot_tell_is_neither_true_nor_false(root: Path, tmp_path: Path) -> None:
     write_domain(root, tmp_path, TESTED)
     for goal in ("(upright tea table)", "(not (upright tea table))"):
-        problem = tamp.load_problem(write_problem(tmp_path, goal), groundings={"upright": Odd(float("nan"))})
+        problem = tamp.load_problem(
+            write_problem(tmp_path, goal), groundings={"upright": Odd(float("nan"))}
+        )
         facts = {fact[0] for fact in problem.stream_task.task.initial}
         assert not facts & {"stood", "not-stood"}
     some = Odd(lambda arguments: 1.0 if arguments[0] == "Tea" else 1 / 0)
-    problem = tamp.load_problem(write_problem(tmp_path, "(upright tea table)"), groundings={"upright": some})
+    problem = tamp.load_problem(
+        write_problem(tmp_path, "(upright tea table)"), groundings={"upright": some}
+    )
     assert any("(upright milk" in text and "ZeroDivisionError" in text for text in problem.warnings)
     assert tamp.solve(problem, seed=0).solved
 
 
 def test_one_that_does_not_look_at_the_place_is_warned_of(root: Path, tmp_path: Path) -> None:
     write_domain(root, tmp_path, TESTED)
-    problem = tamp.load_problem(write_problem(tmp_path, "(upright tea shelf)"), groundings={"upright": Odd(1.0)})
+    problem = tamp.load_problem(
+        write_problem(tmp_path, "(upright tea shelf)"), groundings={"upright": Odd(1.0)}
+    )
     assert any("whatever its second argument is" in text for text in problem.warnings)
 
 
 def test_it_is_not_asked_where_nothing_depends_on_it(root: Path, tmp_path: Path) -> None:
     write_domain(root, tmp_path, TESTED, actions="")
-    problem = tamp.load_problem(write_problem(tmp_path, "(on tea shelf)"), groundings={"upright": Odd(ValueError())})
+    problem = tamp.load_problem(
+        write_problem(tmp_path, "(on tea shelf)"), groundings={"upright": Odd(ValueError())}
+    )
     assert not problem.classifiers and not problem.complements
 
 
@@ -193,12 +233,18 @@ class Lonely:
         self.wide = wide
 
     def classify(self, scene: tamp.Scene, arguments: Sequence[str]) -> float:
-        at = {name: np.array(body.pose.position) for name, body in scene.bodies.items() if body.movable}
+        at = {
+            name: np.array(body.pose.position)
+            for name, body in scene.bodies.items()
+            if body.movable
+        }
         here = at.pop(arguments[0])
         there = arguments[1] == "shelf" and here[0] < 0.0
         return float(there and all(np.linalg.norm(here - other) > 0.25 for other in at.values()))
 
-    def propose(self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: Any) -> list[tamp.Pose]:
+    def propose(
+        self, scene: tamp.Scene, arguments: Sequence[str], count: int, rng: Any
+    ) -> list[tamp.Pose]:
         x, y, z = scene.world_pose(scene.surfaces["shelf"]).position
         return [tamp.Pose((x, y + dy, z + 0.1)) for dy in rng.uniform(-self.wide, self.wide, count)]
 
@@ -208,11 +254,16 @@ def test_a_plan_that_the_classifier_does_not_bear_out_is_none(root: Path, tmp_pa
     write_domain(root, tmp_path, TESTED, actions="")
     solution = planned(tmp_path, "(and (upright milk shelf) (upright tea shelf))", Lonely(0.3))
     assert solution.solved and len(solution.plan) == 8
-    report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Lonely(0.3)})
+    report = verify(
+        tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Lonely(0.3)}
+    )
     assert report.holds and report.checked, report.text()
     solution = planned(tmp_path, "(and (upright milk shelf) (upright tea shelf))", Lonely(0.12))
     assert solution.outcome is tamp.Outcome.EXHAUSTED and not solution.plan
-    assert "the classifier of 'upright' looks at bodies that it is not asked about" in solution.explanation[0]
+    assert (
+        "the classifier of 'upright' looks at bodies that it is not asked about"
+        in solution.explanation[0]
+    )
 
 
 class Alone:
@@ -227,12 +278,16 @@ def test_a_classifier_alone_of_a_body_alone(root: Path, tmp_path: Path) -> None:
     """`(upright ?o)`, tested at poses that `sample-on` proposes."""
     write_domain(root, tmp_path, SAMPLED, actions="")
     domain, streams = tmp_path / "mine.pddl", tmp_path / "mine.streams.pddl"
-    text = domain.read_text().replace("(stood ?o - movable ?p - pose ?s - surface)", "(stood ?o - movable ?p - pose)")
+    text = domain.read_text().replace(
+        "(stood ?o - movable ?p - pose ?s - surface)", "(stood ?o - movable ?p - pose)"
+    )
     text = text.replace("(upright ?o - movable ?s - surface)", "(upright ?o - movable)").replace(
         "(upright ?o ?s)", "(upright ?o)"
     )
     domain.write_text(text.replace("(stood ?o ?p ?s)", "(stood ?o ?p)"))
-    test = "  (:stream test-upright :inputs (?o ?p) :domain (pose ?o ?p) :certified (stood ?o ?p))\n"
+    test = (
+        "  (:stream test-upright :inputs (?o ?p) :domain (pose ?o ?p) :certified (stood ?o ?p))\n"
+    )
     streams.write_text(streams.read_text().replace(SAMPLED, test))
     for goal, count in (
         ("(upright tea)", 0),
@@ -241,8 +296,14 @@ def test_a_classifier_alone_of_a_body_alone(root: Path, tmp_path: Path) -> None:
         ("(upright milk)", 4),
     ):
         solution = planned(tmp_path, goal, Alone())
-        assert solution.solved and len(solution.plan) == count, (goal, names(solution), solution.explanation)
-        report = verify(tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Alone()})
+        assert solution.solved and len(solution.plan) == count, (
+            goal,
+            names(solution),
+            solution.explanation,
+        )
+        report = verify(
+            tamp.write_plan(solution, tmp_path / "plan.json"), classifiers={"upright": Alone()}
+        )
         assert report.holds and report.checked, report.text()
 
 
@@ -257,7 +318,11 @@ DOMAIN = """(define (domain d) (:types movable - body surface - object pose - ob
     ("stream", "arguments", "poses"),
     [
         ("(:stream test-r :inputs (?o) :domain (movable ?o) :certified (tall ?o))", ("?o",), {}),
-        ("(:stream test-r :inputs (?o ?p) :domain (pose ?o ?p) :certified (tall-at ?o ?p))", ("?o",), {"?p": "?o"}),
+        (
+            "(:stream test-r :inputs (?o ?p) :domain (pose ?o ?p) :certified (tall-at ?o ?p))",
+            ("?o",),
+            {"?p": "?o"},
+        ),
         (
             "(:stream test-r :inputs (?o ?p ?o2 ?p2) :domain (and (pose ?o ?p) (pose ?o2 ?p2))"
             " :certified (close ?o ?p ?o2 ?p2))",
@@ -279,7 +344,9 @@ DOMAIN = """(define (domain d) (:types movable - body surface - object pose - ob
     ],
     ids=["a body", "a body and its pose", "two bodies", "a fixed body", "three"],
 )
-def test_what_a_relation_is_asked_of(stream: str, arguments: tuple[str, ...], poses: dict[str, str]) -> None:
+def test_what_a_relation_is_asked_of(
+    stream: str, arguments: tuple[str, ...], poses: dict[str, str]
+) -> None:
     domain = parse_domain(DOMAIN)
     streams = parse_streams(f"(define (stream d) {stream})", domain)
     assert relation_names(streams) == ("r",)
@@ -293,14 +360,28 @@ def test_two_bodies(root: Path, tmp_path: Path) -> None:
     near = python_grounding(kitchen / "near.py")
     text = (kitchen / "kitchen.yaml").read_text().replace("domain: kitchen.pddl\n", "")
     text = text.replace("on: sideboard, at: [0.2, -0.1]", "on: table, at: [0.2, 0.05]")
-    for goal, count in (("(near can mug)", 0), ("(not (near can milk))", 0), ("(not (near can mug))", 2)):
-        (tmp_path / "two.yaml").write_text(text.replace("(and (lying milk sideboard) (near can mug))", goal))
+    for goal, count in (
+        ("(near can mug)", 0),
+        ("(not (near can milk))", 0),
+        ("(not (near can mug))", 2),
+    ):
+        (tmp_path / "two.yaml").write_text(
+            text.replace("(and (lying milk sideboard) (near can mug))", goal)
+        )
         problem = tamp.load_problem(
-            tmp_path / "two.yaml", kitchen / "kitchen.pddl", groundings={"near": near, "lying": Proposing(near)}
+            tmp_path / "two.yaml",
+            kitchen / "kitchen.pddl",
+            groundings={"near": near, "lying": Proposing(near)},
         )
         solution = tamp.solve(problem, max_time=60.0, seed=0)
-        assert solution.solved and len(solution.plan) == count, (goal, names(solution), solution.explanation)
-        report = verify(tamp.write_plan(solution, tmp_path / "two.json"), classifiers={"near": near})
+        assert solution.solved and len(solution.plan) == count, (
+            goal,
+            names(solution),
+            solution.explanation,
+        )
+        report = verify(
+            tamp.write_plan(solution, tmp_path / "two.json"), classifiers={"near": near}
+        )
         assert report.holds and report.checked, report.text()
 
 

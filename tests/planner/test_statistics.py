@@ -42,22 +42,41 @@ def test_streams_stand_in_order_whole_and_with_their_mean(file: Path) -> None:
     document = json.loads(file.read_text())
     assert list(document["streams"]) == ["a", "b"]
     assert document["streams"]["b"]["mean"] == pytest.approx(Posterior(3, 1).mean, abs=1e-6)
-    assert [path.name for path in file.parent.iterdir() if not path.name.startswith(".")] == ["s.json"]
+    assert [path.name for path in file.parent.iterdir() if not path.name.startswith(".")] == [
+        "s.json"
+    ]
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"format": "other"}, "it is no 'tamp-statistics' file of version 1. Name another file, or delete this one"),
+        (
+            {"format": "other"},
+            "it is no 'tamp-statistics' file of version 1. Name another file, or delete this one",
+        ),
         ({"version": 2}, "it is no 'tamp-statistics' file of version 1"),
         ({"domain": "other"}, "its statistics are of domain 'other', not 'cupboard'"),
-        ({"streams": {"a": {"successes": 1.5, "failures": 0, "seconds": 0}}}, "streams.a.successes: 1.5 is no whole"),
-        ({"streams": {"a": {"successes": 1, "failures": 0, "seconds": -1}}}, "streams.a.seconds: -1 is less than 0"),
+        (
+            {"streams": {"a": {"successes": 1.5, "failures": 0, "seconds": 0}}},
+            "streams.a.successes: 1.5 is no whole",
+        ),
+        (
+            {"streams": {"a": {"successes": 1, "failures": 0, "seconds": -1}}},
+            "streams.a.seconds: -1 is less than 0",
+        ),
         ({"streams": {"a": {"successes": 1}}}, "streams.a: 'failures' is missing"),
     ],
 )
-def test_a_file_that_is_none_of_ours_is_refused_and_stays(file: Path, change: dict[str, Any], words: str) -> None:
-    document = {"format": "tamp-statistics", "version": 1, "domain": "cupboard", "streams": {}, **change}
+def test_a_file_that_is_none_of_ours_is_refused_and_stays(
+    file: Path, change: dict[str, Any], words: str
+) -> None:
+    document = {
+        "format": "tamp-statistics",
+        "version": 1,
+        "domain": "cupboard",
+        "streams": {},
+        **change,
+    }
     file.write_text(json.dumps(document))
     with pytest.raises(InputError, match=words) as told:
         add_statistics(file, "cupboard", {"ik": ran(1, 1)})
@@ -80,9 +99,12 @@ def test_costs_and_durations_add_up() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cost", "bound", "gap"), [(4.0, 4.0, 0.0), (4.0, 3.0, 0.25), (4.0, 0.0, 1.0), (4.0, 5.0, 0.0), (0.0, 0.0, 0.0)]
+    ("cost", "bound", "gap"),
+    [(4.0, 4.0, 0.0), (4.0, 3.0, 0.25), (4.0, 0.0, 1.0), (4.0, 5.0, 0.0), (0.0, 0.0, 0.0)],
 )
-def test_the_gap_is_the_share_of_the_cost_that_the_bound_leaves(cost: float, bound: float, gap: float) -> None:
+def test_the_gap_is_the_share_of_the_cost_that_the_bound_leaves(
+    cost: float, bound: float, gap: float
+) -> None:
     assert solution(action(cost, 1.0), bound=bound).gap == pytest.approx(gap)
 
 

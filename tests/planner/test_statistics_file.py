@@ -13,7 +13,15 @@ from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 
 
 def plan(folder: Path, name: str = "one_object", *more: str) -> int:
-    words = [name, "--statistics", str(folder / "s.json"), "--out", str(folder / "plan.json"), "--quiet", *more]
+    words = [
+        name,
+        "--statistics",
+        str(folder / "s.json"),
+        "--out",
+        str(folder / "plan.json"),
+        "--quiet",
+        *more,
+    ]
     return run(words)
 
 
@@ -47,10 +55,16 @@ HEAD = '{"format": "tamp-statistics", "version": 1, "domain": "cupboard"'
     [
         ("{", "not JSON"),
         ("[]", "tamp-statistics"),
-        ('{"format": "tamp-statistics", "version": 1, "domain": "other", "streams": {}}', "'other'"),
+        (
+            '{"format": "tamp-statistics", "version": 1, "domain": "other", "streams": {}}',
+            "'other'",
+        ),
         (HEAD + "}", "'streams' is missing"),
         (HEAD + ', "streams": {"plan-pick": {"successes": -1}}}', "plan-pick"),
-        (HEAD + ', "streams": {"x": {"successes": 1, "failures": -1, "seconds": 0}}}', "streams.x.failures"),
+        (
+            HEAD + ', "streams": {"x": {"successes": 1, "failures": -1, "seconds": 0}}}',
+            "streams.x.failures",
+        ),
     ],
 )
 def test_a_broken_file_is_one_error_and_stays(

@@ -30,7 +30,9 @@ class Conditions:
     def generating(self, up: bool, state: bool = False) -> list[str]:
         """The predicates whose atoms say where variables come from."""
         names = [name for name in self.problem.predicates if state or not name.startswith("w")]
-        return [name for name in names if self.kinds[name] == PURE or (up and self.kinds[name] == UP)]
+        return [
+            name for name in names if self.kinds[name] == PURE or (up and self.kinds[name] == UP)
+        ]
 
     def anchor(self, name: str, scope: Scope, same: float) -> Atom:
         """An atom over variables of the scope and new ones, which are put into it."""
@@ -51,7 +53,11 @@ class Conditions:
             terms: list[str] = []
             for kind in self.problem.predicates[name]:
                 mine = [term for term, one in scope.items() if one == kind]
-                choices = [*mine, *mine, *(o for o in self.words if self.problem.objects[o] == kind)]
+                choices = [
+                    *mine,
+                    *mine,
+                    *(o for o in self.words if self.problem.objects[o] == kind),
+                ]
                 if not choices:
                     break
                 terms.append(self.rng.choice(choices))
@@ -74,7 +80,11 @@ class Conditions:
         """A condition that more results help (`up`), or hinder."""
         rng = self.rng
         wanted = {PURE} if pure else {PURE, UP} if up else {PURE, DOWN}
-        kind = rng.choice(("leaf", "leaf", "and", "or", "not", "not", "exists", "forall", "=")) if depth else "leaf"
+        kind = (
+            rng.choice(("leaf", "leaf", "and", "or", "not", "not", "exists", "forall", "="))
+            if depth
+            else "leaf"
+        )
         if kind in ("and", "or"):
             return (kind, *(self.formula(scope, depth - 1, up, pure) for _ in range(2)))
         if kind == "not":
@@ -88,11 +98,18 @@ class Conditions:
             return self.quantified(kind, scope, depth, up, pure)
         if not pure and rng.random() < 0.25:
             other = self.leaf(
-                [name for name, one in self.kinds.items() if one in ({PURE, DOWN} if up else {PURE, UP})], scope
+                [
+                    name
+                    for name, one in self.kinds.items()
+                    if one in ({PURE, DOWN} if up else {PURE, UP})
+                ],
+                scope,
             )
             if other is not None and not other[0].startswith("w"):
                 return ("not", other)
-        names = [name for name, one in self.kinds.items() if one in wanted and not name.startswith("w")]
+        names = [
+            name for name, one in self.kinds.items() if one in wanted and not name.startswith("w")
+        ]
         return self.leaf(names, scope) or ("and",)
 
     def quantified(self, kind: str, scope: Scope, depth: int, up: bool, pure: bool) -> Formula:

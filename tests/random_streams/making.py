@@ -40,7 +40,9 @@ class Maker(Conditions):
             if name in problem.fluents or name in ("st", "st2"):
                 rows = list(self._rows(kinds))
                 problem.init |= {
-                    (name, *row) for row in rows if rng.random() < (0.3 if name in problem.fluents else 0.5)
+                    (name, *row)
+                    for row in rows
+                    if rng.random() < (0.3 if name in problem.fluents else 0.5)
                 }
         return problem
 
@@ -53,11 +55,15 @@ class Maker(Conditions):
         rng = self.rng
         self.declare("is-thing", ("thing",), PURE)
         self.declare("is-spot", ("spot",), PURE)
-        self.problem.init |= {(f"is-{kind}", name) for name, kind in self.problem.objects.items() if kind in THINGS}
+        self.problem.init |= {
+            (f"is-{kind}", name) for name, kind in self.problem.objects.items() if kind in THINGS
+        }
         level: dict[str, int] = {"is-thing": 0, "is-spot": 0, "st": 0, "st2": 0}
         for number in range(rng.randint(2, 5)):
             made = [name for name in level if level[name]]
-            names = rng.choices([*level, *made, *made], k=1 if number == 0 else rng.choice((1, 1, 2)))
+            names = rng.choices(
+                [*level, *made, *made], k=1 if number == 0 else rng.choice((1, 1, 2))
+            )
             scope: Scope = {}
             domain = tuple(self.anchor(name, scope, 0.6) for name in names)
             inputs = tuple(scope.items())
@@ -74,7 +80,9 @@ class Maker(Conditions):
                 params = (*some, *outputs)
                 kinds = tuple(kind for _, kind in params)
                 old = [
-                    p for p, at in level.items() if at == height and self.problem.predicates[p] == kinds and not state
+                    p
+                    for p, at in level.items()
+                    if at == height and self.problem.predicates[p] == kinds and not state
                 ]
                 if old and rng.random() < 0.6:
                     name = rng.choice(old)
@@ -96,7 +104,11 @@ class Maker(Conditions):
                 )
             )
         for name in [name for name, at in level.items() if at]:
-            if "pose0" in self.problem.objects and "pose" in self.problem.predicates[name] and rng.random() < 0.5:
+            if (
+                "pose0" in self.problem.objects
+                and "pose" in self.problem.predicates[name]
+                and rng.random() < 0.5
+            ):
                 rows = list(self._rows(self.problem.predicates[name]))
                 self.problem.init |= {(name, *row) for row in rows if rng.random() < 0.3}
 
@@ -105,7 +117,9 @@ class Maker(Conditions):
         for number in range(rng.randint(2, 4)):
             size = rng.choice((0, 1, 1, 2, 2))
             self.declare(
-                f"f{number}", [rng.choice((*THINGS, *MADE, "thing", "pose", "pose")) for _ in range(size)], PURE
+                f"f{number}",
+                [rng.choice((*THINGS, *MADE, "thing", "pose", "pose")) for _ in range(size)],
+                PURE,
             )
             self.problem.fluents.append(f"f{number}")
 
@@ -125,11 +139,16 @@ class Maker(Conditions):
             if kind == PURE:
                 anchors = [atom for atom in anchors if self.kinds[atom[0]] == PURE]
                 inner = {
-                    term: k for term, k in inner.items() if any(term in atom for atom in anchors) or (term, k) in params
+                    term: k
+                    for term, k in inner.items()
+                    if any(term in atom for atom in anchors) or (term, k) in params
                 }
             parts: list[Formula] = [
                 *anchors,
-                *(self.formula(dict(inner), 1, kind != DOWN, kind == PURE) for _ in range(rng.choice((0, 1, 1)))),
+                *(
+                    self.formula(dict(inner), 1, kind != DOWN, kind == PURE)
+                    for _ in range(rng.choice((0, 1, 1)))
+                ),
             ]
             rng.shuffle(parts)
             new = tuple(pair for pair in inner.items() if pair not in params)
@@ -141,7 +160,8 @@ class Maker(Conditions):
             links = [
                 p
                 for p in self.generating(kind != DOWN)
-                if self.problem.predicates[p] == (kinds[0], kinds[0]) and (kind == UP or self.kinds[p] == PURE)
+                if self.problem.predicates[p] == (kinds[0], kinds[0])
+                and (kind == UP or self.kinds[p] == PURE)
             ]
             if links:
                 link = rng.choice(links)
@@ -155,7 +175,8 @@ class Maker(Conditions):
             [certified, fluent]
             for certified in predicates
             for fluent in self.problem.fluents
-            if certified[0] == "c" and set(predicates[certified]) & set(predicates[fluent]) & set(MADE)
+            if certified[0] == "c"
+            and set(predicates[certified]) & set(predicates[fluent]) & set(MADE)
         ]
         return self.rng.choice(pairs) if pairs else []
 
@@ -196,7 +217,9 @@ class Maker(Conditions):
         if values and rng.random() < 0.2:
             self.problem.functions["price"] = "pose"
             cost = ("price", rng.choice(values))
-        self.problem.acts.append(Act(f"act{number}", tuple(scope.items()), ("and", *parts), tuple(effects), cost))
+        self.problem.acts.append(
+            Act(f"act{number}", tuple(scope.items()), ("and", *parts), tuple(effects), cost)
+        )
 
     def aim(self, any_goal: bool) -> bool:
         """Choose a goal that holds after some random actions; or one that may be out of reach. Whether there is one."""

@@ -93,7 +93,10 @@ class World:
                             self.universe[kind].add(value)
                         else:
                             model.universe.setdefault(kind, set()).add(value)
-                    full = {**env, **dict(zip((name for name, _ in source.outputs), row, strict=True))}
+                    full = {
+                        **env,
+                        **dict(zip((name for name, _ in source.outputs), row, strict=True)),
+                    }
                     found |= {_ground(atom, full) for atom in source.certified}
         return found
 
@@ -140,7 +143,9 @@ class World:
         if head == "exists":
             return any(True for _ in self.solutions(formula[1], formula[2], env, model))
         if head == "forall":
-            return not any(True for _ in self.solutions(formula[1], ("not", formula[2]), env, model))
+            return not any(
+                True for _ in self.solutions(formula[1], ("not", formula[2]), env, model)
+            )
         if head == "=":
             return env.get(formula[1], formula[1]) == env.get(formula[2], formula[2])
         return model.has(_ground(formula, env))
@@ -150,22 +155,34 @@ class World:
         kinds = dict(params)
         inner = {name: value for name, value in env.items() if name not in kinds}
         parts = formula[1:] if formula[0] == "and" else (formula,)
-        atoms = [part for part in parts if part[0] in self.problem.predicates and not kinds.keys().isdisjoint(part[1:])]
+        atoms = [
+            part
+            for part in parts
+            if part[0] in self.problem.predicates and not kinds.keys().isdisjoint(part[1:])
+        ]
         for full in self._join(atoms, kinds, inner, model):
             if self.holds(formula, full, model):
                 yield full
 
-    def _join(self, atoms: Sequence[Atom], kinds: Mapping[str, str], env: Env, model: Model) -> Iterator[Env]:
+    def _join(
+        self, atoms: Sequence[Atom], kinds: Mapping[str, str], env: Env, model: Model
+    ) -> Iterator[Env]:
         if atoms:
             atom = min(
-                atoms, key=lambda one: (sum(t in kinds and t not in env for t in one[1:]), len(model.facts[one[0]]))
+                atoms,
+                key=lambda one: (
+                    sum(t in kinds and t not in env for t in one[1:]),
+                    len(model.facts[one[0]]),
+                ),
             )
             rest = [one for one in atoms if one is not atom]
             for fact in sorted(model.facts[atom[0]]):
                 grown = dict(env)
                 for term, value in zip(atom[1:], fact[1:], strict=True):
                     if term in kinds:
-                        if grown.setdefault(term, value) != value or value not in model.universe.get(kinds[term], ()):
+                        if grown.setdefault(
+                            term, value
+                        ) != value or value not in model.universe.get(kinds[term], ()):
                             break
                     elif env.get(term, term) != value:
                         break
@@ -184,7 +201,11 @@ class World:
         model = self.model(state)
         for act in self.problem.acts:
             for env in list(self.solutions(act.params, act.condition, {}, model)):
-                yield act, tuple(env[name] for name, _ in act.params), self.after(act, env, state, model)
+                yield (
+                    act,
+                    tuple(env[name] for name, _ in act.params),
+                    self.after(act, env, state, model),
+                )
 
     def after(self, act: Act, env: Env, state: State, model: Model) -> State:
         """The state after an action; adding wins over deleting."""
@@ -223,11 +244,19 @@ class World:
             env = dict(zip((param for param, _ in act.params), values, strict=True))
             if not self.holds(act.condition, env, model):
                 return f"{number} {name} {values}: the precondition does not hold"
-            due = self.problem.price(act.cost[0], env[act.cost[1]]) if isinstance(act.cost, tuple) else act.cost
+            due = (
+                self.problem.price(act.cost[0], env[act.cost[1]])
+                if isinstance(act.cost, tuple)
+                else act.cost
+            )
             if cost != due:
                 return f"{number} {name} {values} costs {due}, not {cost}"
             state = self.after(act, env, state, model)
-        return None if self.holds(self.problem.goal, {}, self.model(state)) else "the goal does not hold"
+        return (
+            None
+            if self.holds(self.problem.goal, {}, self.model(state))
+            else "the goal does not hold"
+        )
 
 
 def _ground(atom: Sequence[str], env: Env) -> Atom:

@@ -90,7 +90,9 @@ class Problem:
     init: set[Atom] = field(default_factory=set[Atom])
     goal: Formula = ("and",)
 
-    def table(self, source: Source, inputs: tuple[str, ...], shown: frozenset[Atom] = frozenset()) -> list[Atom]:
+    def table(
+        self, source: Source, inputs: tuple[str, ...], shown: frozenset[Atom] = frozenset()
+    ) -> list[Atom]:
         """All that a stream gives for these values, in order; for a test [()] or []."""
         key = f"{self.seed} {source.name} {inputs} {sorted(shown)}"
         rng = Random(key)
@@ -137,7 +139,9 @@ def domain_text(problem: Problem) -> str:
     """The domain as PDDL."""
     lines = ["(define (domain random)", "(:requirements :adl :derived-predicates :action-costs)"]
     lines.append(f"(:types {' '.join((*THINGS, *MADE, 'way'))} - object)")
-    lines.append(f"(:constants {' '.join(f'{name} - {problem.objects[name]}' for name in CONSTANTS)})")
+    lines.append(
+        f"(:constants {' '.join(f'{name} - {problem.objects[name]}' for name in CONSTANTS)})"
+    )
     predicates = [
         f"({' '.join((name, *(f'?x{i} - {kind}' for i, kind in enumerate(kinds))))})"
         for name, kinds in problem.predicates.items()
@@ -164,7 +168,9 @@ def streams_text(problem: Problem) -> str:
     for source in problem.sources:
         inputs = " ".join(name for name, _ in source.inputs)
         outputs = " ".join(name for name, _ in source.outputs)
-        lines.append(f"(:stream {source.name} :inputs ({inputs}) :domain (and {' '.join(map(text, source.domain))})")
+        lines.append(
+            f"(:stream {source.name} :inputs ({inputs}) :domain (and {' '.join(map(text, source.domain))})"
+        )
         if source.fluents:
             lines.append(f":fluents ({' '.join(source.fluents)})")
         if source.outputs:

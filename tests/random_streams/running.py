@@ -15,11 +15,26 @@ from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.algorithms.registry import ALGORITHMS
 from tamp.symbolic.algorithms.result import Outcome, Result, SearchStatistics, StreamTask
-from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.symbolic.pddl.parser import (
+    output_types,
+    parse_domain,
+    parse_facts,
+    parse_goal,
+    parse_streams,
+)
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tests.random_streams.oracle import World
-from tests.random_streams.problems import CONSTANTS, Atom, Formula, Problem, Source, domain_text, streams_text, text
+from tests.random_streams.problems import (
+    CONSTANTS,
+    Atom,
+    Formula,
+    Problem,
+    Source,
+    domain_text,
+    streams_text,
+    text,
+)
 
 STATES = 300
 """States that the brute force looks at; then it does not say that there is no plan."""
@@ -42,7 +57,9 @@ def stream_function(problem: Problem, source: Source) -> Callable[..., Any]:
     """The stream's function as the planner calls it; tries fail now and then."""
 
     def rows(*inputs: str, call: Call) -> Sequence[Atom]:
-        return problem.table(source, inputs, frozenset(tuple(map(str, fact)) for fact in call.fluents))
+        return problem.table(
+            source, inputs, frozenset(tuple(map(str, fact)) for fact in call.fluents)
+        )
 
     def generate(*inputs: str, call: Call) -> Iterator[Any]:
         for row in rows(*inputs, call=call):
@@ -66,11 +83,17 @@ def stream_task(problem: Problem) -> StreamTask:
         types = output_types(stream, domain)
         function = stream_function(problem, sources[stream.name])
         bound.append(BoundStream(stream, function, tuple(types[name] for name in stream.outputs)))
-    functions = tuple(BoundFunction(one, partial(problem.price, one.name)) for one in declared.functions)
+    functions = tuple(
+        BoundFunction(one, partial(problem.price, one.name)) for one in declared.functions
+    )
     objects = {name: (kind,) for name, kind in problem.objects.items() if name not in CONSTANTS}
     facts = parse_facts(" ".join(map(text, sorted(problem.init))), domain, objects)
-    task = Task("random", domain, objects, facts, parse_goal(text(problem.goal), domain, objects), {})
-    return StreamTask(task, tuple(bound), {name: name for name in objects}, functions, by_value=problem.pooled)
+    task = Task(
+        "random", domain, objects, facts, parse_goal(text(problem.goal), domain, objects), {}
+    )
+    return StreamTask(
+        task, tuple(bound), {name: name for name in objects}, functions, by_value=problem.pooled
+    )
 
 
 def fault(
@@ -90,7 +113,9 @@ def fault(
         return said
     kinds = {value: kind for kind, values in world.universe.items() for value in values}
     kinds |= {value: "way" for fact in certified for value in fact[1:] if value.startswith("way")}
-    used = {value for _, values, _ in plan for value in values} | {value for fact in certified for value in fact[1:]}
+    used = {value for _, values, _ in plan for value in values} | {
+        value for fact in certified for value in fact[1:]
+    }
     extra = {value: kinds[value] for value in used - problem.objects.keys()}
     still = [fact for fact in certified if fact[0] not in shown]
     alone = World(problem, still, extra, (world, frozenset(certified))).fault(plan)
@@ -108,7 +133,10 @@ def judged(problem: Problem, result: Result) -> str | None:
 def run_algorithm(problem: Problem, name: str, seconds: float, seed: int = 0) -> Verdict:
     """How an algorithm ends, and what is wrong with its plan."""
     result = ALGORITHMS[name](
-        stream_task(problem), lambda key: random.Random(f"{seed} {key}"), Deadline(seconds), lambda effort: None
+        stream_task(problem),
+        lambda key: random.Random(f"{seed} {key}"),
+        Deadline(seconds),
+        lambda effort: None,
     )
     said = judged(problem, result) if result.outcome is Outcome.SOLVED else None
     return Verdict(result.outcome, said, result.effort.refuted)
@@ -155,7 +183,9 @@ def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int =
 
     def adapted(source: Source) -> Any:
         def rows(*inputs: str, fluents: Sequence[Atom] = ()) -> Sequence[Atom]:
-            return problem.table(source, inputs, frozenset(tuple(map(str, fact)) for fact in fluents))
+            return problem.table(
+                source, inputs, frozenset(tuple(map(str, fact)) for fact in fluents)
+            )
 
         if not source.outputs:
             return from_test(lambda *inputs, **shown: bool(rows(*inputs, **shown)))
@@ -180,7 +210,11 @@ def run_pddlstream(problem: Problem, algorithm: str, seconds: float, seed: int =
         act = acts[action.name]
         names = [name for name, _ in act.params]
         cost = act.cost
-        due = problem.price(cost[0], action.args[names.index(cost[1])]) if isinstance(cost, tuple) else cost
+        due = (
+            problem.price(cost[0], action.args[names.index(cost[1])])
+            if isinstance(cost, tuple)
+            else cost
+        )
         plan.append((action.name, action.args, due))
     said = fault(problem, plan, [tuple(fact) for fact in solution.certificate])
     return Verdict(solution.outcome, said, solution.effort.refuted)
@@ -197,7 +231,13 @@ def _listed(formula: Formula) -> Any:
 def compare(problem: Problem, ways: dict[str, Way]) -> Row:
     """The brute force and the planner's ways: what each says, which plans are wrong, missed, or dropped by itself."""
     solvable = World(problem).solvable(STATES)
-    row: Row = {"seed": problem.seed, "solvable": solvable, "wrong": {}, "missed": {}, "refuted": {}}
+    row: Row = {
+        "seed": problem.seed,
+        "solvable": solvable,
+        "wrong": {},
+        "missed": {},
+        "refuted": {},
+    }
     for name, way in ways.items():
         outcome, said, refuted = way(problem)
         row[name] = outcome.name

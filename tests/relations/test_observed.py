@@ -23,7 +23,13 @@ STREAMS = parse_streams(
   (:stream test-left :inputs (?o ?p ?s) :domain (and (pose ?o ?p) (surface ?s)) :certified (left ?o ?p ?s)))""",
     DOMAIN,
 )
-OBJECTS = {"cup": ("movable",), "box": ("movable",), "table": ("surface",), "p1": ("pose",), "p2": ("pose",)}
+OBJECTS = {
+    "cup": ("movable",),
+    "box": ("movable",),
+    "table": ("surface",),
+    "p1": ("pose",),
+    "p2": ("pose",),
+}
 CUBE = Box((0.1, 0.1, 0.1))
 SCENE = scene(table(), body("Cup", CUBE, (-0.2, 0, 0.551)), body("box", CUBE, (0.2, 0, 0.551)))
 
@@ -45,14 +51,27 @@ class Left:
 def seen(classifier: Left, at: dict[str, str] | None = None, made: Scene = SCENE) -> Observation:
     relation = relation_of(STREAMS, DOMAIN, "left")
     assert relation is not None
-    return observe(relation, classifier, made, DOMAIN, OBJECTS, (), {"cup": "p1", "box": "p2"} if at is None else at)
+    return observe(
+        relation,
+        classifier,
+        made,
+        DOMAIN,
+        OBJECTS,
+        (),
+        {"cup": "p1", "box": "p2"} if at is None else at,
+    )
 
 
 def test_answers_become_facts_of_the_poses_that_bodies_have() -> None:
     classifier = Left()
     found = seen(classifier)
-    assert found.holds == {("left", "cup", "p1", "table")} and found.fails == {("left", "box", "p2", "table")}
-    assert sorted(classifier.asked) == [("Cup", "table"), ("box", "table")]  # the scene's names, not PDDL's
+    assert found.holds == {("left", "cup", "p1", "table")} and found.fails == {
+        ("left", "box", "p2", "table")
+    }
+    assert sorted(classifier.asked) == [
+        ("Cup", "table"),
+        ("box", "table"),
+    ]  # the scene's names, not PDDL's
     assert found.answers == {("cup", "table"): 1.0, ("box", "table"): 0.0}
 
 
@@ -83,7 +102,8 @@ def test_a_body_without_a_pose_is_not_asked_about() -> None:
 def test_a_classifier_that_answers_nothing_is_refused() -> None:
     found = seen(Left(Cup=ValueError("broken"), box=2.0))
     with pytest.raises(
-        InputError, match=r"the classifier of 'left' does not work: asked of \(left (cup|box) table\), it"
+        InputError,
+        match=r"the classifier of 'left' does not work: asked of \(left (cup|box) table\), it",
     ):
         refuse_silent("left", found)
     refuse_silent("left", Observation())  # it was asked nothing

@@ -20,7 +20,12 @@ from tamp.verification.initial_state import apart
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
 AWAY = Body("away", (Part(Box((0.1, 0.1, 0.1))),), Pose((2.0, 2.0, 0.05)), True)
-SCENE = Scene("one", {"held": HELD, "away": AWAY}, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), Room((-3, 3), (-3, 3)))
+SCENE = Scene(
+    "one",
+    {"held": HELD, "away": AWAY},
+    RobotStart("panda_mobile", (0.0, 0.0, 0.0)),
+    Room((-3, 3), (-3, 3)),
+)
 
 
 @pytest.fixture(params=[name for name in ENGINES if installed(name)])
@@ -106,7 +111,9 @@ def off_centre(request: pytest.FixtureRequest) -> Iterator[Actuated]:
         yield made
 
 
-def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(off_centre: Actuated) -> None:
+def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(
+    off_centre: Actuated,
+) -> None:
     T = held_off_centre(off_centre)
     for angle in (2.0, -2.0, 2.0):
         turned(off_centre, angle, 3.0)

@@ -12,7 +12,9 @@ from tamp.simulation.engines import open_drops
 
 def test_a_box_stands_flat_and_falls_from_its_edge() -> None:
     table = Item((Part(Box((1.0, 1.0, 0.1)), Pose((0.0, 0.0, 0.45))),))
-    box = Item((Part(Box((0.05, 0.05, 0.1))), Part(Box((0.1, 0.05, 0.02)), Pose((0.0, 0.0, -0.04)))))
+    box = Item(
+        (Part(Box((0.05, 0.05, 0.1))), Part(Box((0.1, 0.05, 0.02)), Pose((0.0, 0.0, -0.04))))
+    )
     flat = Pose((0.0, 0.0, 0.551)).matrix
     with open_drops() as drops:
         drops.set_up(box, [(table, np.eye(4))])

@@ -15,7 +15,14 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene
 from tamp.simulation import engines
-from tamp.simulation.engines import ENGINES, default_engine, engine, installed, open_actuated, open_world
+from tamp.simulation.engines import (
+    ENGINES,
+    default_engine,
+    engine,
+    installed,
+    open_actuated,
+    open_world,
+)
 from tamp.simulation.shapes import centre_of_mass, inertia
 
 INSTALLED = [name for name in ENGINES if installed(name)]
@@ -32,7 +39,9 @@ def test_pybullet_is_the_default_where_it_is_installed() -> None:
     assert default_engine() == ("pybullet" if "pybullet" in INSTALLED else "mujoco")
 
 
-def test_an_engine_that_is_not_installed_is_one_error_with_its_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_engine_that_is_not_installed_is_one_error_with_its_remedy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(engines, "installed", lambda name: name == "mujoco")
     assert default_engine() == "mujoco"
     with pytest.raises(InputError, match="'pybullet' is not installed") as said:
@@ -77,9 +86,16 @@ def test_distances_of_near_pairs_against_coal(name: str) -> None:
 def test_both_engines_have_links_in_the_same_places(model: str, rng: np.random.Generator) -> None:
     robot = ROBOTS[model]()
     scene = Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM)
-    with open_world(scene, robot, name="pybullet") as one, open_world(scene, robot, name="mujoco") as two:
+    with (
+        open_world(scene, robot, name="pybullet") as one,
+        open_world(scene, robot, name="mujoco") as two,
+    ):
         for _ in range(20):
-            state = rng.uniform(-2, 2, 3), rng.uniform(robot.lower, robot.upper), float(rng.uniform(0, robot.opening))
+            state = (
+                rng.uniform(-2, 2, 3),
+                rng.uniform(robot.lower, robot.upper),
+                float(rng.uniform(0, robot.opening)),
+            )
             one.set_robot(*state)
             two.set_robot(*state)
             first, second = one.link_poses(), two.link_poses()
@@ -100,7 +116,9 @@ def test_a_distance_past_the_reach_is_infinite(name: str) -> None:
 
 def test_inertia_of_a_hull_is_that_of_the_same_box() -> None:
     size = np.array([0.1, 0.2, 0.3])
-    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+    corners = (
+        np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+    )
     squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     faces = np.array([(a, b, c) for a, b, c, _ in squares] + [(a, c, d) for a, _, c, d in squares])
     expected = 2.0 / 12 * np.diag([0.2**2 + 0.3**2, 0.1**2 + 0.3**2, 0.1**2 + 0.2**2])
@@ -111,12 +129,16 @@ def test_inertia_of_a_hull_is_that_of_the_same_box() -> None:
 
 def test_inertia_of_two_parts_is_that_of_the_whole() -> None:
     turned = Pose.from_xyz_rpy((0.3, 0.1, -0.2), (0.4, -0.7, 1.1))
-    halves = [Part(Cylinder(0.03, 0.05), turned @ Pose((0.0, 0.0, side * 0.025))) for side in (-1, 1)]
+    halves = [
+        Part(Cylinder(0.03, 0.05), turned @ Pose((0.0, 0.0, side * 0.025))) for side in (-1, 1)
+    ]
     whole = (Part(Cylinder(0.03, 0.1), turned),)
     assert inertia(halves, 1.5) == pytest.approx(inertia(whole, 1.5))
     assert centre_of_mass(halves) == pytest.approx(centre_of_mass(whole))
     across, along = np.linalg.eigvalsh(inertia(whole, 1.5))[[1, 0]]
-    assert along == pytest.approx(1.5 * 0.03**2 / 2) and across == pytest.approx(1.5 * (3 * 0.03**2 + 0.1**2) / 12)
+    assert along == pytest.approx(1.5 * 0.03**2 / 2) and across == pytest.approx(
+        1.5 * (3 * 0.03**2 + 0.1**2) / 12
+    )
 
 
 @pytest.mark.parametrize("name", INSTALLED)
@@ -127,7 +149,13 @@ def test_friction_of_a_pair_is_the_product(name: str, table: float, body: float)
         angle = math.atan(table * body * steepness)
         slope = Pose.from_xyz_rpy((0.0, 0.0, 1.0), (0.0, angle, 0.0))
         under = Body("under", (Part(Box((3.0, 1.0, 0.1))),), slope, movable=False, friction=table)
-        block = Body("block", (Part(Box((0.1, 0.1, 0.03))),), slope @ Pose((0.0, 0.0, 0.0651)), True, friction=body)
+        block = Body(
+            "block",
+            (Part(Box((0.1, 0.1, 0.03))),),
+            slope @ Pose((0.0, 0.0, 0.0651)),
+            True,
+            friction=body,
+        )
         with open_world(scene_of(under, block), dynamic=True, name=name) as world:
             world.step(0.3)  # it meets the slope
             before = world.pose("block")[:3, 3]
@@ -138,7 +166,12 @@ def test_friction_of_a_pair_is_the_product(name: str, table: float, body: float)
 
 @pytest.mark.parametrize("name", INSTALLED)
 def test_a_ball_and_a_can_that_roll_come_to_rest(name: str) -> None:
-    can = Body("can", (Part(Cylinder(0.03, 0.1)),), Pose.from_xyz_rpy((0.0, 0.0, 0.03), (math.pi / 2, 0.0, 0.0)), True)
+    can = Body(
+        "can",
+        (Part(Cylinder(0.03, 0.1)),),
+        Pose.from_xyz_rpy((0.0, 0.0, 0.03), (math.pi / 2, 0.0, 0.0)),
+        True,
+    )
     with open_actuated(scene_of(can), ROBOTS["panda_mobile"](), name=name) as world:
         world.put("can", Pose.from_xyz_rpy((0.9, 0.0, 0.05), (math.pi / 2, 0.05, 0.0)).matrix)
         world.wait(4.0)
@@ -156,14 +189,18 @@ def test_rays_that_begin_inside_a_body_meet_it_at_once(name: str, depth: float) 
         (short, at), (long, there), (outside, far), (missed, _) = world.rays(starts, ends)
     assert (outside, missed) == ("block", None) and far == pytest.approx(0.15 / 0.4, abs=1e-3)
     if name == "mujoco" or depth < 5e-4:  # pybullet does not see a surface from deep inside
-        assert (short, long) == ("block", "block") and (at, there) == pytest.approx((0.0, 0.0), abs=1e-3)
+        assert (short, long) == ("block", "block") and (at, there) == pytest.approx(
+            (0.0, 0.0), abs=1e-3
+        )
 
 
 @pytest.mark.parametrize("name", INSTALLED)
 @pytest.mark.parametrize("model", ROBOTS)
 def test_every_shipped_robot_follows_its_motors(model: str, name: str) -> None:
     robot = ROBOTS[model]()
-    with open_actuated(Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM), robot, name=name) as world:
+    with open_actuated(
+        Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM), robot, name=name
+    ) as world:
         for _ in range(60):
             world.conf[3:] += 0.2 / 60
             world.tick()

@@ -12,7 +12,17 @@ import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene, Sphere
+from tamp.geometric.scene.scene import (
+    Body,
+    Box,
+    Cylinder,
+    Hull,
+    Part,
+    RobotStart,
+    Room,
+    Scene,
+    Sphere,
+)
 from tamp.simulation.engines import open_world
 from tamp.simulation.physics import load_bullet
 from tamp.simulation.settle import settle
@@ -43,7 +53,9 @@ def scene_of(*bodies: Body) -> Scene:
     return Scene("test", {body.name: body for body in bodies}, ROBOT, Room((-3, 3), (-3, 3)))
 
 
-def body(name: str, *parts: Part, at: tuple[float, float, float] = (0, 0, 0), movable: bool = True) -> Body:
+def body(
+    name: str, *parts: Part, at: tuple[float, float, float] = (0, 0, 0), movable: bool = True
+) -> Body:
     return Body(name, parts, Pose(at), movable)
 
 
@@ -113,7 +125,10 @@ def test_centre_of_mass_of_two_parts() -> None:
 
 def test_a_resting_body_stays_and_a_leaning_one_falls() -> None:
     table = Body("table", (Part(Box((1.0, 1.0, 0.1))),), Pose((0, 0, 0.5)), movable=False)
-    block, bottle = body("block", Part(Box((0.06, 0.06, 0.2)))), body("bottle", Part(cube_hull(0.06)))
+    block, bottle = (
+        body("block", Part(Box((0.06, 0.06, 0.2)))),
+        body("bottle", Part(cube_hull(0.06))),
+    )
     ball = body("two", Part(cube_hull(0.04)), Part(Cylinder(0.02, 0.04), Pose((0, 0, 0.04))))
     poses = {
         "block": Pose((0, 0, 0.651)),

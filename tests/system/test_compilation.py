@@ -46,7 +46,9 @@ def run(folder: Path, hits: int, **environment: str) -> str:
     (folder / "adding.py").write_text(ADDING.replace("HITS", str(hits)))
     known = {name: text for name, text in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     environment = {**known, "PYTHONPATH": os.pathsep.join([str(folder), *sys.path]), **environment}
-    done = subprocess.run([sys.executable, "-c", "import adding"], env=environment, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "import adding"], env=environment, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     return done.stderr
 

@@ -10,7 +10,9 @@ from tamp.errors import InputError
 from tamp.system.files import cache_folder, find_domain, find_problem, shipped, write_whole
 
 
-def test_shipped_files_are_found_by_name_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shipped_files_are_found_by_name_from_anywhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     for name in ("four_objects", "four_objects.yaml"):
         assert find_problem(name) == shipped("problems") / "four_objects.yaml"
@@ -36,8 +38,14 @@ def test_a_domain_beside_the_problem_comes_first(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("for_objects", r"unknown problem 'for_objects'. Choices: .*four_objects.*Did you mean 'four_objects'\?"),
-        ("there/one_object.yaml", r"no such file: there/one_object.yaml.*Did you mean 'one_object'\?"),
+        (
+            "for_objects",
+            r"unknown problem 'for_objects'. Choices: .*four_objects.*Did you mean 'four_objects'\?",
+        ),
+        (
+            "there/one_object.yaml",
+            r"no such file: there/one_object.yaml.*Did you mean 'one_object'\?",
+        ),
         ("", "no problem given"),
         (".", r"unknown problem '.'"),
     ],
@@ -50,7 +58,9 @@ def test_what_is_not_there_is_said_with_the_choices(name: str, message: str) -> 
 def test_streams_are_no_domains() -> None:
     with pytest.raises(InputError, match="unknown domain 'cupbord'") as caught:
         find_domain("cupbord")
-    assert "cupboard" in caught.value.choices and not any("streams" in choice for choice in caught.value.choices)
+    assert "cupboard" in caught.value.choices and not any(
+        "streams" in choice for choice in caught.value.choices
+    )
 
 
 def test_the_cache_folder_can_be_chosen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

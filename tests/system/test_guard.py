@@ -26,7 +26,9 @@ def start(tmp_path: Path, code: str) -> subprocess.Popen[str]:
     words = [sys.executable, "-c", "from tamp.system.guard import guarded; guarded('stubborn')"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
     pipe = subprocess.PIPE
-    return subprocess.Popen(words, stdout=pipe, stderr=pipe, text=True, env=environment, start_new_session=True)
+    return subprocess.Popen(
+        words, stdout=pipe, stderr=pipe, text=True, env=environment, start_new_session=True
+    )
 
 
 def ask(process: subprocess.Popen[str], number: int, *, group: bool = False) -> tuple[str, str]:
@@ -93,7 +95,8 @@ def test_whatever_it_does_it_ends(code: str, number: int, tmp_path: Path) -> Non
 def test_what_was_found_is_kept(tmp_path: Path) -> None:
     code = "import time\ndef main():\n    print('ready', flush=True)\n    try:\n        time.sleep(600)\n"
     process = start(
-        tmp_path, code + "    except KeyboardInterrupt:\n        print('the best plan')\n        return 0\n"
+        tmp_path,
+        code + "    except KeyboardInterrupt:\n        print('the best plan')\n        return 0\n",
     )
     assert ask(process, INT) == ("the best plan\n", "") and process.returncode == 0
 
@@ -113,7 +116,12 @@ def test_what_was_found_is_kept(tmp_path: Path) -> None:
 def test_left_alone_it_ends_as_it_would(body: str, code: int, err: str, tmp_path: Path) -> None:
     process = start(tmp_path, f"def main():\n    print('said', flush=True)\n    {body}\n")
     out, said = process.communicate(timeout=SLACK)
-    assert process.returncode == code and out == "said\n" and said.endswith(err) and bool(said) == bool(err)
+    assert (
+        process.returncode == code
+        and out == "said\n"
+        and said.endswith(err)
+        and bool(said) == bool(err)
+    )
 
 
 PARENT = """
@@ -137,7 +145,9 @@ def test_what_it_started_ends_with_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", [INT, TERM])
 def test_so_does_it_when_the_one_who_works_leaves_first(number: int, tmp_path: Path) -> None:
     """As at a terminal, whose Ctrl-C comes to both: who watches is stopped until the other has gone."""
-    code = PARENT.replace("import time; time.sleep(600)", "import os, time; os.setpgid(0, 0); time.sleep(600)")
+    code = PARENT.replace(
+        "import time; time.sleep(600)", "import os, time; os.setpgid(0, 0); time.sleep(600)"
+    )
     process = start(tmp_path, code.replace("    print(os", "    time.sleep(1.0)\n    print(os"))
     assert process.stdout is not None
     worker, child = (int(word) for word in process.stdout.readline().split())
@@ -171,13 +181,19 @@ COMMANDS = [
 
 @pytest.mark.parametrize(("command", "words"), COMMANDS)
 @pytest.mark.parametrize("moment", [0.1, 0.7])
-def test_every_command_ends_early_on(command: str, words: str, moment: float, tmp_path: Path) -> None:
+def test_every_command_ends_early_on(
+    command: str, words: str, moment: float, tmp_path: Path
+) -> None:
     """While it imports, where a KeyboardInterrupt is a traceback or is lost in somebody's `except`."""
     code = f"import sys, tamp.commands.entry_points; print('ready', flush=True); tamp.commands.entry_points.{command}()"
     number = INT if moment < 0.5 else TERM
     pipe = subprocess.PIPE
     process = subprocess.Popen(
-        [sys.executable, "-c", code, *words.split()], cwd=tmp_path, stdout=pipe, stderr=pipe, text=True
+        [sys.executable, "-c", code, *words.split()],
+        cwd=tmp_path,
+        stdout=pipe,
+        stderr=pipe,
+        text=True,
     )
     assert process.stdout is not None and process.stdout.readline() == "ready\n"
     time.sleep(moment)
@@ -185,13 +201,24 @@ def test_every_command_ends_early_on(command: str, words: str, moment: float, tm
     _, err = process.communicate(timeout=SLACK)
     assert "Traceback" not in err and "Exception" not in err
     # a plan file that is not there may have been missed before the signal came
-    assert process.returncode == 128 + number or (process.returncode == 2 and "plan.json" in err), err
+    assert process.returncode == 128 + number or (process.returncode == 2 and "plan.json" in err), (
+        err
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [INT, signal.SIGKILL])
 def test_the_workers_of_generate_leave_with_their_leader(number: int, tmp_path: Path) -> None:
-    words = ["generate", "on", "--count", "5000", "--workers", "2", "--out", str(tmp_path / "data.npz")]
+    words = [
+        "generate",
+        "on",
+        "--count",
+        "5000",
+        "--workers",
+        "2",
+        "--out",
+        str(tmp_path / "data.npz"),
+    ]
     process = subprocess.Popen(
         [sys.executable, "-c", "from tamp.commands.entry_points import learn; learn()", *words],
         stderr=subprocess.DEVNULL,
@@ -241,7 +268,11 @@ def test_an_import_is_left_at_once(tmp_path: Path) -> None:
     code = "from tamp.system.guard import guarded; guarded('command')"
     environment = {**os.environ, "PYTHONPATH": f"{tmp_path}:{Path.cwd()}"}
     process = subprocess.Popen(
-        [sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", code],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout is not None and process.stdout.readline() == "ready\n"
     process.send_signal(INT)

@@ -83,7 +83,9 @@ def test_who_knows_of_the_end_may_say_what_was_found() -> None:
 
     assert Alarm(deadline, grace=0.0, again=0.02).run(work) == "found"
     with pytest.raises(KeyboardInterrupt):
-        Alarm(deadline).run(lambda: signal.raise_signal(signal.SIGINT))  # but the user is always heard
+        Alarm(deadline).run(
+            lambda: signal.raise_signal(signal.SIGINT)
+        )  # but the user is always heard
 
 
 def test_nothing_rings_on_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,7 +109,9 @@ def test_nothing_rings_on_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
-def test_a_signal_on_the_way_out_is_heard_when_all_is_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_signal_on_the_way_out_is_heard_when_all_is_in_order(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     inside = Alarm._inside
 
     def asked_while_leaving(self: Alarm, work: Callable[[], object]) -> object:

@@ -78,7 +78,10 @@ def test_plain_numbers_are_read_as_they_are(numbers: list[float]) -> None:
 def test_rows_and_members() -> None:
     assert root([[1, 2], [3, 4]]).rows(2).tolist() == [[1.0, 2.0], [3.0, 4.0]]
     members = Field({"a": 1, "b": 2}, "values", None).fields()
-    assert {name: field.where for name, field in members.items()} == {"a": "values.a", "b": "values.b"}
+    assert {name: field.where for name, field in members.items()} == {
+        "a": "values.a",
+        "b": "values.b",
+    }
 
 
 def test_a_word_of_a_megabyte_is_told_by_its_beginning() -> None:

@@ -97,7 +97,10 @@ def test_what_is_missing_is_one_line(kind: type) -> None:
 
 def test_options_that_may_be_repeated() -> None:
     assert read_options(View, "try", ["one_object", "--at", "1", "--at", "2.5"]).at == (1.0, 2.5)
-    assert read_options(Verify, "try", ["p", "--sampler", "a=x", "--sampler", "b=y"]).sampler == ("a=x", "b=y")
+    assert read_options(Verify, "try", ["p", "--sampler", "a=x", "--sampler", "b=y"]).sampler == (
+        "a=x",
+        "b=y",
+    )
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,9 @@ from tamp.system.outputs import check_outputs, check_writable, locked_folder, wr
 from tamp.system.scratch import scratch_folder
 from tamp.system.terminal import spoken
 
-DOMAIN = "(define (domain d) (:predicates (p)) (:action a :parameters () :precondition () :effect (p)))"
+DOMAIN = (
+    "(define (domain d) (:predicates (p)) (:action a :parameters () :precondition () :effect (p)))"
+)
 TASK = "(define (problem t) (:domain d) (:init) (:goal (p)))"
 
 
@@ -41,10 +43,14 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = find_problem("one_object").read_text(encoding="utf-8")
     line = next(line for line in text.splitlines() if line.startswith("  soup_can:"))
     support = line[line.index("on:") :]
-    (folder / "p.yaml").write_text(text.replace(line, f"  soup_can: {{mesh: can.obj, {support}"), encoding="utf-8")
+    (folder / "p.yaml").write_text(
+        text.replace(line, f"  soup_can: {{mesh: can.obj, {support}"), encoding="utf-8"
+    )
     corners = "".join(f"v {x} {y} {z}\n" for x in (0, 0.05) for y in (0, 0.05) for z in (0, 0.1))
     faces = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
-    (folder / "can.obj").write_text(f"mtllib can.mtl\n{corners}usemtl paint\n{faces}", encoding="utf-8")
+    (folder / "can.obj").write_text(
+        f"mtllib can.mtl\n{corners}usemtl paint\n{faces}", encoding="utf-8"
+    )
     (folder / "can.mtl").write_text("newmtl paint\nmap_Kd paint.png\n", encoding="utf-8")
     (folder / "paint.png").write_bytes(b"a picture")
     for suffix in (".pddl", ".streams.pddl"):
@@ -72,7 +78,11 @@ def folder(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 Command = Callable[[list[str]], int]
@@ -134,7 +144,17 @@ def test_what_is_no_log_of_ours_is_never_touched(tmp_path: Path) -> None:
     notes = tmp_path / "notes.txt"
     for content in (b"mine", b'{"mine": 1}\n', b"one\ntwo"):
         notes.write_bytes(content)
-        words = ["run", "--problems", "one_object", "--samplers", "default", "--seeds", "1", "--out", str(notes)]
+        words = [
+            "run",
+            "--problems",
+            "one_object",
+            "--samplers",
+            "default",
+            "--seeds",
+            "1",
+            "--out",
+            str(notes),
+        ]
         assert bench(words) == BAD_INPUT
         assert notes.read_bytes() == content
 
@@ -149,7 +169,9 @@ def test_a_link_is_followed_and_permissions_are_kept(tmp_path: Path) -> None:
     assert stat.S_IMODE(target.stat().st_mode) == 0o640
 
 
-def test_a_full_disk_leaves_the_old_file_and_no_new_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_leaves_the_old_file_and_no_new_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(*args: object) -> int:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -159,7 +181,9 @@ def test_a_full_disk_leaves_the_old_file_and_no_new_folder(tmp_path: Path, monke
     for path in (file, tmp_path / "new" / "deep" / "plan.json"):
         with pytest.raises(OSError, match="No space left"):
             write_whole(path, b"new")
-    assert [path.name for path in tmp_path.iterdir()] == ["plan.json"] and file.read_bytes() == b"old"
+    assert [path.name for path in tmp_path.iterdir()] == [
+        "plan.json"
+    ] and file.read_bytes() == b"old"
 
 
 def test_a_picture_that_fails_loses_no_plan(
@@ -209,7 +233,9 @@ def test_a_killed_run_leaves_the_old_file_and_the_next_one_tidies_up(tmp_path: P
 def test_a_protected_file_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "plan.json"
     file.write_bytes(b"old")
-    monkeypatch.setattr("tamp.system.outputs.os.access", lambda path, mode: False)  # root may write everywhere
+    monkeypatch.setattr(
+        "tamp.system.outputs.os.access", lambda path, mode: False
+    )  # root may write everywhere
     with pytest.raises(InputError, match="Permission denied"):
         check_writable(file)
     with pytest.raises(OSError, match="Permission denied"):
@@ -251,16 +277,26 @@ def test_a_full_disk_is_one_error_in_every_command(
         assert command(line.split()) == BAD_INPUT
         said = capsys.readouterr().err.splitlines()
         errors = [line for line in said if line.startswith("error: ")]
-        assert len(errors) == 1 and said[-1] == errors[0], said  # warnings of what was collected may stand before it
-        assert "No space left on device" in errors[0] and re.search(r"[ /]out\.(json|png|html|npz): ", said[-1]), said
+        assert len(errors) == 1 and said[-1] == errors[0], (
+            said
+        )  # warnings of what was collected may stand before it
+        assert "No space left on device" in errors[0] and re.search(
+            r"[ /]out\.(json|png|html|npz): ", said[-1]
+        ), said
     assert contents(folder) == before
 
 
 def test_folders_of_a_moment_are_tidied_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    dead = next(number for number in range(4_000_000, 1, -1) if not Path(f"/proc/{number}").exists())
+    dead = next(
+        number for number in range(4_000_000, 1, -1) if not Path(f"/proc/{number}").exists()
+    )
     old = time.time() - 1000
-    for name, age in ((f"tamp-{dead}-abc", old), (f"tamp-{os.getpid()}-abc", old), ("tamp-mine", old)):
+    for name, age in (
+        (f"tamp-{dead}-abc", old),
+        (f"tamp-{os.getpid()}-abc", old),
+        ("tamp-mine", old),
+    ):
         (tmp_path / name).mkdir()
         os.utime(tmp_path / name, (age, age))
     (tmp_path / f"tamp-{dead}-young").mkdir()
@@ -271,10 +307,17 @@ def test_folders_of_a_moment_are_tidied_up(tmp_path: Path, monkeypatch: pytest.M
     )
 
 
-def test_a_folder_of_the_users_is_not_removed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_of_the_users_is_not_removed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     mine = tmp_path / ".x.parts"
     mine.mkdir()
     (mine / "diary").write_text("dear", encoding="utf-8")
-    assert learn(["generate", "on", "--count", "2", "--workers", "1", "--out", str(tmp_path / "x.npz")]) == BAD_INPUT
+    assert (
+        learn(
+            ["generate", "on", "--count", "2", "--workers", "1", "--out", str(tmp_path / "x.npz")]
+        )
+        == BAD_INPUT
+    )
     assert "is in the way" in capsys.readouterr().err
     assert (mine / "diary").is_file()

@@ -31,7 +31,12 @@ def test_counters_never_shrink_whoever_reports(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setattr("tamp.system.progress.OFTEN", 0.0)
     progress = Progress(quiet=False)
-    for skeletons, draws in ((1, 10), (3, 500), (0, 7), (2, 90)):  # the third has counters of its own
+    for skeletons, draws in (
+        (1, 10),
+        (3, 500),
+        (0, 7),
+        (2, 90),
+    ):  # the third has counters of its own
         progress.update(SearchStatistics(skeletons=skeletons, draws=draws))
     progress.begin("trying without lamp")
     for skeletons, draws in ((0, 5), (1, 20), (0, 3)):
@@ -65,7 +70,8 @@ def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    "parts", [{}, {"search": 0.3}, {"a": 1.0, "b": 1.0, "c": 1.0}, {"a": 2.9996, "b": 0.0001}, {"a": 5.0}]
+    "parts",
+    [{}, {"search": 0.3}, {"a": 1.0, "b": 1.0, "c": 1.0}, {"a": 2.9996, "b": 0.0001}, {"a": 5.0}],
 )
 def test_shares_add_up(parts: dict[str, float]) -> None:
     shares = time_shares(parts, 3.0, "other")
@@ -96,7 +102,10 @@ CROWDED = "(and (on can post) (on cup post) (on mug post))"
     [(CROWDED, Outcome.TIMEOUT), ("(and (on can table) (on can stand))", Outcome.INFEASIBLE)],
 )
 def test_the_time_line_adds_up_to_what_passed(
-    goal: str, outcome: Outcome, tmp_path_factory: pytest.TempPathFactory, capsys: pytest.CaptureFixture[str]
+    goal: str,
+    outcome: Outcome,
+    tmp_path_factory: pytest.TempPathFactory,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     path = tmp_path_factory.mktemp("scene") / "scene.yaml"
     path.write_text(SEALED.replace("GOAL", goal), encoding="utf-8")
@@ -105,7 +114,11 @@ def test_the_time_line_adds_up_to_what_passed(
     passed = time.monotonic() - began
     text = capsys.readouterr().out
     assert ("infeasible" in text) == (outcome is Outcome.INFEASIBLE)
-    line = re.search(r"^  time     ([\d.]+) s after ([\d.]+) s of loading: (.*(?:\n {11}.*)*)", text, re.MULTILINE)
+    line = re.search(
+        r"^  time     ([\d.]+) s after ([\d.]+) s of loading: (.*(?:\n {11}.*)*)",
+        text,
+        re.MULTILINE,
+    )
     assert line is not None, text
     assert float(line[1]) + float(line[2]) == pytest.approx(passed, abs=0.7)
     assert sum(int(share) for share in re.findall(r"(\d+) %", line[3])) == 100

@@ -59,7 +59,9 @@ def test_an_encoding_that_it_says_is_obeyed(file: Path) -> None:
         ("assert False\n", "it cannot be run: AssertionError", None),
     ],
 )
-def test_a_file_that_fails_is_bad_input(file: Path, text: str, words: str, line: int | None) -> None:
+def test_a_file_that_fails_is_bad_input(
+    file: Path, text: str, words: str, line: int | None
+) -> None:
     file.write_text(text)
     with pytest.raises(InputError, match=words) as told:
         python_object(file)

@@ -51,7 +51,9 @@ def gone(pid: int, within: float = 5.0) -> bool:
     end = time.monotonic() + within
     while time.monotonic() < end:
         try:
-            state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[0]
+            state = (
+                Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[0]
+            )
         except OSError:
             return True
         if state == "Z":
@@ -127,7 +129,9 @@ race([endless] * 3, lambda number, answer: True, Deadline(600), news)
 
 
 def test_the_runs_leave_even_when_the_one_who_started_them_is_killed() -> None:
-    done = subprocess.run([sys.executable, "-c", KILLED], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED], capture_output=True, text=True, timeout=60, check=False
+    )
     pids = [int(word) for word in done.stdout.split()]
     assert len(pids) == 3 and done.returncode == -signal.SIGKILL
     assert all(map(gone, pids))
@@ -138,7 +142,9 @@ def test_whoever_wins_its_seed_makes_the_plan_again() -> None:
     won = solve_parallel(problem, jobs=2, seed=5, accept=lambda solution: solution.seed != 5)
     assert won.solved and won.seed == member_seed(5, 1) == 5 + STEP
     alone = solve(load_problem("one_object"), seed=won.seed)
-    assert plan_text(won).partition('"statistics"')[0] == plan_text(alone).partition('"statistics"')[0]
+    assert (
+        plan_text(won).partition('"statistics"')[0] == plan_text(alone).partition('"statistics"')[0]
+    )
 
 
 def test_a_proof_of_infeasibility_is_an_answer() -> None:

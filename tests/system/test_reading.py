@@ -144,7 +144,8 @@ def test_what_a_named_file_says_is_not_repeated(
 
 
 @pytest.mark.parametrize(
-    "options", [5, [], "x", {"samplers": 5}, {"samplers": {"on": 5}}, {"algorithm": 3}, {"algorithm": "none"}]
+    "options",
+    [5, [], "x", {"samplers": 5}, {"samplers": {"on": 5}}, {"algorithm": 3}, {"algorithm": "none"}],
 )
 def test_options_that_are_none(
     options: object, plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -158,7 +159,9 @@ def test_options_that_are_none(
     assert error.count("\n") == 1 and ("options" in error or "algorithm" in error)
 
 
-def test_numbers_that_nothing_has(plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_numbers_that_nothing_has(
+    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = tmp_path / "plan.json"
     text = json.dumps({**plan, "duration": 1.25}).replace('"duration": 1.25', '"duration": 1e300')
     file.write_text(text, encoding="utf-8")
@@ -166,14 +169,23 @@ def test_numbers_that_nothing_has(plan: dict[str, Any], tmp_path: Path, capsys: 
     assert "duration: 1e+300 is larger than anything" in capsys.readouterr().err
 
 
-def test_weights_may_be_a_link_to_a_file_of_any_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_weights_may_be_a_link_to_a_file_of_any_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     from grounding.registry import SHIPPED
 
     (tmp_path / "blob").write_bytes((SHIPPED / "on_transfer.safetensors").read_bytes())
     (tmp_path / "mine.json").write_bytes((SHIPPED / "on_transfer.json").read_bytes())
     weights = tmp_path / "mine.safetensors"
     weights.symlink_to("blob")
-    words = ["one_object", "--sampler", f"on={weights}", "--out", str(tmp_path / "plan.json"), "--quiet"]
+    words = [
+        "one_object",
+        "--sampler",
+        f"on={weights}",
+        "--out",
+        str(tmp_path / "plan.json"),
+        "--quiet",
+    ]
     assert run(words) == SOLVED
     weights.unlink()
     weights.symlink_to(weights.name)

@@ -35,10 +35,29 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "(define (domain d) (:predicates (p)) (:action a :parameters () :precondition () :effect (p)))"
     )
     (folder / "t.pddl").write_text("(define (problem t) (:domain d) (:init) (:goal (p)))")
-    config = {"problem": "p", "sampler": "default", "seed": 0, "time": 1.0, "algorithm": "adaptive", "samplers": {}}
-    line = {"config": config, "seed": 0, "outcome": "SOLVED", "solved": True, "verified": True, "planning_s": 0.5}
+    config = {
+        "problem": "p",
+        "sampler": "default",
+        "seed": 0,
+        "time": 1.0,
+        "algorithm": "adaptive",
+        "samplers": {},
+    }
+    line = {
+        "config": config,
+        "seed": 0,
+        "outcome": "SOLVED",
+        "solved": True,
+        "verified": True,
+        "planning_s": 0.5,
+    }
     (folder / "log.jsonl").write_text(json.dumps(line) + "\n")
-    assert subprocess.run([path("tamp-solve"), "one_object", "--quiet"], cwd=folder, check=False).returncode == 0
+    assert (
+        subprocess.run(
+            [path("tamp-solve"), "one_object", "--quiet"], cwd=folder, check=False
+        ).returncode
+        == 0
+    )
     return folder
 
 
@@ -63,7 +82,9 @@ def test_a_standard_output_that_takes_nothing(line: str, where: str, folder: Pat
     os.close(theirs)
     assert ended.returncode == 2, ended.stderr
     *progress, last = ended.stderr.splitlines()
-    assert last.startswith("error: ") and all(line.startswith("  ") for line in progress), ended.stderr
+    assert last.startswith("error: ") and all(line.startswith("  ") for line in progress), (
+        ended.stderr
+    )
     if "--out p.json" in line:
         assert (folder / "p.json").is_file(), "what was found is written all the same"
         (folder / "p.json").unlink()
@@ -75,7 +96,10 @@ def test_names_do_nothing_to_a_terminal() -> None:
     assert printable("größe 4 °C, 数 👍\u00a0m") == "größe 4 °C, 数 👍\u00a0m"
     assert printable("a\nb\r", "\n") == "a\nb\\r"
     assert one_line("a\nb\r\nc") == "a b c"
-    assert str(InputError(f"no {evil}\nend", file=evil)) == rf"{printable(evil)}: no {printable(evil)} end"
+    assert (
+        str(InputError(f"no {evil}\nend", file=evil))
+        == rf"{printable(evil)}: no {printable(evil)} end"
+    )
     assert len(str(InputError("x" * 10**6, found="y" * 10**6, choices=["z" * 1000] * 5000))) < 3000
 
 

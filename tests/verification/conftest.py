@@ -63,7 +63,10 @@ class Builder:
             if np.abs(error).max() < 2e-5:
                 return arm
             steps = [arm + 1e-3 * axis for axis in np.eye(7)]
-            jacobian = np.stack([difference(self.tool(arm), self.tool(step)) for step in steps], axis=1) / 1e-3
+            jacobian = (
+                np.stack([difference(self.tool(arm), self.tool(step)) for step in steps], axis=1)
+                / 1e-3
+            )
             change = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-4 * np.eye(6), error)
             arm = arm + np.clip(change, -0.2, 0.2)
         raise AssertionError("no inverse kinematics")
@@ -78,14 +81,21 @@ class Builder:
             rows.append(self.inverse(between, rows[-1]))
         return np.array(rows)
 
-    def timed(self, part: str, points: Array, opening: float, holding: str | None) -> dict[str, Any]:
+    def timed(
+        self, part: str, points: Array, opening: float, holding: str | None
+    ) -> dict[str, Any]:
         """A segment that stops at each point."""
         columns = slice(0, 3) if part == "base" else slice(3, 10)
-        fastest, harshest = np.array(self.robot.velocity)[columns], np.array(self.robot.acceleration)[columns]
+        fastest, harshest = (
+            np.array(self.robot.velocity)[columns],
+            np.array(self.robot.acceleration)[columns],
+        )
         times, rows = [0.0], [points[0]]
         for start, end in itertools.pairwise(points):
             way = np.abs(end - start)
-            lasts = max(float((1.5 * way / fastest).max()), float(np.sqrt(6 * way / harshest).max()), 1e-3)
+            lasts = max(
+                float((1.5 * way / fastest).max()), float(np.sqrt(6 * way / harshest).max()), 1e-3
+            )
             for share in np.linspace(0, 1, 17)[1:]:
                 times.append(times[-1] + lasts / 16)
                 rows.append(start + (3 * share**2 - 2 * share**3) * (end - start))
@@ -103,7 +113,11 @@ class Builder:
 
     def move(self, name: str, motion: str, target: Array, holding: str | None) -> None:
         opening = WIDTH if holding else OPEN
-        self.act("move", [name, motion], [self.timed("base", np.array([self.base, target]), opening, holding)])
+        self.act(
+            "move",
+            [name, motion],
+            [self.timed("base", np.array([self.base, target]), opening, holding)],
+        )
         self.base = target
 
     def reach(self, T_world_tool: Array) -> tuple[Array, Array]:
@@ -118,7 +132,9 @@ class Builder:
 def difference(first: Array, second: Array) -> Array:
     """The twist from one pose to another, small angles, shape (6,)."""
     turn = second[:3, :3] @ first[:3, :3].T
-    angle = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+    angle = (
+        np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+    )
     return np.concatenate([second[:3, 3] - first[:3, 3], angle])
 
 

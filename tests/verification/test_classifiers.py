@@ -35,7 +35,9 @@ def test_of_two_for_one_relation_the_last_counts(file: Path, tmp_path: Path) -> 
 
 @pytest.mark.parametrize("pair", ["upright", "=x.py", "upright=", ""])
 def test_what_is_no_pair_is_refused(pair: str) -> None:
-    with pytest.raises(InputError, match=f"--sampler wants RELATION=FILE, not '{pair}'. For example"):
+    with pytest.raises(
+        InputError, match=f"--sampler wants RELATION=FILE, not '{pair}'. For example"
+    ):
         classifiers_of([pair])
 
 
@@ -58,7 +60,10 @@ def test_a_file_without_a_classifier_is_refused(file: Path, text: str, words: st
 
 
 def test_a_name_that_only_the_planner_knows_is_refused() -> None:
-    with pytest.raises(InputError, match=r"the judge knows no sampler 'uniform' for 'on'. Give the classifier's file"):
+    with pytest.raises(
+        InputError,
+        match=r"the judge knows no sampler 'uniform' for 'on'. Give the classifier's file",
+    ):
         classifiers_of(["on=uniform:alone"])
 
 

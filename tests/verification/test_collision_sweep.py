@@ -42,7 +42,15 @@ def test_samples_are_close_together(world: World, rng: np.random.Generator) -> N
     for _ in range(5):
         arms = rng.uniform(ROBOT.lower, ROBOT.upper, (2, 7))
         ends = np.array(
-            [row(float(rng.uniform(-1, 1)), float(rng.uniform(-1, 1)), float(rng.uniform(-3, 3)), arm) for arm in arms]
+            [
+                row(
+                    float(rng.uniform(-1, 1)),
+                    float(rng.uniform(-1, 1)),
+                    float(rng.uniform(-3, 3)),
+                    arm,
+                )
+                for arm in arms
+            ]
         )
         rows, times, frames = sampler.sampled(ends, np.array([0.0, 1.0]), held)
         assert np.allclose(rows[[0, -1]], ends) and (np.diff(times) > 0).all()
@@ -55,7 +63,9 @@ def test_samples_are_close_together(world: World, rng: np.random.Generator) -> N
 
 def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
     sampler = Sampler(world, ROBOT)
-    rows, _, frames = sampler.sampled(np.array([row(), row(1.0, 0.5, 2.0)]), np.array([0.0, 1.0]), None)
+    rows, _, frames = sampler.sampled(
+        np.array([row(), row(1.0, 0.5, 2.0)]), np.array([0.0, 1.0]), None
+    )
     world.set_robot(rows[70, :3], rows[70, 3:10], rows[70, 10])
     for name, frame in zip(world.links, frames[70], strict=True):
         assert np.allclose(world.link_poses()[name], frame, atol=1e-6)
@@ -83,7 +93,9 @@ def test_what_is_held_collides_too(world: World) -> None:
     sweeper.sweep(rows, times, None, without)
     sweeper.sweep(rows, times, held, with_stick)
     reach = sweeper.tool(row())[0, 3]
-    sweeper.sweep(np.array([row(2.0 - reach, -0.3), row(2.0 - reach, 0.5)]), times, held, with_stick)
+    sweeper.sweep(
+        np.array([row(2.0 - reach, -0.3), row(2.0 - reach, 0.5)]), times, held, with_stick
+    )
     assert not without.worst
     assert ("stick", "post") in with_stick.worst
 
@@ -99,7 +111,9 @@ def test_fingers_may_touch_what_they_close_on(world: World) -> None:
     sweeper, findings = Sweeper(world, ROBOT), Findings()
     narrow = row()
     narrow[10] = 0.0
-    T_world_stick = sweeper.tool(narrow) @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0)).matrix
+    T_world_stick = (
+        sweeper.tool(narrow) @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, math.pi / 2, 0.0)).matrix
+    )
     world.place("stick", T_world_stick)
     sweeper.sweep(narrow[None], np.zeros(1), None, findings, Natural(touching=frozenset({"stick"})))
     assert not findings.worst

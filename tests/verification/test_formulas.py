@@ -21,7 +21,10 @@ SOME = Exists((Parameter("?y", ("surface",)),), And((ON, Not(CLEAR))))
         (And(()), "(and)"),
         (Or((CLEAR, ON)), "(or (clear ?x) (on ?x ?y))"),
         (SOME, "(exists (?y - surface) (and (on ?x ?y) (not (clear ?x))))"),
-        (Forall((Parameter("?x"), Parameter("?y")), ON), "(forall (?x - object ?y - object) (on ?x ?y))"),
+        (
+            Forall((Parameter("?x"), Parameter("?y")), ON),
+            "(forall (?x - object ?y - object) (on ?x ?y))",
+        ),
     ],
 )
 def test_formulas_are_written_in_pddl(formula: Formula, text: str) -> None:
@@ -31,7 +34,10 @@ def test_formulas_are_written_in_pddl(formula: Formula, text: str) -> None:
 def test_free_variables_are_those_that_no_quantifier_binds() -> None:
     assert free(ON) == {"?x", "?y"}
     assert free(SOME) == {"?x"}
-    assert free(And((SOME, Atom("at", ("?y", "table"))))) == {"?x", "?y"}  # a ?y of its own, outside
+    assert free(And((SOME, Atom("at", ("?y", "table"))))) == {
+        "?x",
+        "?y",
+    }  # a ?y of its own, outside
 
 
 def test_substitution_stops_at_a_quantifier_of_the_same_name() -> None:
@@ -51,7 +57,11 @@ def test_a_conjunction_is_taken_apart_and_nothing_else() -> None:
 
 
 def test_predicates_are_found_however_deep() -> None:
-    assert predicates(Forall((Parameter("?z"),), Or((SOME, Not(Atom("wet", ("?z",))))))) == {"on", "clear", "wet"}
+    assert predicates(Forall((Parameter("?z"),), Or((SOME, Not(Atom("wet", ("?z",))))))) == {
+        "on",
+        "clear",
+        "wet",
+    }
 
 
 def test_an_atom_is_ground_by_what_is_bound() -> None:
@@ -71,7 +81,9 @@ def test_an_atom_is_ground_by_what_is_bound() -> None:
         ((), (), {"?z": "c"}, {"?z": "c"}),
     ],
 )
-def test_unification(terms: tuple[str, ...], row: tuple[str, ...], before: dict, after: dict | None) -> None:
+def test_unification(
+    terms: tuple[str, ...], row: tuple[str, ...], before: dict, after: dict | None
+) -> None:
     kept = dict(before)
     assert unify(terms, row, before) == after
     assert before == kept  # the binding that it extends stays as it was

@@ -18,7 +18,9 @@ _ANGLE = st.floats(-math.pi, math.pi)
 
 
 @given(st.floats(0.0, math.pi), st.tuples(_ANGLE, _ANGLE, _ANGLE), st.sampled_from(["x", "y", "z"]))
-def test_a_turn_about_any_axis_is_its_angle(angle: float, start: tuple[float, float, float], axis: str) -> None:
+def test_a_turn_about_any_axis_is_its_angle(
+    angle: float, start: tuple[float, float, float], axis: str
+) -> None:
     first = Pose.from_xyz_rpy((0.3, -0.2, 0.1), start)
     turn = Pose.from_xyz_rpy((0, 0, 0), tuple(angle if axis == one else 0.0 for one in "xyz"))
     moved, turned = apart(first.matrix, (first @ turn).matrix)
@@ -28,7 +30,9 @@ def test_a_turn_about_any_axis_is_its_angle(angle: float, start: tuple[float, fl
 
 def test_tiny_and_half_turns_are_exact() -> None:
     # The angle's cosine alone would lose one of a millionth of a radian.
-    assert apart(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, 1e-6).matrix)[1] == pytest.approx(1e-6, rel=1e-3)
+    assert apart(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, 1e-6).matrix)[1] == pytest.approx(
+        1e-6, rel=1e-3
+    )
     assert apart(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, math.pi).matrix)[1] == pytest.approx(math.pi)
 
 
@@ -47,7 +51,9 @@ def test_a_move_is_a_straight_distance() -> None:
         ((0.1, 0.0, math.pi), math.pi),
     ],
 )
-def test_bases_are_the_same_after_a_full_turn(second: tuple[float, float, float], far: float) -> None:
+def test_bases_are_the_same_after_a_full_turn(
+    second: tuple[float, float, float], far: float
+) -> None:
     assert base_apart(np.zeros(3), np.array(second)) == pytest.approx(far, abs=1e-12)
     assert base_apart(np.array(second), np.zeros(3)) == pytest.approx(far, abs=1e-12)
 
@@ -64,4 +70,7 @@ def test_bases_are_the_same_after_a_full_turn(second: tuple[float, float, float]
     ],
 )
 def test_the_scene_says_what_an_object_is(name: str, kinds: set[str]) -> None:
-    assert kinds_of(scene(table(), crate(), body("Cup", Box((0.1, 0.1, 0.1)), (0, 0, 0.6))), name) == kinds
+    assert (
+        kinds_of(scene(table(), crate(), body("Cup", Box((0.1, 0.1, 0.1)), (0, 0, 0.6))), name)
+        == kinds
+    )

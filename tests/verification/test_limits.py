@@ -54,7 +54,9 @@ def test_constant_acceleration_is_measured_as_it_is(robot: Robot, over: float, h
 
 
 def test_a_constant_speed_above_the_limit_is_told_with_what_it_is_over(robot: Robot) -> None:
-    told = found(robot, base([0.0, 1.0, 2.0], [[0, 0, 0], [0.9 * FASTEST, 0, 0], [2.1 * FASTEST, 0, 0]]))
+    told = found(
+        robot, base([0.0, 1.0, 2.0], [[0, 0, 0], [0.9 * FASTEST, 0, 0], [2.1 * FASTEST, 0, 0]])
+    )
     fast = told["velocity"]
     assert fast.message == f"base x is too fast: {1.2 * FASTEST:.4g}, {0.2 * FASTEST:.2g} over"
     assert (fast.time, fast.amount) == pytest.approx((1.0, 0.2 * FASTEST))
@@ -68,7 +70,9 @@ def test_two_hundredths_over_are_still_kept(robot: Robot) -> None:
 
 def test_it_starts_and_ends_at_rest(robot: Robot) -> None:
     # Half of the speed limit from the first moment: the jump takes a tenth of a second at most.
-    told = found(robot, base(np.linspace(0, 1, 11), np.linspace([0, 0, 0], [0.5 * FASTEST, 0, 0], 11)))
+    told = found(
+        robot, base(np.linspace(0, 1, 11), np.linspace([0, 0, 0], [0.5 * FASTEST, 0, 0], 11))
+    )
     assert told["acceleration"].amount == pytest.approx(0.5 * FASTEST / 0.05 - HARSHEST, rel=1e-6)
 
 
@@ -93,15 +97,21 @@ def test_each_joint_has_the_makers_range(robot: Robot, joint: int) -> None:
         assert robot.joints[joint].name in told.message and told.amount == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize(("drive", "told"), [("omnidirectional", False), ("differential", True), ("fixed", True)])
-def test_wheels_do_not_slide_sideways_and_a_fixed_base_not_at_all(robot: Robot, drive: str, told: bool) -> None:
+@pytest.mark.parametrize(
+    ("drive", "told"), [("omnidirectional", False), ("differential", True), ("fixed", True)]
+)
+def test_wheels_do_not_slide_sideways_and_a_fixed_base_not_at_all(
+    robot: Robot, drive: str, told: bool
+) -> None:
     sideways = base([0, 9], [[0, 0, 0], [0, 0.5, 0]])
     found_ = found(replace(robot, drive=drive), sideways)
     assert ("limit" in found_) == told
     ahead = found(replace(robot, drive=drive), base([0, 9], [[0, 0, 0], [0.5, 0, 0]]))
     assert ("limit" in ahead) == (drive == "fixed")
     if drive == "differential":
-        assert found_["limit"].message == "the base slides sideways by 5e+02 mm, and its wheels do not"
+        assert (
+            found_["limit"].message == "the base slides sideways by 5e+02 mm, and its wheels do not"
+        )
     if drive == "fixed":
         assert ahead["limit"].message == "the base moves by 0.5, and it is fixed"
 
@@ -126,14 +136,19 @@ def test_segments_of_one_part_are_one_motion(robot: Robot) -> None:
     first = base(whole.times[: cut + 1], whole.positions[: cut + 1])
     second = base(whole.times[cut:] - whole.times[cut], whole.positions[cut:])
     assert found(robot, first, second) == {}
-    assert found(robot, first)["acceleration"].time == first.times[-1]  # alone it ends at full speed
+    assert (
+        found(robot, first)["acceleration"].time == first.times[-1]
+    )  # alone it ends at full speed
 
 
 def test_before_it_is_carried_out_a_plan_has_to_keep_its_ranges(robot: Robot) -> None:
     fine = base([0, 9], [[0, 0, 0], [1, 0, 0]])
     out = base([0, 5, 9], [[1, 0, 0], [1, 1.5, 0], [1, 0, 0]])
     check_ranges(plan_of(("move", (), [fine])), robot, ROOM)
-    with pytest.raises(InputError, match=r"2 move, 14.00 s: base y is out of range: 1.5, 0.5 over: the robot cannot"):
+    with pytest.raises(
+        InputError,
+        match=r"2 move, 14.00 s: base y is out of range: 1.5, 0.5 over: the robot cannot",
+    ):
         check_ranges(plan_of(("move", (), [fine]), ("move", (), [out])), robot, ROOM)
 
 

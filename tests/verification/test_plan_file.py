@@ -105,7 +105,9 @@ def test_a_number_too_large_is_refused(plan: Plan, written: Write) -> None:
         read_plan(written(text))
 
 
-def test_exit_codes(plan: Plan, written: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_exit_codes(
+    plan: Plan, written: Write, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     file = written(plan)
     assert main([str(file)]) == 0
     assert "plan.json holds: 4 actions" in capfd.readouterr().out
@@ -124,7 +126,10 @@ def test_exit_codes(plan: Plan, written: Write, tmp_path: Path, capfd: pytest.Ca
 
 def test_a_shipped_problem_and_domain_are_found_by_name(plan: Plan, written: Write) -> None:
     read = read_plan(written(plan))
-    assert source_file(read, "problem", Path("four_objects")) == shipped("problems") / "four_objects.yaml"
+    assert (
+        source_file(read, "problem", Path("four_objects"))
+        == shipped("problems") / "four_objects.yaml"
+    )
     assert source_file(read, "domain", Path("cupboard")) == shipped("domains") / "cupboard.pddl"
     with pytest.raises(InputError, match=r"unknown problem 'four_object'.*four_objects"):
         source_file(read, "problem", Path("four_object"))
@@ -142,7 +147,9 @@ def test_files_are_looked_for_beside_the_plan(plan: Plan, written: Write, tmp_pa
     assert main([str(file), "--quiet"]) == 1
 
 
-def test_unknown_objects_are_refused(plan: Plan, written: Write, capfd: pytest.CaptureFixture[str]) -> None:
+def test_unknown_objects_are_refused(
+    plan: Plan, written: Write, capfd: pytest.CaptureFixture[str]
+) -> None:
     plan["actions"][0]["arguments"][0] = "b7"
     assert main([str(written(plan))]) == 2
     assert "actions[0].arguments: unknown object 'b7'" in capfd.readouterr().err

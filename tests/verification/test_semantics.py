@@ -27,7 +27,14 @@ DOMAIN = """
                  (forall (?z - ball) (when (heavy ?x) (at ?z home)))))
   (:action stay :parameters (?x - thing ?p - place) :precondition (at ?x ?p) :effect (and (not (at ?x ?p)) (at ?x ?p))))
 """
-OBJECTS = {"a": ("crate",), "b": ("crate",), "c": ("ball",), "yard": ("place",), "dock": ("place",), "home": ("place",)}
+OBJECTS = {
+    "a": ("crate",),
+    "b": ("crate",),
+    "c": ("ball",),
+    "yard": ("place",),
+    "dock": ("place",),
+    "home": ("place",),
+}
 START = [("at", "a", "yard"), ("at", "c", "dock"), ("on", "a", "b"), ("on", "b", "c"), ("near", "yard", "dock"),
          ("near", "dock", "home")]  # fmt: skip
 
@@ -77,7 +84,11 @@ def test_unmet_parts_are_named(semantics: Semantics) -> None:
     carry = semantics.actions["carry"]
     assert semantics.unmet(carry, ("a", "yard", "dock"), State.of(START)) == []
     unmet = semantics.unmet(carry, ("c", "dock", "dock"), State.of(START))
-    assert [show(part) for part in unmet] == ["(clear c)", "(not (= dock dock))", "(linked dock dock)"]
+    assert [show(part) for part in unmet] == [
+        "(clear c)",
+        "(not (= dock dock))",
+        "(linked dock dock)",
+    ]
     heavy = State.of([*START, ("heavy", "a")])
     assert len(semantics.unmet(carry, ("a", "yard", "home"), heavy)) == 1
 

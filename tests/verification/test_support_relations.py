@@ -10,7 +10,18 @@ import pytest
 
 from tamp.geometric.loading.footing import Ground
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Body, Box, Cavity, Cylinder, Part, RobotStart, Room, Scene, Sphere, Surface
+from tamp.geometric.scene.scene import (
+    Body,
+    Box,
+    Cavity,
+    Cylinder,
+    Part,
+    RobotStart,
+    Room,
+    Scene,
+    Sphere,
+    Surface,
+)
 from tamp.geometric.stability.stable_poses import stable_faces
 from tamp.simulation.engines import open_world
 from tamp.simulation.settle import settle
@@ -26,7 +37,10 @@ STEP = Body("step", (Part(Box((0.2, 0.2, 0.1))),), Pose((0.3, 0, 0.6)), movable=
 
 def scene(*bodies: Body) -> Scene:
     return Scene(
-        "s", {b.name: b for b in (TABLE, *bodies)}, RobotStart("panda_mobile", (0, 0, 0)), Room((-2, 2), (-2, 2))
+        "s",
+        {b.name: b for b in (TABLE, *bodies)},
+        RobotStart("panda_mobile", (0, 0, 0)),
+        Room((-2, 2), (-2, 2)),
     )
 
 
@@ -56,7 +70,9 @@ def test_a_block_on_a_table(x: float, z: float, on: set[str], stable: bool) -> N
         assert np.allclose(world.pose("block"), Pose((x, 0, z)).matrix)
 
 
-@pytest.mark.parametrize(("x", "centre", "stable"), [(0.49, 0.02, False), (0.51, -0.02, True), (0.49, -0.02, True)])
+@pytest.mark.parametrize(
+    ("x", "centre", "stable"), [(0.49, 0.02, False), (0.51, -0.02, True), (0.49, -0.02, True)]
+)
 def test_the_files_centre_of_mass_counts(x: float, centre: float, stable: bool) -> None:
     """The planner's side, the judge's and physics agree on a body whose file says where its mass is."""
     uneven = replace(block(x, 0.601), center_of_mass=(centre, 0.0, 0.0))
@@ -66,7 +82,8 @@ def test_the_files_centre_of_mass_counts(x: float, centre: float, stable: bool) 
     settled = settle(scene(uneven), {"block": uneven.pose}, 1.0)["block"]
     assert (settled.moved < 0.003) is stable
     assert all(
-        abs(abs(face.centre).max() - abs(centre)) < 1e-9 or not face.centre.any() for face in stable_faces(uneven)
+        abs(abs(face.centre).max() - abs(centre)) < 1e-9 or not face.centre.any()
+        for face in stable_faces(uneven)
     )
 
 

@@ -41,7 +41,13 @@ def plan(tmp_path: Path) -> dict[str, Any]:
         file.write_text(text)
         files[role] = {"path": str(file), "sha256": hashlib.sha256(text.encode()).hexdigest()}
     actions = [drive("home", "mill", 3), drive("mill", "port", 4)]
-    return {"format": "tamp-symbolic-plan", "version": 1, "inputs": files, "actions": actions, "cost": 7.0}
+    return {
+        "format": "tamp-symbolic-plan",
+        "version": 1,
+        "inputs": files,
+        "actions": actions,
+        "cost": 7.0,
+    }
 
 
 def kinds(plan: dict[str, Any]) -> list[tuple[str, str]]:
@@ -65,7 +71,9 @@ def test_a_plan_that_reaches_the_goal_at_its_cost_holds(plan: dict[str, Any]) ->
         ([], 0, [("goal", "(at port) does not hold"), ("goal", "(seen mill) does not hold")]),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told(plan: dict[str, Any], actions: list, cost: float, told: list) -> None:
+def test_what_is_wrong_is_told(
+    plan: dict[str, Any], actions: list, cost: float, told: list
+) -> None:
     plan["actions"], plan["cost"] = [drive(*one) for one in actions], cost
     assert kinds(plan) == told
 
@@ -73,7 +81,11 @@ def test_what_is_wrong_is_told(plan: dict[str, Any], actions: list, cost: float,
 def test_violations_name_the_action(plan: dict[str, Any]) -> None:
     plan["actions"][1]["arguments"] = ["mill", "mill"]
     first = verify_symbolic(plan).violations[0]
-    assert (first.index, first.action, first.message) == (1, "drive", "(road mill mill) does not hold")
+    assert (first.index, first.action, first.message) == (
+        1,
+        "drive",
+        "(road mill mill) does not hold",
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,10 +93,16 @@ def test_violations_name_the_action(plan: dict[str, Any]) -> None:
     [
         (lambda p: p["actions"][0].update(name="fly"), "unknown action 'fly'"),
         (lambda p: p["actions"][0].update(arguments=["home"]), "'drive' takes 2 arguments, not 1"),
-        (lambda p: p["actions"][0].update(arguments=["home", "mil"]), "unknown object 'mil'.*Did you mean 'mill'"),
+        (
+            lambda p: p["actions"][0].update(arguments=["home", "mil"]),
+            "unknown object 'mil'.*Did you mean 'mill'",
+        ),
         (lambda p: p.pop("cost"), "'cost' is missing"),
         (lambda p: p.update(version=9), "version"),
-        (lambda p: p["inputs"]["problem"].update(path="/gone.pddl"), "the plan's problem /gone.pddl is missing"),
+        (
+            lambda p: p["inputs"]["problem"].update(path="/gone.pddl"),
+            "the plan's problem /gone.pddl is missing",
+        ),
     ],
 )
 def test_what_is_no_such_plan_is_refused(plan: dict[str, Any], spoil: Any, words: str) -> None:
@@ -104,6 +122,8 @@ def test_the_users_files_count_more_than_the_plans(plan: dict[str, Any], tmp_pat
     other = tmp_path / "other.pddl"
     other.write_text(PROBLEM.replace("(at port) (seen mill)", "(at mill)"))
     report = verify_symbolic(plan, problem=other)
-    assert ("goal", "(at mill) does not hold") in [(one.kind, one.message) for one in report.violations]
+    assert ("goal", "(at mill) does not hold") in [
+        (one.kind, one.message) for one in report.violations
+    ]
     with pytest.raises(InputError, match="no such file: "):
         verify_symbolic(plan, domain=tmp_path / "gone.pddl")

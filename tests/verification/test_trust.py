@@ -54,7 +54,11 @@ def test_strict_wants_the_classifier(written: Written, capsys: pytest.CaptureFix
     code, said = ask(capsys, str(plan))
     assert code == 0 and said.startswith("plan.json holds, on trust: upright: 0 actions")
     code, said = ask(capsys, str(plan), "--strict")
-    assert code == 1 and "plan.json holds, on trust: upright" in said and "not accepted, for --strict" in said
+    assert (
+        code == 1
+        and "plan.json holds, on trust: upright" in said
+        and "not accepted, for --strict" in said
+    )
     code, said = ask(capsys, str(plan), "--strict", "--json")
     found = json.loads(said)
     assert code == 1 and found["holds"] and found["on_trust"] == ["upright"]
@@ -67,7 +71,9 @@ def test_strict_wants_the_classifier(written: Written, capsys: pytest.CaptureFix
     assert ask(capsys, str(plan), "--strict", "--quiet") == (1, "")
 
 
-def test_a_false_fact_is_found_by_the_classifier_only(written: Written, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_false_fact_is_found_by_the_classifier_only(
+    written: Written, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Nobody but the plan says that the milk stands, which lies."""
     plan = written("(upright tea table)")
     document = json.loads(plan.read_text())
@@ -88,11 +94,15 @@ def test_a_false_fact_is_found_by_the_classifier_only(written: Written, capsys: 
     assert code == 0 and "holds, on trust: upright" in said, said
     code, said = ask(capsys, str(plan), "--sampler", f"upright={plan.parent / 'upright.py'}")
     assert code == 1, said
-    assert "(stood milk milk_start table) does not hold: the classifier of 'upright' denies it" in said
+    assert (
+        "(stood milk milk_start table) does not hold: the classifier of 'upright' denies it" in said
+    )
     assert "(upright milk table) does not follow from the facts at the end" in said
 
 
-def test_a_fact_left_out_is_found_as_well(written: Written, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_fact_left_out_is_found_as_well(
+    written: Written, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Nothing is said of the tea, which stands; so that it does not stand is taken on trust."""
     plan = written("(not (upright milk table))")
     problem = write_problem(plan.parent, "(not (upright tea table))")
@@ -105,7 +115,9 @@ def test_a_fact_left_out_is_found_as_well(written: Written, capsys: pytest.Captu
     code, said = ask(capsys, str(plan))
     assert code == 0 and "holds, on trust: upright" in said, said
     code, said = ask(capsys, str(plan), "--sampler", f"upright={plan.parent / 'upright.py'}")
-    assert code == 1 and "(not (upright tea table)) does not follow from the facts at the end" in said, said
+    assert (
+        code == 1 and "(not (upright tea table)) does not follow from the facts at the end" in said
+    ), said
 
 
 def test_only_what_the_verdict_rests_on_is_named(written: Written) -> None:
@@ -129,34 +141,46 @@ def test_another_domain_and_other_streams_are_named(
     easy.write_text(easy.read_text().replace("(not (loaded ?o)) ", ""))
     plan = written("(on tea shelf)", domain=str(easy))
     code, said = ask(capsys, str(plan))
-    assert code == 0 and "plan.json holds, by the domain easy.pddl, not the problem's mine.pddl" in said, said
+    assert (
+        code == 0
+        and "plan.json holds, by the domain easy.pddl, not the problem's mine.pddl" in said
+    ), said
     assert ask(capsys, str(plan), "--strict", "--quiet")[0] == 1
     assert verify(written("(on tea shelf)")).checked
 
     other = tmp_path / "other.streams.pddl"
     other.write_text((tmp_path / "mine.streams.pddl").read_text() + "; of another opinion\n")
     plan = written("(on tea shelf)", streams=other)
-    assert verify(plan).other_files == ("by the streams other.streams.pddl, not the problem's mine.streams.pddl",)
+    assert verify(plan).other_files == (
+        "by the streams other.streams.pddl, not the problem's mine.streams.pddl",
+    )
     other.write_text(other.read_text() + "; and now of another one\n")
     assert "not those that the plan was made with" in verify(plan).other_files[0]
     mine = tmp_path / "mine.streams.pddl"
     assert "not those that the plan was made with" in verify(plan, streams=mine).other_files[0]
 
 
-def test_a_plan_that_names_no_streams_states_no_more_than_the_problem(root: Path, written: Written) -> None:
+def test_a_plan_that_names_no_streams_states_no_more_than_the_problem(
+    root: Path, written: Written
+) -> None:
     """A fact that no stream certifies, and the problem does not state, is wrong as it ever was."""
     plan = written("(upright tea table)")
     document = json.loads(plan.read_text())
     del document["inputs"]["streams"]
     changed(plan, inputs=document["inputs"])
     assert verify(plan).on_trust == ("upright",)  # those beside the domain
-    changed(plan, initial=[*document["initial"], ["reachable", "milk", "milk_start"], ["loaded", "milk"]])
+    changed(
+        plan,
+        initial=[*document["initial"], ["reachable", "milk", "milk_start"], ["loaded", "milk"]],
+    )
     assert any("does not imply (loaded milk)" in one.message for one in verify(plan).violations)
     (plan.parent / "mine.streams.pddl").unlink()
     assert any("does not imply (stood tea" in one.message for one in verify(plan).violations)
 
 
-def test_a_problem_without_a_domain_has_a_note(root: Path, written: Written, tmp_path: Path) -> None:
+def test_a_problem_without_a_domain_has_a_note(
+    root: Path, written: Written, tmp_path: Path
+) -> None:
     written("(on tea shelf)")
     path = tmp_path / "mine.yaml"
     path.write_text(path.read_text().replace("domain: mine.pddl\n", ""))
@@ -164,7 +188,9 @@ def test_a_problem_without_a_domain_has_a_note(root: Path, written: Written, tmp
     problem = tamp.load_problem(path, tmp_path / "mine.pddl", groundings={"upright": upright})
     plan = tamp.write_plan(tamp.solve(problem, max_time=60.0, seed=0), tmp_path / "plan.json")
     report = verify(plan)
-    assert report.checked and report.notes == ("the problem names no domain; judged by mine.pddl, as the plan says",)
+    assert report.checked and report.notes == (
+        "the problem names no domain; judged by mine.pddl, as the plan says",
+    )
     assert verify(plan, domain=tmp_path / "mine.pddl").notes == ()
 
 
@@ -181,7 +207,11 @@ def test_a_problem_without_a_domain_has_a_note(root: Path, written: Written, tmp
     ],
 )
 def test_what_is_wrong_with_a_classifier(
-    sampler: str, message: str, written: Written, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    sampler: str,
+    message: str,
+    written: Written,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     plan = written("(upright tea table)")
     monkeypatch.chdir(plan.parent)
@@ -203,7 +233,9 @@ def test_one_that_cannot_tell_is_no_check(written: Written) -> None:
     assert any("it cannot tell of (upright " in note for note in report.notes)
 
 
-def test_what_a_plan_makes_true_needs_no_classifier_and_is_on_trust(root: Path, tmp_path: Path) -> None:
+def test_what_a_plan_makes_true_needs_no_classifier_and_is_on_trust(
+    root: Path, tmp_path: Path
+) -> None:
     write_domain(root, tmp_path, SAMPLED, actions="")
     (tmp_path / "upright.py").write_text(PYTHON)
     upright = python_grounding(tmp_path / "upright.py")

@@ -229,10 +229,16 @@ def test_a_body_that_stands_close_is_no_collision(plan_for: Callable[[str, str],
     beside = "can:    {cylinder: {radius: 0.03, height: 0.1}, on: right, at: [-0.1, 0.0715]}"
     report = verify(plan_for(CAN, beside))
     assert {violation.kind for violation in report.violations} <= {"collision", "certified"}
-    assert not any("block" in violation.bodies for violation in report.violations if violation.kind == "collision")
+    assert not any(
+        "block" in violation.bodies
+        for violation in report.violations
+        if violation.kind == "collision"
+    )
 
 
-def test_a_body_that_floats_by_the_problem_is_only_noted(plan_for: Callable[[str, str], Plan]) -> None:
+def test_a_body_that_floats_by_the_problem_is_only_noted(
+    plan_for: Callable[[str, str], Plan],
+) -> None:
     floating = "can:    {cylinder: {radius: 0.03, height: 0.1}, pose: {position: [-1.5, 0, 1]}}"
     report = verify(plan_for(CAN, floating).copy() | {})
     assert any("can stands on nothing" in note for note in report.notes)
@@ -248,7 +254,11 @@ def test_a_spoilt_plan_is_rejected(plan: Plan, name: str) -> None:
     report = verify(plan)
     assert not report.holds
     assert {violation.kind for violation in report.violations} <= set(KINDS)
-    found = [violation for violation in report.violations if violation.kind == kind and fragment in str(violation)]
+    found = [
+        violation
+        for violation in report.violations
+        if violation.kind == kind and fragment in str(violation)
+    ]
     assert found, report.text()
     assert kind in report.text()
 
@@ -295,8 +305,12 @@ def test_the_makers_limits_bind_and_not_the_urdfs(plan: Plan) -> None:
 
 
 def test_fingers_faster_than_the_hands_own_are_noticed(plan: Plan) -> None:
-    retime(plan, PICK, 1, lambda times: 0.5 * times)  # 30 mm in a quarter of a second; the hand opens 100 mm a second
-    assert any(one.kind == "velocity" and "opening" in one.message for one in verify(plan).violations)
+    retime(
+        plan, PICK, 1, lambda times: 0.5 * times
+    )  # 30 mm in a quarter of a second; the hand opens 100 mm a second
+    assert any(
+        one.kind == "velocity" and "opening" in one.message for one in verify(plan).violations
+    )
 
 
 def test_the_tolerances_are_said_in_the_help_and_in_the_documentation(
@@ -305,7 +319,10 @@ def test_the_tolerances_are_said_in_the_help_and_in_the_documentation(
     with pytest.raises(SystemExit) as end:
         main(["--help"])
     assert not end.value.code
-    said, written = capsys.readouterr().out, (root / "docs" / "how-it-works.md").read_text(encoding="utf-8")
+    said, written = (
+        capsys.readouterr().out,
+        (root / "docs" / "how-it-works.md").read_text(encoding="utf-8"),
+    )
     rows = tolerances()
     assert len(rows) > 8
     for what, much in rows:

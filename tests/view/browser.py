@@ -52,7 +52,9 @@ class Browser:
         self.logged: list[str] = []
         self.requests: list[str] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)[
+            "sessionId"
+        ]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
 
@@ -90,7 +92,9 @@ class Browser:
 
     def run(self, script: str) -> Any:
         """The value of an expression in the page, promises awaited."""
-        answer = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        answer = self.call(
+            "Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True
+        )
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
@@ -117,7 +121,9 @@ class Browser:
 
     def screenshot(self, file: Path) -> None:
         """The page as a PNG file."""
-        file.write_bytes(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
+        file.write_bytes(
+            base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        )
 
     def _next(self) -> dict[str, Any]:
         while b"\0" not in self._rest:
@@ -130,7 +136,11 @@ class Browser:
         match message.get("method"):
             case "Runtime.exceptionThrown":
                 self.logged.append(json.dumps(message["params"]["exceptionDetails"]))
-            case "Runtime.consoleAPICalled" if message["params"]["type"] in ("error", "warning", "assert"):
+            case "Runtime.consoleAPICalled" if message["params"]["type"] in (
+                "error",
+                "warning",
+                "assert",
+            ):
                 self.logged.append(json.dumps(message["params"]["args"]))
             case "Log.entryAdded" if message["params"]["entry"]["level"] == "error":
                 self.logged.append(message["params"]["entry"]["text"])

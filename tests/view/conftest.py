@@ -28,4 +28,6 @@ def timeline(stored: Stored) -> Timeline:
 
 @pytest.fixture(scope="session")
 def document(stored: Stored, timeline: Timeline) -> dict[str, Any]:
-    return page_document(timeline, planning_summary(stored.document), sample_markers(stored.document, timeline.scene))
+    return page_document(
+        timeline, planning_summary(stored.document), sample_markers(stored.document, timeline.scene)
+    )

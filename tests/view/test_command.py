@@ -76,7 +76,10 @@ def no_browser(*_: Any) -> None:
 
 
 def test_bad_input_is_one_line_and_exit_code_two(
-    stored_plan: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    stored_plan: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(webbrowser, "get", no_browser)
     plan = str(stored_plan)
@@ -103,7 +106,10 @@ def test_bad_input_is_one_line_and_exit_code_two(
                 [plan, "--no-browser", "--port", port],
                 f"cannot listen on port {port}: Address already in use. Give another",
             ),
-            ([str(changed), "--html", out], "is not the one that the plan was made from. Plan again with tamp-solve"),
+            (
+                [str(changed), "--html", out],
+                "is not the one that the plan was made from. Plan again with tamp-solve",
+            ),
             ([str(newer), "--html", out], "newer.json: version: version 2 is not known, only 1"),
             ([str(broken), "--html", out], "broken.json:1:11: not JSON"),
             (
@@ -117,11 +123,23 @@ def test_bad_input_is_one_line_and_exit_code_two(
                 ["one_object", "--video", out + ".gif", *SMALL],
                 "nothing moves without a plan. A picture is made by --png",
             ),
-            ([plan, "--video", out + ".mp4"], "no moving picture is written as '.mp4'. Choices: .gif, .webp"),
+            (
+                [plan, "--video", out + ".mp4"],
+                "no moving picture is written as '.mp4'. Choices: .gif, .webp",
+            ),
             ([plan, "--png", out + ".jpg"], "a picture is written as .png"),
-            ([plan, "--png", out + ".png", "--size", "big"], "--size wants WIDTHxHEIGHT, not 'big'"),
-            ([plan, "--png", out + ".png", "--size", "8x8"], "--size: 8x8 is not between 16x16 and 4096x4096"),
-            ([plan, "--video", out + ".gif", "--speed", "0"], "--speed: 0 is not between 0 and 1000"),
+            (
+                [plan, "--png", out + ".png", "--size", "big"],
+                "--size wants WIDTHxHEIGHT, not 'big'",
+            ),
+            (
+                [plan, "--png", out + ".png", "--size", "8x8"],
+                "--size: 8x8 is not between 16x16 and 4096x4096",
+            ),
+            (
+                [plan, "--video", out + ".gif", "--speed", "0"],
+                "--speed: 0 is not between 0 and 1000",
+            ),
             ([plan, "--png", out + ".png", "--at", "nan"], "--at: nan is no time in a plan"),
             ([plan, "--html", str(tmp_path)], "the output is a folder"),
         ]
@@ -132,9 +150,14 @@ def test_bad_input_is_one_line_and_exit_code_two(
     assert not list(tmp_path.glob("out*"))
 
 
-def test_solve_writes_page_and_picture_beside_the_plan(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_solve_writes_page_and_picture_beside_the_plan(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plan, page, png = (tmp_path / name for name in ("plan.json", "plan.html", "plan.png"))
-    assert solving.run(["one_object", "--out", str(plan), "--html", str(page), "--png", str(png)]) == solving.SOLVED
+    assert (
+        solving.run(["one_object", "--out", str(plan), "--html", str(page), "--png", str(png)])
+        == solving.SOLVED
+    )
     assert pixels(png).shape == (600, 2400, 3)
     assert json.loads(plan.read_text(encoding="utf-8"))["record"]["samples"]
     assert f"{page} written" in capsys.readouterr().out
@@ -146,7 +169,9 @@ def test_solve_writes_page_and_picture_beside_the_plan(tmp_path: Path, capsys: p
 
 def test_solve_shows_what_was_tried_when_there_is_no_plan(tmp_path: Path) -> None:
     page = tmp_path / "none.html"
-    code = solving.run(["impossible_size", "--out", str(tmp_path / "plan.json"), "--html", str(page), "--quiet"])
+    code = solving.run(
+        ["impossible_size", "--out", str(tmp_path / "plan.json"), "--html", str(page), "--quiet"]
+    )
     assert code == solving.NO_PLAN
     assert '"head":"No plan: infeasible' in page.read_text(encoding="utf-8")
 
@@ -159,7 +184,10 @@ def test_solve_refuses_early(
     for words, expected in [
         (["one_object", "--view"], "no browser was found to open"),
         (["one_object", "--video", "out.avi"], "no moving picture is written as '.avi'"),
-        (["domain.pddl", "problem.pddl", "--html", "x.html"], "--html is for problems with a scene"),
+        (
+            ["domain.pddl", "problem.pddl", "--html", "x.html"],
+            "--html is for problems with a scene",
+        ),
     ]:
         assert solving.run(words) == solving.BAD_INPUT
         assert expected in capsys.readouterr().err
@@ -185,11 +213,15 @@ def test_meshes_from_elsewhere_are_given_away_only_when_that_is_said(
             f"  thing: {{mesh: {mesh}, on: table{', scale: 0.85' if inside else ''}}}\ngoal: (on thing table)\n",
             encoding="utf-8",
         )
-        assert main([str(problem), "--html", str(page)]) == (0 if inside else 2), capsys.readouterr().err
+        assert main([str(problem), "--html", str(page)]) == (0 if inside else 2), (
+            capsys.readouterr().err
+        )
         assert page.exists() == inside
         if not inside:
             assert "--allow-outside" in capsys.readouterr().err
-            assert solving.run([str(problem), "--html", str(page), "--out", str(here / "x.json")]) == 2
+            assert (
+                solving.run([str(problem), "--html", str(page), "--out", str(here / "x.json")]) == 2
+            )
             assert not page.exists() and not (here / "x.json").exists()
             assert main([str(problem), "--html", str(page), "--allow-outside"]) == 0
             page.unlink()
@@ -249,7 +281,9 @@ def test_a_pause_of_hours_makes_no_endless_picture(
     assert main(words) == 0
     assert "without 19,990 s of pauses" in capsys.readouterr().out
     segment["times"][-1] = 1e11
-    rows[-1] = [number + 0.1 for number in rows[-1]] if isinstance(rows[-1], list) else rows[-1] + 0.01
+    rows[-1] = (
+        [number + 0.1 for number in rows[-1]] if isinstance(rows[-1], list) else rows[-1] + 0.01
+    )
     file.write_text(json.dumps(plan), encoding="utf-8")
     picture.unlink()
     assert main(words) == 2 and not picture.exists()

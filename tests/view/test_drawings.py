@@ -37,7 +37,12 @@ def test_every_visual_element_is_drawn(tmp_path: Path, suffix: str) -> None:
     content = exported.encode() if isinstance(exported, str) else bytes(exported)
     body = body_of(tmp_path, suffix, content)
     first, second = body_meshes(body)
-    assert np.ptp(first.vertices, axis=0) == pytest.approx((0.2, 0.3, 0.4)) and first.colour == (1, 0, 0, 1)
+    assert np.ptp(first.vertices, axis=0) == pytest.approx((0.2, 0.3, 0.4)) and first.colour == (
+        1,
+        0,
+        0,
+        1,
+    )
     assert second.vertices.mean(axis=0) == pytest.approx((0, 0, 1)) and second.colour == body.colour
     assert undrawable([body]) == ()
 
@@ -55,7 +60,9 @@ def test_every_visual_element_is_drawn(tmp_path: Path, suffix: str) -> None:
         ("fbx", b"x"),
     ],
 )
-def test_a_broken_drawing_gives_way_to_the_collision_shape(tmp_path: Path, suffix: str, content: bytes) -> None:
+def test_a_broken_drawing_gives_way_to_the_collision_shape(
+    tmp_path: Path, suffix: str, content: bytes
+) -> None:
     body = body_of(tmp_path, suffix, content)
     (mesh,) = body_meshes(body)
     assert np.ptp(mesh.vertices, axis=0) == pytest.approx((0.06, 0.08, 0.14))

@@ -32,11 +32,19 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def opened(browser: Browser, document: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Browser:
+def opened(
+    browser: Browser, document: dict[str, Any], tmp_path_factory: pytest.TempPathFactory
+) -> Browser:
     """With the page of the plan, from a file, the network cut."""
     file = tmp_path_factory.mktemp("page") / "plan.html"
     write_page(document, file)
-    browser.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+    browser.call(
+        "Network.emulateNetworkConditions",
+        offline=True,
+        latency=0,
+        downloadThroughput=0,
+        uploadThroughput=0,
+    )
     browser.requests.clear()
     browser.open(file.as_uri())
     browser.wait("window.tamp !== undefined")
@@ -79,7 +87,9 @@ def test_the_slider_moves_robot_and_bodies_as_the_film_does(
         now = float(opened.run("tamp.state.time"))
         row = timeline.row(now)
         assert now == pytest.approx(time, abs=0.011)
-        assert matrix(opened.run("tamp.tool()")) == pytest.approx(kinematics.tool(row[:10]), abs=1e-4)
+        assert matrix(opened.run("tamp.tool()")) == pytest.approx(
+            kinematics.tool(row[:10]), abs=1e-4
+        )
         links = opened.run("tamp.links()")
         for name, pose in kinematics.link_poses(row[:10], float(row[10])).items():
             assert matrix(links[name]) == pytest.approx(pose, abs=1e-4), name
@@ -90,8 +100,15 @@ def test_the_slider_moves_robot_and_bodies_as_the_film_does(
 
 
 def test_actions_are_named_and_lead_to_their_start(opened: Browser, timeline: Timeline) -> None:
-    texts = opened.run("[...document.querySelectorAll('#actions li')].map((item) => item.textContent)")
-    assert [text.split(" s", 1)[1].split()[0] for text in texts] == ["move", "pick", "move", "place"]
+    texts = opened.run(
+        "[...document.querySelectorAll('#actions li')].map((item) => item.textContent)"
+    )
+    assert [text.split(" s", 1)[1].split()[0] for text in texts] == [
+        "move",
+        "pick",
+        "move",
+        "place",
+    ]
     opened.run("document.querySelectorAll('#actions li')[3].click()")
     opened.frames()
     assert opened.run("tamp.state.time") == pytest.approx(timeline.actions[3].start)
@@ -113,7 +130,11 @@ def test_it_plays_and_pauses(opened: Browser) -> None:
 
 
 def test_dragging_turns_and_the_wheel_comes_near(opened: Browser, tmp_path: Path) -> None:
-    before, yaw, distance = picture(opened, tmp_path), opened.run("tamp.camera.yaw"), opened.run("tamp.camera.distance")
+    before, yaw, distance = (
+        picture(opened, tmp_path),
+        opened.run("tamp.camera.yaw"),
+        opened.run("tamp.camera.distance"),
+    )
     opened.mouse("mousePressed", 400, 300, button="left", buttons=1, clickCount=1)
     opened.mouse("mouseMoved", 460, 320, button="left", buttons=1)
     opened.mouse("mouseReleased", 460, 320, button="left", clickCount=1)
@@ -125,7 +146,13 @@ def test_dragging_turns_and_the_wheel_comes_near(opened: Browser, tmp_path: Path
 
 def test_the_story_is_there(opened: Browser) -> None:
     text = opened.run("document.querySelector('aside').innerText").lower()
-    for word in ("skeletons tried", "inverse-kinematics", "sample-on", "became the plan", "seconds"):
+    for word in (
+        "skeletons tried",
+        "inverse-kinematics",
+        "sample-on",
+        "became the plan",
+        "seconds",
+    ):
         assert word in text
 
 
@@ -138,8 +165,12 @@ def test_samples_are_shown_by_their_test_and_say_what_they_hit(
     up[2, 3] = 1.9
     text = "soup_can by sample-on: rejected (test-pose-clear: hits table)"
     samples = (
-        SampleMarker("placement", "soup_can", T, False, "test-pose-clear", "hits table", ("table",), text),
-        SampleMarker("placement", "soup_can", up, True, None, "", (), "soup_can by sample-on: in the plan"),
+        SampleMarker(
+            "placement", "soup_can", T, False, "test-pose-clear", "hits table", ("table",), text
+        ),
+        SampleMarker(
+            "placement", "soup_can", up, True, None, "", (), "soup_can by sample-on: in the plan"
+        ),
     )
     alone = timeline_of(dataclasses.replace(timeline.scene), timeline.robot)
     file = tmp_path / "samples.html"
@@ -160,7 +191,9 @@ def test_samples_are_shown_by_their_test_and_say_what_they_hit(
     redder = (picture(browser, tmp_path) - before) @ [1.0, -0.5, -0.5]
     assert (redder > 60).sum() > 2000  # the table that it hits
     browser.mouse("mouseMoved", 5, 5)
-    browser.run("document.querySelector('input[data-layer=\"rejected by test-pose-clear\"]').click()")
+    browser.run(
+        "document.querySelector('input[data-layer=\"rejected by test-pose-clear\"]').click()"
+    )
     browser.mouse("mouseMoved", x + 2, y + 1)
     browser.frames()
     assert browser.run("document.getElementById('tip').hidden") is True
@@ -169,7 +202,11 @@ def test_samples_are_shown_by_their_test_and_say_what_they_hit(
 
 def test_the_served_page_works_too(browser: Browser, document: dict[str, Any]) -> None:
     browser.call(
-        "Network.emulateNetworkConditions", offline=False, latency=0, downloadThroughput=-1, uploadThroughput=-1
+        "Network.emulateNetworkConditions",
+        offline=False,
+        latency=0,
+        downloadThroughput=-1,
+        uploadThroughput=-1,
     )
     with PageServer(page(document).encode()) as server:
         Thread(target=server.serve_forever, daemon=True).start()
@@ -178,5 +215,7 @@ def test_the_served_page_works_too(browser: Browser, document: dict[str, Any]) -
         browser.open(server.address)
         browser.wait("window.tamp !== undefined && tamp.data.actions.length === 4")
         assert browser.logged == []
-        assert [address for address in browser.requests if not address.startswith("data:")] == [server.address]
+        assert [address for address in browser.requests if not address.startswith("data:")] == [
+            server.address
+        ]
         server.shutdown()

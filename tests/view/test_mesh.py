@@ -80,7 +80,9 @@ def test_a_mirrored_file_still_looks_outward(file: Path) -> None:
 def test_each_colour_of_a_file_is_a_mesh(file: Path) -> None:
     file.with_suffix(".mtl").write_text("newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 0 1\n")
     rows = TETRAHEDRON.split("\n")
-    file.write_text("\n".join(["mtllib t.mtl", *rows[:4], "usemtl a", *rows[4:6], "usemtl b", *rows[6:]]))
+    file.write_text(
+        "\n".join(["mtllib t.mtl", *rows[:4], "usemtl a", *rows[4:6], "usemtl b", *rows[6:]])
+    )
     meshes = read_mesh(file, (1.0, 1.0, 1.0), None)
     assert sorted(mesh.colour[:3] for mesh in meshes) == [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)]
     assert [len(mesh.faces) for mesh in meshes] == [2, 2]
@@ -103,7 +105,11 @@ def test_cells_merge_vertices_to_their_mean_and_drop_what_collapses() -> None:
     faces = np.array([[0, 2, 4], [1, 3, 4], [0, 1, 2]])
     coarse = simplified(Mesh(vertices, faces, RED), 0.1)
     assert len(coarse.vertices) == 3 and len(coarse.faces) == 2
-    assert {tuple(row) for row in coarse.vertices.round(6).tolist()} == {(0.0005, 0, 0), (1, 0.0005, 0), (0, 1, 0)}
+    assert {tuple(row) for row in coarse.vertices.round(6).tolist()} == {
+        (0.0005, 0, 0),
+        (1, 0.0005, 0),
+        (0, 1, 0),
+    }
 
 
 def test_a_cell_smaller_than_all_details_changes_nothing() -> None:

@@ -26,7 +26,10 @@ def test_what_is_wanted(tmp_path: Path) -> None:
     ("request_", "words"),
     [
         (OutputRequest(png=Path("a.jpg")), "a picture is written as .png"),
-        (OutputRequest(video=Path("a.mp4")), "no moving picture is written as '.mp4'.*Choices: .gif, .webp"),
+        (
+            OutputRequest(video=Path("a.mp4")),
+            "no moving picture is written as '.mp4'.*Choices: .gif, .webp",
+        ),
         (OutputRequest(video=Path("movie")), "no moving picture is written as 'movie'"),
         (OutputRequest(at=(1.0, -0.5)), "--at: -0.5 is no time in a plan"),
         (OutputRequest(at=(math.inf,)), "--at: inf is no time in a plan"),
@@ -50,7 +53,11 @@ def test_what_cannot_be_done_is_refused(
 
 def test_limits_themselves_are_fine(tmp_path: Path) -> None:
     OutputRequest(
-        png=tmp_path / "A.PNG", video=tmp_path / "b.GIF", at=(0.0, 1e9), speed=1000.0, size=(16, MOST_PIXELS)
+        png=tmp_path / "A.PNG",
+        video=tmp_path / "b.GIF",
+        at=(0.0, 1e9),
+        speed=1000.0,
+        size=(16, MOST_PIXELS),
     ).check()
 
 
@@ -70,7 +77,9 @@ def test_meshes_beside_and_below_the_problem_may_be_shown(tmp_path: Path) -> Non
 
     outside = tmp_path / "secret.obj"
     outside.touch()
-    with pytest.raises(InputError, match=r"outside of the problem's folder. Move it there, or say.*--allow-outside"):
+    with pytest.raises(
+        InputError, match=r"outside of the problem's folder. Move it there, or say.*--allow-outside"
+    ):
         check_inside([below, outside], problem)
 
 
@@ -84,7 +93,9 @@ def test_a_link_out_of_the_folder_is_outside(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="outside"):
         check_inside([folder / ".." / "secret.obj"], folder / "p.yaml")
     (folder / "linked.yaml").symlink_to(tmp_path / "p.yaml")
-    check_inside([tmp_path / "secret.obj"], folder / "linked.yaml")  # the problem's own place counts
+    check_inside(
+        [tmp_path / "secret.obj"], folder / "linked.yaml"
+    )  # the problem's own place counts
 
 
 def test_a_folder_whose_name_begins_alike_is_another(tmp_path: Path) -> None:

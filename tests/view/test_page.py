@@ -88,9 +88,13 @@ def unpacked(text: str, kind: str) -> np.ndarray:
     return np.frombuffer(base64.b64decode(text), dtype=kind)
 
 
-def test_motion_and_shapes_survive_the_packing(document: dict[str, Any], timeline: Timeline) -> None:
+def test_motion_and_shapes_survive_the_packing(
+    document: dict[str, Any], timeline: Timeline
+) -> None:
     assert unpacked(document["times"], "<f4") == pytest.approx(timeline.times, abs=1e-5)
-    assert unpacked(document["rows"], "<f4").reshape(-1, 11) == pytest.approx(timeline.rows, abs=1e-5)
+    assert unpacked(document["rows"], "<f4").reshape(-1, 11) == pytest.approx(
+        timeline.rows, abs=1e-5
+    )
     can = next(body for body in document["bodies"] if body["name"] == "soup_can")
     (mesh,) = can["meshes"]
     grid = unpacked(mesh["vertices"], "<u2").reshape(-1, 3)
@@ -111,7 +115,13 @@ def test_the_story_tells_streams_skeletons_and_time(document: dict[str, Any]) ->
     rows = {row[0]: row for row in story["streams"]}
     _, _, calls, share, seconds = rows["inverse-kinematics"]
     assert int(calls) > 0 and share.endswith("%") and seconds.endswith(" s")
-    assert [row[0] for row in story["time"]] == ["total", "search", "timing", "explaining", "other tries"]
+    assert [row[0] for row in story["time"]] == [
+        "total",
+        "search",
+        "timing",
+        "explaining",
+        "other tries",
+    ]
     assert re.fullmatch(r"1 skeleton · \d+ search(es)? · \d+ states expanded", story["search"])
 
 
@@ -135,7 +145,10 @@ def test_the_server_answers_with_the_page_and_nothing_else() -> None:
         thread = Thread(target=server.serve_forever, daemon=True)
         thread.start()
         with urllib.request.urlopen(server.address, timeout=10) as answer:
-            assert answer.status == 200 and answer.headers["Content-Type"] == "text/html; charset=utf-8"
+            assert (
+                answer.status == 200
+                and answer.headers["Content-Type"] == "text/html; charset=utf-8"
+            )
             assert answer.read() == b"<!DOCTYPE html>hello"
         with pytest.raises(urllib.error.HTTPError, match="404"):
             urllib.request.urlopen(f"{server.address}etc/passwd", timeout=10)
@@ -162,12 +175,18 @@ def test_a_name_may_be_a_mark_of_the_template(document: dict[str, Any]) -> None:
     assert len(reader.scripts) == 2 and found["bodies"] == document["bodies"]
 
 
-@pytest.mark.parametrize("host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"])
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"]
+)
 def test_the_server_is_asked_by_its_own_name_only(host: str) -> None:
     with PageServer(b"<!DOCTYPE html>secret") as server:
         Thread(target=server.serve_forever, daemon=True).start()
         port = server.server_address[1]
-        for name, status in ((host.format(port=port), 421), (f"localhost:{port}", 200), (f"127.0.0.1:{port}", 200)):
+        for name, status in (
+            (host.format(port=port), 421),
+            (f"localhost:{port}", 200),
+            (f"127.0.0.1:{port}", 200),
+        ):
             connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
             connection.request("GET", "/", headers={"Host": name})
             answer = connection.getresponse()

@@ -29,7 +29,9 @@ def volume(mesh: Mesh) -> float:
 
 def test_shapes_are_closed_and_look_outwards() -> None:
     assert volume(shape_mesh(Box((0.2, 0.3, 0.5)), RED)) == pytest.approx(0.03)
-    assert volume(shape_mesh(Cylinder(0.1, 0.4), RED)) == pytest.approx(math.pi * 0.01 * 0.4, rel=0.01)
+    assert volume(shape_mesh(Cylinder(0.1, 0.4), RED)) == pytest.approx(
+        math.pi * 0.01 * 0.4, rel=0.01
+    )
     assert volume(shape_mesh(Sphere(0.1), RED)) == pytest.approx(4 / 3 * math.pi * 0.001, rel=0.02)
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     hull = Hull(corners, np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
@@ -88,7 +90,9 @@ def test_what_is_behind_the_eye_is_not_drawn() -> None:
 
 def test_bodies_throw_shadows() -> None:
     floor = Mesh(
-        np.array([[-3.0, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]), np.array([[0, 1, 2], [0, 2, 3]]), (0.8,) * 4
+        np.array([[-3.0, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        (0.8,) * 4,
     )
     lifted = np.eye(4)
     lifted[2, 3] = 0.8
@@ -137,7 +141,9 @@ def test_the_hand_leaves_its_path_behind(timeline: Timeline) -> None:
     bare._trails = []
     seen: list[int] = []
     for share in (0.0, 0.5, 1.0):
-        with_path, without = (one.frame(share * timeline.duration).astype(int) for one in (renderer, bare))
+        with_path, without = (
+            one.frame(share * timeline.duration).astype(int) for one in (renderer, bare)
+        )
         orange = (with_path[:, :, 0] - with_path[:, :, 2] > 110) & (with_path[:, :, 1] < 160)
         seen.append(int((orange & (with_path != without).any(axis=2)).sum()))
     assert seen[0] == 0 and 0 < seen[1] <= seen[2] and seen[2] > 40
@@ -159,7 +165,9 @@ def test_what_cannot_be_written_is_an_input_error(timeline: Timeline, tmp_path: 
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError, match="cannot write the picture"):
         write_png(timeline, tmp_path / "file" / "out.png", times=(0.0,), size=(32, 32))
-    with pytest.raises(InputError, match=r"no moving picture is written as '\.mp4'. Choices: \.gif, \.webp"):
+    with pytest.raises(
+        InputError, match=r"no moving picture is written as '\.mp4'. Choices: \.gif, \.webp"
+    ):
         write_video(timeline, tmp_path / "out.mp4")
     with pytest.raises(InputError, match="nothing moves without a plan"):
         write_video(timeline_of(timeline.scene, timeline.robot), tmp_path / "out.gif")

@@ -18,7 +18,9 @@ ABOVE = Camera((0.0, -0.01, 10.0), (0.0, 0.0, 0.0), 40.0)
 RED, GREEN, WHITE = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0), (1.0, 1.0, 1.0, 1.0)
 
 
-def box(size: tuple[float, float, float], at: tuple[float, float, float], colour: tuple) -> Triangles:
+def box(
+    size: tuple[float, float, float], at: tuple[float, float, float], colour: tuple
+) -> Triangles:
     return triangles(shape_mesh(Box(size), colour).moved(Pose(at).matrix))
 
 
@@ -41,11 +43,15 @@ def test_a_thing_has_the_size_that_perspective_gives_it() -> None:
     rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     assert len(columns) == pytest.approx(2 * scale, abs=1.5)
     assert len(rows) == pytest.approx(1 * scale, abs=1.5)
-    assert columns.mean() == pytest.approx(39.5, abs=1.0) and rows.mean() == pytest.approx(29.5, abs=1.0)
+    assert columns.mean() == pytest.approx(39.5, abs=1.0) and rows.mean() == pytest.approx(
+        29.5, abs=1.0
+    )
 
 
 def test_right_is_plus_x_and_up_is_plus_y() -> None:
-    picture = render([box((0.5, 0.5, 0.1), (2, 0, 0), RED), box((0.5, 0.5, 0.1), (0, 2, 0), GREEN)], ABOVE, SIZE)
+    picture = render(
+        [box((0.5, 0.5, 0.1), (2, 0, 0), RED), box((0.5, 0.5, 0.1), (0, 2, 0), GREEN)], ABOVE, SIZE
+    )
     assert np.argwhere(coloured(picture, 0)).mean(axis=0)[1] > 50
     assert np.argwhere(coloured(picture, 1)).mean(axis=0)[0] < 20
 
@@ -92,7 +98,9 @@ def test_a_cans_rim_is_sharp_however_high_it_is(height: float) -> None:
     assert ((level < 1e-9) | (level > 1 - 1e-9)).all()  # of the lid or of the side, nothing between
     side = (level < 1e-9) & (np.linalg.norm(can.normals, axis=2) > 0.5)
     radial = can.corners[side][:, :2] / 0.1
-    assert (np.einsum("ni,ni->n", can.normals[side][:, :2], radial) > math.cos(math.pi / ROUND) - 1e-9).all()
+    assert (
+        np.einsum("ni,ni->n", can.normals[side][:, :2], radial) > math.cos(math.pi / ROUND) - 1e-9
+    ).all()
 
 
 def test_triangles_move_with_their_normals() -> None:

@@ -59,7 +59,9 @@ def test_refused_samples_say_by_which_test_and_what_they_hit(recorded: Solution)
     assert {shot.test for shot in hits} >= {"sample-on"}
     used = [shot for shot in placements if shot.used]
     placed = {action.objects[0] for action in recorded.plan if action.name == "place"}
-    assert {shot.body for shot in used} == placed and all("in the plan" in shot.text for shot in used)
+    assert {shot.body for shot in used} == placed and all(
+        "in the plan" in shot.text for shot in used
+    )
     assert any(shot.kind == "grasp" and shot.used for shot in found)
 
 
@@ -97,10 +99,16 @@ def test_the_subject_is_blamed_and_not_what_is_in_its_way() -> None:
     mine, other = Pose((1.0, 0.0, 0.0)), Pose((2.0, 0.0, 0.0))
     grasp = Grasp("mug", Pose(), 0.04)
     for body, value in (("mug", mine), ("can", other), ("mug", grasp)):
-        draw = BoundStream(declared("draw", ("?o",), ("?p",)), lambda _, call, value=value: iter([value]), ((),))
+        draw = BoundStream(
+            declared("draw", ("?o",), ("?p",)), lambda _, call, value=value: iter([value]), ((),)
+        )
         assert heard(recorder, draw, body) == [value]
-    test = BoundStream(declared("test", ("?o",)), lambda *_, call: Rejection("hits can", ("can",)), ())
-    assert heard(recorder, test, "mug", mine, grasp, "can", other) == Rejection("hits can", ("can",))
+    test = BoundStream(
+        declared("test", ("?o",)), lambda *_, call: Rejection("hits can", ("can",)), ()
+    )
+    assert heard(recorder, test, "mug", mine, grasp, "can", other) == Rejection(
+        "hits can", ("can",)
+    )
     refusals = [dict(sample.refusals) for sample in recorder.samples]
     assert refusals == [{("test", "hits can"): 1}, {}, {("test", "hits can"): 1}]
 
@@ -109,7 +117,9 @@ def test_samples_are_capped_and_counted() -> None:
     recorder = Recorder(limit=5, each=3)
     poses = [Pose((float(i), 0.0, 0.0)) for i in range(8)]
     draw = BoundStream(
-        declared("draw", ("?o",), ("?p",)), lambda body, call: iter(poses if body == "mug" else []), ((),)
+        declared("draw", ("?o",), ("?p",)),
+        lambda body, call: iter(poses if body == "mug" else []),
+        ((),),
     )
     assert heard(recorder, draw, "mug") == poses
     more = [Pose((float(i), 1.0, 0.0)) for i in range(8)]

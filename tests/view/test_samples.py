@@ -11,11 +11,17 @@ from tamp.geometric.scene.scene import Box
 from tamp.view.samples import sample_markers
 from tests.geometric.making import body, scene, table
 
-SCENE = scene(table(), body("Cup", Box((0.1, 0.1, 0.1)), (0, 0, 0.6)), body("box", Box((0.1, 0.1, 0.1)), (0.3, 0, 0.6)))
+SCENE = scene(
+    table(),
+    body("Cup", Box((0.1, 0.1, 0.1)), (0, 0, 0.6)),
+    body("box", Box((0.1, 0.1, 0.1)), (0.3, 0, 0.6)),
+)
 POSE = {"position": [1, 2, 3], "quaternion": [0, 0, 0, 1]}
 
 
-def sample(arguments: list[str], used: bool = False, refusals: list | None = None, **more: Any) -> dict[str, Any]:
+def sample(
+    arguments: list[str], used: bool = False, refusals: list | None = None, **more: Any
+) -> dict[str, Any]:
     told = [{"stream": s, "reason": why, "count": n} for s, why, n in refusals or []]
     return {
         "type": "pose",
@@ -36,7 +42,10 @@ def test_a_placement_says_what_became_of_it() -> None:
     used, accepted, rejected = (
         sample(["cup", "table"], used=True),
         sample(["cup", "table"]),
-        sample(["cup", "table"], refusals=[("test-pose-clear", "hits box", 3), ("test-reach", "too far", 1)]),
+        sample(
+            ["cup", "table"],
+            refusals=[("test-pose-clear", "hits box", 3), ("test-reach", "too far", 1)],
+        ),
     )
     assert shown(used, accepted, rejected) == [
         "Cup by sample-on table: in the plan",
@@ -46,7 +55,11 @@ def test_a_placement_says_what_became_of_it() -> None:
 
 
 def test_a_marker_has_the_scenes_names_the_pose_and_the_first_refusal() -> None:
-    record = {"record": {"samples": [sample(["cup", "table"], refusals=[("test-pose-clear", "hits BOX", 1)])]}}
+    record = {
+        "record": {
+            "samples": [sample(["cup", "table"], refusals=[("test-pose-clear", "hits BOX", 1)])]
+        }
+    }
     (marker,) = sample_markers(record, SCENE)
     assert (marker.kind, marker.body, marker.used) == ("placement", "Cup", False)
     assert (marker.test, marker.why, marker.others) == ("test-pose-clear", "hits BOX", ("box",))
@@ -54,9 +67,17 @@ def test_a_marker_has_the_scenes_names_the_pose_and_the_first_refusal() -> None:
 
 
 def test_a_body_is_not_blamed_for_its_own_name() -> None:
-    record = {"record": {"samples": [sample(["box", "table"], refusals=[("t", "box hits the boxes near cup", 1)])]}}
+    record = {
+        "record": {
+            "samples": [
+                sample(["box", "table"], refusals=[("t", "box hits the boxes near cup", 1)])
+            ]
+        }
+    }
     (marker,) = sample_markers(record, SCENE)
-    assert marker.others == ("Cup",)  # "boxes" is another word, and it is the box that is asked about
+    assert marker.others == (
+        "Cup",
+    )  # "boxes" is another word, and it is the box that is asked about
 
 
 def test_what_is_of_no_body_here_is_left_out() -> None:
@@ -64,14 +85,23 @@ def test_what_is_of_no_body_here_is_left_out() -> None:
 
 
 def test_a_grasp_is_shown_in_the_hand() -> None:
-    grasp = {**sample(["cup"], used=True), "type": "grasp", "T_tool_body": POSE, "stream": "sample-grasp"}
+    grasp = {
+        **sample(["cup"], used=True),
+        "type": "grasp",
+        "T_tool_body": POSE,
+        "stream": "sample-grasp",
+    }
     (marker,) = sample_markers({"record": {"samples": [grasp]}}, SCENE)
     assert (marker.kind, marker.text) == ("grasp", "grasp of Cup: in the plan")
 
 
 def test_without_a_record_the_plans_own_grasps_are_shown() -> None:
     hold = {"type": "grasp", "T_tool_body": POSE, "opening": 0.05}
-    values = {"g": {**hold, "body": "cup"}, "h": {**hold, "body": "ghost"}, "p": {"type": "pose", **POSE}}
+    values = {
+        "g": {**hold, "body": "cup"},
+        "h": {**hold, "body": "ghost"},
+        "p": {"type": "pose", **POSE},
+    }
     (marker,) = sample_markers({"values": values}, SCENE)
     assert (marker.body, marker.used, marker.test) == ("Cup", True, None)
     assert sample_markers({}, SCENE) == ()
@@ -80,7 +110,10 @@ def test_without_a_record_the_plans_own_grasps_are_shown() -> None:
 @pytest.mark.parametrize(
     ("spoilt", "words"),
     [
-        (sample(["cup"], position=[1, 2]), r"record.samples\[0\].position: 3 numbers are expected, not 2"),
+        (
+            sample(["cup"], position=[1, 2]),
+            r"record.samples\[0\].position: 3 numbers are expected, not 2",
+        ),
         ({**sample(["cup"]), "refusals": 3}, r"record.samples\[0\].refusals: an array is expected"),
         (sample(["cup"], refusals=[("t", "no", 0)]), r"count: 0 is less than 1"),
     ],

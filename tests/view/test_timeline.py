@@ -18,7 +18,11 @@ from tamp.view.timeline import PoseInterval, Timeline, holding, timeline_of, too
 def test_actions_and_objects_are_the_plans(timeline: Timeline, stored: Stored) -> None:
     assert [action.name for action in timeline.actions] == ["move", "pick", "move", "place"]
     assert timeline.actions[1].objects == ("soup_can",)
-    assert timeline.actions[-1].end == pytest.approx(timeline.duration) == pytest.approx(stored.plan.duration)
+    assert (
+        timeline.actions[-1].end
+        == pytest.approx(timeline.duration)
+        == pytest.approx(stored.plan.duration)
+    )
     assert [action.text for action in timeline.actions[:2]] == ["move", "pick soup_can from table"]
     assert timeline.actions[3].text == "place soup_can on cupboard_top"
     starts = [action.start for action in timeline.actions]
@@ -33,7 +37,9 @@ def test_the_robot_moves_without_jumps_and_stands_before_and_after(timeline: Tim
     assert np.abs(np.diff(rows, axis=0)).max() < 0.02 * 2.7  # rad/s, the fastest joint
 
 
-def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(timeline: Timeline, stored: Stored) -> None:
+def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(
+    timeline: Timeline, stored: Stored
+) -> None:
     kinematics = Kinematics(timeline.robot)
     kept, held, left = timeline.stays["soup_can"]
     assert (kept.held, held.held, left.held) == (False, True, False)
@@ -41,7 +47,9 @@ def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(timeline: Time
         T_tool_world = np.linalg.inv(kinematics.tool(timeline.row(time)[:10]))
         assert T_tool_world @ timeline.poses(time, kinematics)["soup_can"] == pytest.approx(held.T)
     for time in (held.since, left.since):  # nothing jumps when it is grasped or let go
-        before, after = (timeline.poses(time + step, kinematics)["soup_can"] for step in (-1e-6, 1e-6))
+        before, after = (
+            timeline.poses(time + step, kinematics)["soup_can"] for step in (-1e-6, 1e-6)
+        )
         assert before == pytest.approx(after, abs=1e-4)
     goal = next(action.arguments[1] for action in stored.plan.actions if action.name == "place")
     assert timeline.poses(timeline.duration, kinematics)["soup_can"] == pytest.approx(
@@ -63,7 +71,10 @@ def test_links_stand_where_another_engine_has_them(timeline: Timeline) -> None:
 def test_the_hand_is_full_between_pick_and_place(timeline: Timeline) -> None:
     full = holding(timeline)
     assert len(full) == len(timeline.times) - 1
-    middle = [full[int(np.searchsorted(timeline.times, action.end - 0.3)) - 1] for action in timeline.actions]
+    middle = [
+        full[int(np.searchsorted(timeline.times, action.end - 0.3)) - 1]
+        for action in timeline.actions
+    ]
     assert middle == [False, True, True, False]
     assert tool_path(timeline, Kinematics(timeline.robot)).shape == (len(timeline.times), 3)
 

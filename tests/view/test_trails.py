@@ -71,11 +71,15 @@ def test_it_grows_with_time() -> None:
 
 
 def test_with_a_body_in_it_the_hands_line_has_another_colour() -> None:
-    found = made(drive(0.0, 0.5), close("cup"), drive(0.5, 1.0, "cup"), let_go("cup"), drive(1.0, 1.5))
+    found = made(
+        drive(0.0, 0.5), close("cup"), drive(0.5, 1.0, "cup"), let_go("cup"), drive(1.0, 1.5)
+    )
     assert found.keys() == {EMPTY, FULL, DRIVE}
     tool = Kinematics(ROBOT).tool(np.array([0.0, -2.0, 0.0, *ROBOT.home]))[0, 3]
     full = found[FULL].line.corners[:, :, 0] - tool
-    assert full.min() == pytest.approx(0.5, abs=POINT_SPACING_M) and full.max() == pytest.approx(1.0, abs=0.03)
+    assert full.min() == pytest.approx(0.5, abs=POINT_SPACING_M) and full.max() == pytest.approx(
+        1.0, abs=0.03
+    )
     assert (found[FULL].passed > 10.4).all() and (found[FULL].passed < 21.1).all()
 
 

@@ -28,7 +28,10 @@ def made(folder: Path, *options: str, joints=SIX, name: str = "boxes") -> Path:
 
     urdf = write_arm(folder, joints)
     out = folder / name
-    assert main(["make", str(urdf), "--arm", "foot", "tool", "--out", str(out), "--quiet", *options]) == 0
+    assert (
+        main(["make", str(urdf), "--arm", "foot", "tool", "--out", str(out), "--quiet", *options])
+        == 0
+    )
     return out
 
 

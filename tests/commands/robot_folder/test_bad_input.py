@@ -96,7 +96,9 @@ def test_a_bad_urdf_is_one_clear_error(
     assert not (tmp_path / "made").exists() or not list((tmp_path / "made").iterdir())
 
 
-def test_another_folder_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_another_folder_is_not_overwritten(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("dear")
     (tmp_path / "arm.urdf").write_text(arm_text())
@@ -139,7 +141,9 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("name", DAMAGED)
-def test_a_damaged_folder_is_one_clear_error_before_planning(name: str, driving: Path, tmp_path: Path) -> None:
+def test_a_damaged_folder_is_one_clear_error_before_planning(
+    name: str, driving: Path, tmp_path: Path
+) -> None:
     change, says = DAMAGED[name]
     folder = tmp_path / "boxes"
     shutil.copytree(driving, folder)
@@ -149,5 +153,7 @@ def test_a_damaged_folder_is_one_clear_error_before_planning(name: str, driving:
 
 
 def test_an_unknown_robot_names_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"unknown robot 'pnada_mobile'.*Did you mean 'panda_mobile'"):
+    with pytest.raises(
+        InputError, match=r"unknown robot 'pnada_mobile'.*Did you mean 'panda_mobile'"
+    ):
         tamp.load_problem("one_object", robot="pnada_mobile")

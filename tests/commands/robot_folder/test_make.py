@@ -31,7 +31,9 @@ def test_the_tip_is_where_pinocchio_has_it(folder: Path) -> None:
         full = pinocchio.neutral(model)
         for joint, value in zip(robot.joints, q, strict=True):
             index = model.joints[model.getJointId(joint.name)]
-            full[index.idx_q : index.idx_q + index.nq] = [np.cos(value), np.sin(value)] if index.nq == 2 else [value]
+            full[index.idx_q : index.idx_q + index.nq] = (
+                [np.cos(value), np.sin(value)] if index.nq == 2 else [value]
+            )
         pinocchio.framesForwardKinematics(model, data, full)
         hand = kinematics.link_poses(np.concatenate([np.zeros(3), q]), 0.0)[robot.hand]
         expected = robot.T_base_arm.matrix @ data.oMf[tip].homogeneous
@@ -55,7 +57,9 @@ def test_inverse_kinematics_finds_what_forward_kinematics_reaches(folder: Path) 
 def test_home_is_free_and_within_the_limits(folder: Path) -> None:
     robot = read_robot(folder)
     assert home_collision(robot, robot.home) is None
-    assert all(low <= q <= high for low, q, high in zip(robot.lower, robot.home, robot.upper, strict=True))
+    assert all(
+        low <= q <= high for low, q, high in zip(robot.lower, robot.home, robot.upper, strict=True)
+    )
 
 
 def test_spheres_contain_their_hulls(folder: Path) -> None:
@@ -67,7 +71,9 @@ def test_spheres_contain_their_hulls(folder: Path) -> None:
                 spheres, _ = covers[link.name, number]
                 weights = rng.dirichlet(np.ones(len(part.shape.vertices)), 300)
                 points = np.concatenate([weights @ part.shape.vertices, part.shape.vertices])
-                gaps = np.linalg.norm(points[:, None] - spheres[None, :, :3], axis=2) - spheres[:, 3]
+                gaps = (
+                    np.linalg.norm(points[:, None] - spheres[None, :, :3], axis=2) - spheres[:, 3]
+                )
                 assert gaps.min(axis=1).max() < 1e-9
                 looked += 1
     assert looked >= 9

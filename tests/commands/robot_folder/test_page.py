@@ -22,7 +22,9 @@ SCHEMA = json.loads((ROOT / "tamp/geometric/loading/robot.schema.json").read_tex
 def errors(folder: Path) -> list[str]:
     jsonschema = pytest.importorskip("jsonschema")
     document = yaml.safe_load((folder / "robot.yaml").read_text(encoding="utf-8"))
-    return [error.message for error in jsonschema.Draft202012Validator(SCHEMA).iter_errors(document)]
+    return [
+        error.message for error in jsonschema.Draft202012Validator(SCHEMA).iter_errors(document)
+    ]
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -52,4 +54,6 @@ def test_the_page_leads_from_a_urdf_to_a_plan_that_is_carried_out(tmp_path: Path
         )
         assert run.returncode == 0, f"{command}\n{run.stdout}{run.stderr}"
     assert (tmp_path / "robots" / "iiwa" / "robot.yaml").is_file()
-    assert json.loads((tmp_path / "plan.json").read_text())["robot"] == str(tmp_path / "robots" / "iiwa")
+    assert json.loads((tmp_path / "plan.json").read_text())["robot"] == str(
+        tmp_path / "robots" / "iiwa"
+    )

@@ -44,8 +44,12 @@ def test_reachable_poses_are_solved(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHIPPED)
 @pytest.mark.parametrize("size", ["one_object", "four_objects"])
-def test_it_solves_a_problem_that_is_judged_and_carried_out(name: str, size: str, tmp_path: Path) -> None:
-    solution = tamp.solve(tamp.load_problem(problem_for(name, size), robot=name), max_time=60.0, seed=0)
+def test_it_solves_a_problem_that_is_judged_and_carried_out(
+    name: str, size: str, tmp_path: Path
+) -> None:
+    solution = tamp.solve(
+        tamp.load_problem(problem_for(name, size), robot=name), max_time=60.0, seed=0
+    )
     assert solution.solved
     plan = tmp_path / "plan.json"
     tamp.write_plan(solution, plan)

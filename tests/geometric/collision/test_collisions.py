@@ -17,7 +17,17 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cylinder, Part, RobotStart, Room, Scene, Sphere
+from tamp.geometric.scene.scene import (
+    CONTACT_GAP,
+    Body,
+    Box,
+    Cylinder,
+    Part,
+    RobotStart,
+    Room,
+    Scene,
+    Sphere,
+)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +46,9 @@ def body(name: str, shape, x: float, y: float, z: float, movable: bool = True) -
 
 def scene_of(*bodies: Body, side: float = 3.0) -> Scene:
     room = Room((-side, side), (-side, side))
-    return Scene("test", {b.name: b for b in bodies}, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), room)
+    return Scene(
+        "test", {b.name: b for b in bodies}, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), room
+    )
 
 
 def at(robot: Robot, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> np.ndarray:
@@ -44,19 +56,35 @@ def at(robot: Robot, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> np.nda
 
 
 @pytest.mark.parametrize("held", [False, True])
-def test_states_and_edges_agree_with_plain_fcl(robot: Robot, kinematics: Kinematics, held: bool) -> None:
+def test_states_and_edges_agree_with_plain_fcl(
+    robot: Robot, kinematics: Kinematics, held: bool
+) -> None:
     total: Counter[str] = Counter()
     for seed in range(2):
         rng = np.random.default_rng((seed, held))
         scene = random_scene(rng, 5)
         poses = {name: scene.bodies[name].pose for name in scene.movable}
-        attachment = Attachment("held", random_pose(rng, np.full(3, -0.02), np.full(3, 0.02)), 0.04) if held else None
+        attachment = (
+            Attachment("held", random_pose(rng, np.full(3, -0.02), np.full(3, 0.02)), 0.04)
+            if held
+            else None
+        )
         arrangement = Collisions(scene, robot, kinematics).arrangement(poses, attachment)
         plain = PlainFcl(scene, robot, kinematics, poses, attachment)
         total += compare(arrangement, plain, random_confs(rng, robot, 100), 10, rng)
         total["undecided edges"] += arrangement.stats.edges - arrangement.stats.edges_decided
-    assert total["free states"] > 30 and total["free edges"] > 3 and total["edges"] > total["free edges"]
-    for wrong in ("false free states", "false hit states", "false free edges", "false hit edges", "undecided edges"):
+    assert (
+        total["free states"] > 30
+        and total["free edges"] > 3
+        and total["edges"] > total["free edges"]
+    )
+    for wrong in (
+        "false free states",
+        "false hit states",
+        "false free edges",
+        "false hit edges",
+        "undecided edges",
+    ):
         assert total[wrong] == 0, wrong
 
 
@@ -72,7 +100,9 @@ def test_free_means_padding_and_no_more(robot: Robot, kinematics: Kinematics) ->
 
 
 @pytest.mark.parametrize("thickness", [0.02, 0.001, 1e-5])
-def test_no_edge_passes_through_a_thin_plate(robot: Robot, kinematics: Kinematics, thickness: float) -> None:
+def test_no_edge_passes_through_a_thin_plate(
+    robot: Robot, kinematics: Kinematics, thickness: float
+) -> None:
     plate = body("plate", Box((thickness, 0.02, 0.02)), 1.2, 0.0, 0.2, movable=False)
     arrangement = Collisions(scene_of(plate), robot, kinematics).arrangement({})
     rng = np.random.default_rng(3)
@@ -83,7 +113,9 @@ def test_no_edge_passes_through_a_thin_plate(robot: Robot, kinematics: Kinematic
     assert arrangement.stats.edges == arrangement.stats.edges_decided == 100
 
 
-def test_a_free_edge_has_free_ends_and_half_the_padding_between(robot: Robot, kinematics: Kinematics) -> None:
+def test_a_free_edge_has_free_ends_and_half_the_padding_between(
+    robot: Robot, kinematics: Kinematics
+) -> None:
     rng = np.random.default_rng(5)
     scene = random_scene(rng, 4)
     poses = {name: scene.bodies[name].pose for name in scene.movable}
@@ -98,11 +130,15 @@ def test_a_free_edge_has_free_ends_and_half_the_padding_between(robot: Robot, ki
             assert arrangement.hits(start + s * (end - start), PADDING / 2 - 1e-6) is None
 
 
-def test_the_attached_body_counts_and_leaves_its_place(robot: Robot, kinematics: Kinematics) -> None:
+def test_the_attached_body_counts_and_leaves_its_place(
+    robot: Robot, kinematics: Kinematics
+) -> None:
     conf = at(robot)
     T_world_tool = Pose.from_matrix(kinematics.tool(conf))
     cup = replace(body("cup", Cylinder(0.02, 0.1), 0, 0, 0), pose=T_world_tool)
-    post = replace(body("post", Box((0.03, 0.03, 0.03)), 0, 0, 0), pose=T_world_tool @ Pose((0.0, 0.0, 0.07)))
+    post = replace(
+        body("post", Box((0.03, 0.03, 0.03)), 0, 0, 0), pose=T_world_tool @ Pose((0.0, 0.0, 0.07))
+    )
     collisions = Collisions(scene_of(cup, post), robot, kinematics)
     poses = {"cup": cup.pose, "post": post.pose}
     grasp = Attachment("cup", Pose(), 0.04)
@@ -112,7 +148,10 @@ def test_the_attached_body_counts_and_leaves_its_place(robot: Robot, kinematics:
     raised = Attachment("cup", Pose((0.0, 0.0, 0.03)), 0.04)
     assert collisions.arrangement(poses, raised).hits(conf) == ("cup", "post")
     assert not collisions.arrangement(poses, raised).free(conf)
-    assert collisions.arrangement({}, Attachment("cup", Pose((0.0, 0.0, -0.25)), 0.04)).hits(conf) is not None  # link6
+    assert (
+        collisions.arrangement({}, Attachment("cup", Pose((0.0, 0.0, -0.25)), 0.04)).hits(conf)
+        is not None
+    )  # link6
 
 
 def test_fingers_stand_at_half_the_opening(robot: Robot, kinematics: Kinematics) -> None:
@@ -148,7 +187,9 @@ def test_path_hits_names_what_a_motion_meets(robot: Robot, kinematics: Kinematic
 def test_bodies_resting_on_each_other_do_not_collide(robot: Robot, kinematics: Kinematics) -> None:
     board = body("board", Box((1.0, 1.0, 0.04)), 0, 0, 0.5, movable=False)
     collisions = Collisions(
-        scene_of(board, body("a", Box((0.1, 0.1, 0.1)), 0, 0, 1), body("b", Cylinder(0.05, 0.2), 0, 0, 2)),
+        scene_of(
+            board, body("a", Box((0.1, 0.1, 0.1)), 0, 0, 1), body("b", Cylinder(0.05, 0.2), 0, 0, 2)
+        ),
         robot,
         kinematics,
     )
@@ -190,5 +231,9 @@ def test_the_same_question_has_the_same_answer(robot: Robot, kinematics: Kinemat
     for conf in confs:
         conf.flags.writeable = False
     answers = [first.free(conf) for conf in confs]
-    assert answers == [second.free(conf) for conf in confs[::-1]][::-1] == [first.free(conf.copy()) for conf in confs]
+    assert (
+        answers
+        == [second.free(conf) for conf in confs[::-1]][::-1]
+        == [first.free(conf.copy()) for conf in confs]
+    )
     assert True in answers and False in answers

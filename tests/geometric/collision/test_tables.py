@@ -54,14 +54,21 @@ def test_a_row_has_the_box_and_the_sphere_around_a_part(
 ) -> None:
     row = Rows().row(Part(shape))
     assert row.shape == (WIDTH,) and row[KIND] == kind
-    assert row[SIZE : SIZE + 3] == pytest.approx(half) and row[CENTRE : CENTRE + 3] == pytest.approx(centre)
+    assert row[SIZE : SIZE + 3] == pytest.approx(half) and row[
+        CENTRE : CENTRE + 3
+    ] == pytest.approx(centre)
     assert (row[RADIUS], row[MARGIN], row[SLACK]) == pytest.approx((radius, margin, radius))
 
 
 def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
     rows = Rows()
     first, second = rows.row(Part(OFF_CENTRE)), rows.row(Part(hull(cuboid((1, 1, 1)))))
-    assert (first[VERTICES], first[VERTEX_COUNT], second[VERTICES], second[VERTEX_COUNT]) == (0, 8, 8, 8)
+    assert (first[VERTICES], first[VERTEX_COUNT], second[VERTICES], second[VERTEX_COUNT]) == (
+        0,
+        8,
+        8,
+        8,
+    )
     vertices = rows.vertices()
     assert vertices.shape == (3, 16) and vertices.flags.c_contiguous
     assert np.abs(vertices[:, 8:]) == pytest.approx(np.full((3, 8), 0.5))
@@ -84,7 +91,9 @@ def test_a_pose_is_a_rotation_row_by_row_and_a_position() -> None:
 
 @given(_ANGLE, _ANGLE, _ANGLE)
 @settings(max_examples=30)
-def test_the_worlds_box_holds_the_part_and_is_exact_for_boxes(roll: float, pitch: float, yaw: float) -> None:
+def test_the_worlds_box_holds_the_part_and_is_exact_for_boxes(
+    roll: float, pitch: float, yaw: float
+) -> None:
     pose = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (roll, pitch, yaw))
     for shape in (Box((0.2, 0.4, 0.6)), OFF_CENTRE, Cylinder(0.1, 0.3)):
         low, high = world_box(Rows().row(Part(shape))[None], pose_rows(pose.matrix[None]))

@@ -15,7 +15,17 @@ from tamp.geometric.loading.footing import Ground
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, RobotStart, Room, Scene, Shape, Sphere
+from tamp.geometric.scene.scene import (
+    Body,
+    Box,
+    Cylinder,
+    Part,
+    RobotStart,
+    Room,
+    Scene,
+    Shape,
+    Sphere,
+)
 from tamp.planner.initial_state import initial_state
 from tamp.simulation.engines import open_world
 from tamp.symbolic.pddl.parser import parse_domain
@@ -44,19 +54,30 @@ def wedge(folder: Path) -> None:
     text = [f"v {x} {y} {z}" for y in (-0.02, 0.02) for x, z in WEDGE]
     text.append("f " + " ".join(str(i + 1) for i in range(count)))
     text.append("f " + " ".join(str(2 * count - i) for i in range(count)))
-    text += [f"f {i + 1} {count + i + 1} {count + (i + 1) % count + 1} {(i + 1) % count + 1}" for i in range(count)]
+    text += [
+        f"f {i + 1} {count + i + 1} {count + (i + 1) % count + 1} {(i + 1) % count + 1}"
+        for i in range(count)
+    ]
     (folder / "wedge.obj").write_text("\n".join(text) + "\n")
 
 
 def felt(bodies: dict[str, Body], name: str) -> str | None:
     """The judge's opinion of how a body stands."""
-    with open_world(Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))) as world:
+    with open_world(
+        Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))
+    ) as world:
         return Supports(world).stand(name).why
 
 
 def _shape(rng: np.random.Generator) -> Shape:
     kinds: list[Shape] = [
-        Box((float(rng.uniform(0.03, 0.2)), float(rng.uniform(0.03, 0.2)), float(rng.uniform(0.03, 0.2)))),
+        Box(
+            (
+                float(rng.uniform(0.03, 0.2)),
+                float(rng.uniform(0.03, 0.2)),
+                float(rng.uniform(0.03, 0.2)),
+            )
+        ),
         Cylinder(float(rng.uniform(0.02, 0.06)), float(rng.uniform(0.05, 0.2))),
         Sphere(float(rng.uniform(0.02, 0.06))),
     ]
@@ -68,8 +89,15 @@ def test_what_stands_here_stands_for_the_judge(rng: np.random.Generator) -> None
     for _ in range(150):
         table = Body("table", (Part(Box((0.3, 0.3, 0.1))),), Pose((0, 0, 0.5)), movable=False)
         height = 0.1 + float(rng.choice([0.0, 0.001, 0.02]))
-        beside = Body("beside", (Part(Box((0.2, 0.3, height))),), Pose((float(rng.uniform(0.28, 0.4)), 0, 0.5)), True)
-        parts = tuple(Part(_shape(rng), Pose((float(rng.uniform(-0.03, 0.03)), 0, 0))) for _ in range(2))
+        beside = Body(
+            "beside",
+            (Part(Box((0.2, 0.3, height))),),
+            Pose((float(rng.uniform(0.28, 0.4)), 0, 0.5)),
+            True,
+        )
+        parts = tuple(
+            Part(_shape(rng), Pose((float(rng.uniform(-0.03, 0.03)), 0, 0))) for _ in range(2)
+        )
         rolled = tuple(rng.uniform(-3, 3, 3).tolist()) if rng.random() < 0.3 else (0.0, 0.0, 0.0)
         turned = Pose.from_xyz_rpy((0, 0, 0), (rolled[0], rolled[1], rolled[2]))
         low, _ = bounds(parts, turned)
@@ -116,7 +144,9 @@ def test_a_body_that_leans_a_little_is_laid_onto_the_face_beside(tmp_path: Path)
     loaded = load(tmp_path, "banana: {mesh: wedge.obj, on: table}")
     tilt = math.degrees(math.acos(loaded.scene.bodies["banana"].pose.rotation[2, 2]))
     assert tilt == pytest.approx(math.degrees(math.atan2(0.006, 0.12)), abs=0.01)
-    assert loaded.warnings[-1].startswith("banana is tipped by 2.9 deg onto its nearest face: its centre of mass is 18")
+    assert loaded.warnings[-1].startswith(
+        "banana is tipped by 2.9 deg onto its nearest face: its centre of mass is 18"
+    )
     assert felt(dict(loaded.scene.bodies), "banana") is None
     assert loaded.scene.bodies["banana"].support == "table"
 
@@ -139,7 +169,9 @@ def test_a_body_that_leans_a_little_is_laid_onto_the_face_beside(tmp_path: Path)
         (["pole: {cylinder: {radius: 0.03, height: 0.2}, on: table, rpy: [30 deg, 0, 0]}"], "its centre of mass is"),
     ],
 )  # fmt: skip
-def test_a_body_that_does_not_stand_is_refused_with_the_reason(tmp_path: Path, lines: list[str], said: str) -> None:
+def test_a_body_that_does_not_stand_is_refused_with_the_reason(
+    tmp_path: Path, lines: list[str], said: str
+) -> None:
     with pytest.raises(InputError) as caught:
         load(tmp_path, *lines)
     assert said in str(caught.value)

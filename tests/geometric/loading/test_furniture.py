@@ -75,7 +75,9 @@ def test_compartments_are_numbered_bottom_up_and_left_to_right() -> None:
     piece = FURNITURE["cupboard"].build("c", SIZE, Options(rows=2, columns=2))
     assert [cavity.name for cavity in piece.cavities] == ["c_1", "c_2", "c_3", "c_4"]
     positions = [cavity.pose.position for cavity in piece.cavities]
-    assert positions[0][0] < positions[1][0] and positions[0][2] == positions[1][2] < positions[2][2]
+    assert (
+        positions[0][0] < positions[1][0] and positions[0][2] == positions[1][2] < positions[2][2]
+    )
     assert [surface.name for surface in piece.surfaces] == ["c_top"]
 
 
@@ -114,4 +116,8 @@ def test_single_places_are_named_as_the_body() -> None:
 def test_boards_that_leave_no_room_are_refused(kind: str, options: Options) -> None:
     with pytest.raises(ValueError, match="room"):
         FURNITURE[kind].build("it", SIZE, options)
-    assert FURNITURE[kind].build("it", SIZE, replace(options, rows=1, columns=1, thickness=None, plinth=0.0)).parts
+    assert (
+        FURNITURE[kind]
+        .build("it", SIZE, replace(options, rows=1, columns=1, thickness=None, plinth=0.0))
+        .parts
+    )

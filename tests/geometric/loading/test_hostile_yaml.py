@@ -26,8 +26,13 @@ bodies:
 goal: (on can table)
 """
 CAN = "{cylinder: {radius: 0.03, height: 0.1}, on: table, at: [0.2, 0.1]}"
-BOMB = "".join(f"  t{i}: &t{i} {{<<: [{', '.join([f'*t{i - 1}'] * 9) if i else '{sphere: 1}'}]}}\n" for i in range(60))
-CHAIN = "".join(f"  t{i}: &t{i} {{<<: {f'*t{i - 1}' if i else '{}'}, sphere: 1}}\n" for i in range(2000))
+BOMB = "".join(
+    f"  t{i}: &t{i} {{<<: [{', '.join([f'*t{i - 1}'] * 9) if i else '{sphere: 1}'}]}}\n"
+    for i in range(60)
+)
+CHAIN = "".join(
+    f"  t{i}: &t{i} {{<<: {f'*t{i - 1}' if i else '{}'}, sphere: 1}}\n" for i in range(2000)
+)
 PILE = "".join(f"  b{i}: {{box: [0.05, 0.05, 0.05], on: b{i + 1}}}\n" for i in range(3000))
 RING = "".join(f"  b{i}: {{box: [0.05, 0.05, 0.05], on: b{(i + 1) % 1500}}}\n" for i in range(1500))
 
@@ -58,8 +63,14 @@ def bodies(more: str) -> str:
         (body("{mesh: pipe.urdf, on: table}"), "no mesh file 'pipe.urdf'"),
         (body("{mesh: /dev/zero, on: table}"), "no mesh file '/dev/zero'"),
         (body(CAN) + "more: " + "[" * 300_000, "nested more than 100 deep"),
-        (body(CAN).replace("furniture: table", "furniture: shelf, compartments: [1e9, 1e9]"), "at most 100"),
-        (bodies(PILE + "  b3000: {box: [0.05, 0.05, 0.05], on: floor}\n"), "carries more than 200 bodies"),
+        (
+            body(CAN).replace("furniture: table", "furniture: shelf, compartments: [1e9, 1e9]"),
+            "at most 100",
+        ),
+        (
+            bodies(PILE + "  b3000: {box: [0.05, 0.05, 0.05], on: floor}\n"),
+            "carries more than 200 bodies",
+        ),
         (bodies(RING), "carries more than 200 bodies|in a circle"),
         (body("{sphere: 0.03, at: [1e300, 0, 0.03]}"), "farther than 100000 m"),
         (body("{sphere: 1e-300, at: [1, 0, 0.03]}"), "1e-300|2e-300"),
@@ -79,7 +90,9 @@ def test_one_error_within_seconds(tmp_path: Path, text: str, message: str) -> No
 
 
 def test_merges_that_are_no_mistake(tmp_path: Path) -> None:
-    text = bodies("  proto: &p {sphere: 0.03, mass: 0.3, at: [0, 1, 0.03]}\n  two: {<<: *p, at: [0, 2, 0.03]}\n")
+    text = bodies(
+        "  proto: &p {sphere: 0.03, mass: 0.3, at: [0, 1, 0.03]}\n  two: {<<: *p, at: [0, 2, 0.03]}\n"
+    )
     (tmp_path / "mine.yaml").write_text(text)
     scene = load_scene(tmp_path / "mine.yaml").scene
     assert scene.bodies["two"].mass == 0.3 and scene.bodies["two"].pose.position[1] == 2
@@ -87,13 +100,20 @@ def test_merges_that_are_no_mistake(tmp_path: Path) -> None:
 
 def crowd(count: int, step: float) -> str:
     return bodies(
-        "".join(f"  b{i}: {{box: [0.05, 0.05, 0.05], at: [{i * step:.3f}, -1.5, 0.025]}}\n" for i in range(count))
+        "".join(
+            f"  b{i}: {{box: [0.05, 0.05, 0.05], at: [{i * step:.3f}, -1.5, 0.025]}}\n"
+            for i in range(count)
+        )
     )
 
 
 @pytest.mark.parametrize(
     ("step", "message"),
-    [(0.0, r"'b0' and 'b1' overlap at the start, 50\.0 mm deep"), (0.001, r"'b0' and 'b1' overlap"), (0.1, None)],
+    [
+        (0.0, r"'b0' and 'b1' overlap at the start, 50\.0 mm deep"),
+        (0.001, r"'b0' and 'b1' overlap"),
+        (0.1, None),
+    ],
     ids=["in one place", "like scales", "side by side"],
 )
 def test_work_grows_with_the_number_of_bodies_not_with_its_square(
@@ -115,5 +135,8 @@ def test_work_grows_with_the_number_of_bodies_not_with_its_square(
 
 def test_overlaps_come_in_the_scenes_order(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(crowd(4, 0.03))
-    pairs = [(overlap.first, overlap.second) for overlap in find_overlaps(load_scene(tmp_path / "mine.yaml").scene)]
+    pairs = [
+        (overlap.first, overlap.second)
+        for overlap in find_overlaps(load_scene(tmp_path / "mine.yaml").scene)
+    ]
     assert pairs == [("b0", "b1"), ("b1", "b2"), ("b2", "b3")]

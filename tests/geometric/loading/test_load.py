@@ -56,7 +56,12 @@ def test_shapes_and_properties(tmp_path: Path) -> None:
     assert bodies["can"].parts[0].shape == Cylinder(0.03, 0.1)
     assert (bodies["box"].mass, bodies["box"].friction) == (1.5, 0.9)
     assert bodies["box"].colour[0] > 0.5 and bodies["ball"].colour == (0.1, 0.2, 0.3, 0.5)
-    assert [bodies[name].movable for name in ("table", "box", "ball", "can")] == [False, True, True, False]
+    assert [bodies[name].movable for name in ("table", "box", "ball", "can")] == [
+        False,
+        True,
+        True,
+        False,
+    ]
 
 
 def test_on_puts_the_lowest_point_just_above_the_surface(tmp_path: Path) -> None:
@@ -66,9 +71,13 @@ def test_on_puts_the_lowest_point_just_above_the_surface(tmp_path: Path) -> None
         "lying: {cylinder: {radius: 0.03, height: 0.2}, on: table, at: [-0.3, 0], rpy: [90 deg, 0, 0]}",
     ).scene
     # The table is turned by 90 degrees: its x is the world's y, its y the world's -x.
-    assert scene.bodies["standing"].pose.position == pytest.approx((1.4, 0.1, 0.72 + 0.105 + CONTACT_GAP))
+    assert scene.bodies["standing"].pose.position == pytest.approx(
+        (1.4, 0.1, 0.72 + 0.105 + CONTACT_GAP)
+    )
     assert scene.bodies["standing"].pose.yaw == pytest.approx(math.radians(110))
-    assert scene.bodies["lying"].pose.position == pytest.approx((1.6, -0.3, 0.72 + 0.03 + CONTACT_GAP))
+    assert scene.bodies["lying"].pose.position == pytest.approx(
+        (1.6, -0.3, 0.72 + 0.03 + CONTACT_GAP)
+    )
     assert scene.bodies["lying"].support == "table"
 
 
@@ -80,7 +89,9 @@ def test_bodies_may_be_listed_in_any_order_and_stand_on_each_other(tmp_path: Pat
     ).scene
     assert scene.bodies["tray"].support == "table" and scene.bodies["can"].support == "tray"
     # The tray stands at 90 + 90 degrees.
-    assert scene.bodies["can"].pose.position == pytest.approx((1.55, 0.0, 0.72 + 0.02 + 0.05 + 2 * CONTACT_GAP))
+    assert scene.bodies["can"].pose.position == pytest.approx(
+        (1.55, 0.0, 0.72 + 0.02 + 0.05 + 2 * CONTACT_GAP)
+    )
     assert list(scene.bodies) == ["table", "can", "tray"]
 
 
@@ -93,7 +104,9 @@ def test_cavities_and_the_floor_carry_bodies(tmp_path: Path) -> None:
         "in_bin: {box: [0.1, 0.1, 0.1], on: bin}\n"
         "down: {box: [0.1, 0.1, 0.1], on: floor, at: [1, 2]}",
     ).scene
-    assert scene.bodies["low"].pose.position == pytest.approx((-1.4, 0.39, 0.02 + 0.05 + CONTACT_GAP))
+    assert scene.bodies["low"].pose.position == pytest.approx(
+        (-1.4, 0.39, 0.02 + 0.05 + CONTACT_GAP)
+    )
     assert scene.bodies["in_bin"].support == "bin"
     assert scene.bodies["down"].support is None
     assert scene.bodies["down"].pose.position == pytest.approx((1, 2, 0.05 + CONTACT_GAP))
@@ -112,7 +125,10 @@ def test_cavities_and_the_floor_carry_bodies(tmp_path: Path) -> None:
     ],
 )
 def test_ways_to_write_a_pose(tmp_path: Path, pose: str) -> None:
-    body = load(tmp_path, f"wall: {{box: [1, 0.1, 1], fixed: true, {pose.strip('{}') if pose[0] == '{' else pose}}}")
+    body = load(
+        tmp_path,
+        f"wall: {{box: [1, 0.1, 1], fixed: true, {pose.strip('{}') if pose[0] == '{' else pose}}}",
+    )
     matrix = body.scene.bodies["wall"].pose.matrix
     assert np.allclose(matrix, [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]], atol=1e-6)
 
@@ -127,7 +143,10 @@ def test_a_posed_body_near_a_surface_is_snapped_onto_it(tmp_path: Path, height: 
 
 def test_a_body_in_the_air_is_kept_with_a_warning(tmp_path: Path) -> None:
     loaded = load(tmp_path, "box: {box: [0.1, 0.1, 0.1], at: [1.6, 0, 1.0]}")
-    assert loaded.scene.bodies["box"].pose.position[2] == 1.0 and loaded.scene.bodies["box"].support is None
+    assert (
+        loaded.scene.bodies["box"].pose.position[2] == 1.0
+        and loaded.scene.bodies["box"].support is None
+    )
     assert len(loaded.warnings) == 1 and "box hangs in the air" in loaded.warnings[0]
 
 
@@ -148,7 +167,10 @@ def test_declared_places_and_derived_tops(tmp_path: Path) -> None:
 
 def test_init_metric_samplers_and_arm(tmp_path: Path) -> None:
     head = HEAD.replace("90 deg]}", "90 deg], arm: [0, -45 deg, 0, -2.2, 0, 1.8, 0.7]}", 1)
-    head = 'init: ["(clean can)", (warm can)]\nmetric: (minimize (total-cost))\nsamplers: {on: uniform}\n' + head
+    head = (
+        'init: ["(clean can)", (warm can)]\nmetric: (minimize (total-cost))\nsamplers: {on: uniform}\n'
+        + head
+    )
     loaded = load(tmp_path, "can: {cylinder: {radius: 0.03, height: 0.1}, on: table}", head)
     assert [(fact.text, fact.line, fact.column) for fact in loaded.init] == [
         ("(clean can)", 1, 9),
@@ -169,7 +191,9 @@ def test_init_metric_samplers_and_arm(tmp_path: Path) -> None:
         ("goal:\n  (on a b)\n", "(on a b)", 2, 3),
     ],
 )
-def test_the_goal_keeps_its_place(tmp_path: Path, goal: str, text: str, line: int, column: int) -> None:
+def test_the_goal_keeps_its_place(
+    tmp_path: Path, goal: str, text: str, line: int, column: int
+) -> None:
     head = goal + HEAD.replace("goal: (on can table)\n", "")
     passage = load(tmp_path, "", head).goal
     assert (passage.text.rstrip(), passage.line, passage.column) == (text, line, column)
@@ -178,7 +202,9 @@ def test_the_goal_keeps_its_place(tmp_path: Path, goal: str, text: str, line: in
 def test_the_goal_may_be_a_block_at_the_files_end(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     for ending in ("", "\n", "\n\n"):
-        file.write_text(HEAD.replace("goal: (on can table)\n", "") + "goal: |\n  (and\n    (on a b))" + ending)
+        file.write_text(
+            HEAD.replace("goal: (on can table)\n", "") + "goal: |\n  (and\n    (on a b))" + ending
+        )
         assert load_scene(file).goal.text.rstrip() == "  (and\n    (on a b))"
 
 
@@ -241,5 +267,7 @@ def test_loading_imports_nothing_heavy() -> None:
         "import sys; from tamp.geometric.loading.load import load_scene; load_scene('four_objects');"
         "print([name for name in ('trimesh', 'scipy', 'fcl', 'pybullet', 'pinocchio') if name in sys.modules])"
     )
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     assert result.stdout.strip() == "[]"

@@ -42,21 +42,41 @@ CASES = [
     ("goal: (on can table)", "goal: [on, can, table]", 8, "goal: expected text, found a list"),
     ("domain: cupboard", "init: (clean can)", 2, "init: expected a list"),
     # The robot and the room
-    ("panda_mobile", "pnada_mobile", 3, "unknown robot 'pnada_mobile'.*Choices:.*Did you mean 'panda_mobile'"),
+    (
+        "panda_mobile",
+        "pnada_mobile",
+        3,
+        "unknown robot 'pnada_mobile'.*Choices:.*Did you mean 'panda_mobile'",
+    ),
     (", base: [0, 0, 0]", "", 3, "robot: 'base' is missing"),
     ("[0, 0, 0]}", "[0, 0]}", 3, "robot.base: expected 3 numbers, found 2"),
     ("[0, 0, 0]}", "[0, 0, 90]}", 3, "more than a full turn.*'90 deg'"),
     ("[0, 0, 0]}", "[0, 3.0, 0]}", 3, "the robot starts out of the room: y = 3"),
     ("[0, 0, 0]}", "[0, 0, 0], arm: [0, 0, 0]}", 3, "robot.arm: expected 7 numbers, found 3"),
-    ("[0, 0, 0]}", "[0, 0, 0], arm: [0, 0, 0, 1.0, 0, 1, 0]}", 3, r"robot.arm\[3\]: .*joint's limits"),
+    (
+        "[0, 0, 0]}",
+        "[0, 0, 0], arm: [0, 0, 0, 1.0, 0, 1, 0]}",
+        3,
+        r"robot.arm\[3\]: .*joint's limits",
+    ),
     ("x: [-2.5, 2.5]", "x: [2.5, -2.5]", 4, "room.x: the lower limit"),
     ("x: [-2.5, 2.5]", "x: [left, right]", 4, "'left' is not a number"),
     # Shapes
     ("cylinder: {radius", "cylindr: {radius", 7, "it has no shape.*Did you mean 'cylinder'"),
     (CAN, "{on: table}", 7, "it has no shape. Choices: box"),
     (CAN, "nothing", 7, "bodies.can: expected a mapping"),
-    (CAN, "{box: [0.1, 0.1, 0.1], sphere: 0.1, on: table}", 7, "'box' and 'sphere' both give a shape"),
-    (CAN, "{box: [0.1, -0.1, 0.1], on: table}", 7, r"bodies.can.box\[1\]: must be positive, found -0.1"),
+    (
+        CAN,
+        "{box: [0.1, 0.1, 0.1], sphere: 0.1, on: table}",
+        7,
+        "'box' and 'sphere' both give a shape",
+    ),
+    (
+        CAN,
+        "{box: [0.1, -0.1, 0.1], on: table}",
+        7,
+        r"bodies.can.box\[1\]: must be positive, found -0.1",
+    ),
     (CAN, "{box: [0.1, 0, 0.1], on: table}", 7, "must be positive, found 0"),
     (CAN, "{box: [0.1, .nan, 0.1], on: table}", 7, "not a finite number"),
     (CAN, "{box: [0.1, nan, 0.1], on: table}", 7, "not a finite number"),
@@ -73,9 +93,24 @@ CASES = [
     ("0.72], at", "0.72], compartments: 2, at", 6, "unknown key 'compartments'"),
     ("0.72], at", "0.72], fixed: false, at", 6, "furniture is fixed, but for open_box"),
     ("0.72], at", "0.03], at", 6, "has no room under a top"),
-    (TABLE, "{furniture: cupboard, size: [1, 1, 1], compartments: 0, at: [1.6, 0, 0]}", 6, "must be at least 1"),
-    (TABLE, "{furniture: cupboard, size: [1, 1, 1], compartments: 1.5, at: [1.6, 0, 0]}", 6, "not a whole number"),
-    (TABLE, "{furniture: table, size: [1, 1, 1], rpy: [0.1, 0, 0], at: [1.6, 0, 0]}", 6, "'table' is not horizontal"),
+    (
+        TABLE,
+        "{furniture: cupboard, size: [1, 1, 1], compartments: 0, at: [1.6, 0, 0]}",
+        6,
+        "must be at least 1",
+    ),
+    (
+        TABLE,
+        "{furniture: cupboard, size: [1, 1, 1], compartments: 1.5, at: [1.6, 0, 0]}",
+        6,
+        "not a whole number",
+    ),
+    (
+        TABLE,
+        "{furniture: table, size: [1, 1, 1], rpy: [0.1, 0, 0], at: [1.6, 0, 0]}",
+        6,
+        "'table' is not horizontal",
+    ),
     # Properties
     ("on: table,", "on: table, mass: 0,", 7, "bodies.can.mass: must be positive"),
     ("on: table,", "on: table, mass: heavy,", 7, "'heavy' is not a number"),
@@ -91,16 +126,31 @@ CASES = [
     ("  can: ", "  2can: ", 7, "'2can' is not a name"),
     ("  can: ", "  Table: ", 7, "the name 'Table' is taken by body 'table'"),
     ("  can: ", "  floor: ", 7, "taken by the floor"),
-    (CAN, "{box: [1, 1, 1], at: [0, 2, 0.5], surfaces: {table: {at: [0, 0, 0.5], size: [1, 1]}}}", 7, "is taken by"),
+    (
+        CAN,
+        "{box: [1, 1, 1], at: [0, 2, 0.5], surfaces: {table: {at: [0, 0, 0.5], size: [1, 1]}}}",
+        7,
+        "is taken by",
+    ),
     # Where it stands
-    ("on: table", "on: tabel", 7, "unknown surface or body 'tabel'. Choices: floor, table.*Did you mean 'table'"),
+    (
+        "on: table",
+        "on: tabel",
+        7,
+        "unknown surface or body 'tabel'. Choices: floor, table.*Did you mean 'table'",
+    ),
     ("on: table, at: [0.2, 0.1]", "mass: 1", 7, "nothing says where it is"),
     ("on: table, at: [0.2, 0.1]", "at: [0.2, 0.1]", 7, "expected 3 numbers, found 2.*on: floor"),
     ("at: [0.2, 0.1]", "at: [0.2, 0.1, 0.3]", 7, "expected 2 numbers, found 3"),
     ("at: [0.2, 0.1]", "at: [0.61, 0.1]", 7, "can's centre is 0.010 m outside of 'table'"),
     ("at: [0.2, 0.1]", "pose: {position: [0, 0, 1]}", 7, "'on' and 'pose' both"),
     ("on: table, at: [0.2, 0.1]", "pose: {yaw: 1}", 7, "'position' is missing"),
-    ("on: table, at: [0.2, 0.1]", "pose: {position: [0, 0, 1]}, at: [1, 2, 3]", 7, "'pose' and 'at' both"),
+    (
+        "on: table, at: [0.2, 0.1]",
+        "pose: {position: [0, 0, 1]}, at: [1, 2, 3]",
+        7,
+        "'pose' and 'at' both",
+    ),
     ("at: [0.2, 0.1]", "yaw: 90 degrees", 7, "'90 degrees' is not a number"),
     ("at: [0.2, 0.1]", "yaw: 0.1, rpy: [0, 0, 0]", 7, "both say how it is turned"),
     ("at: [0.2, 0.1]", "quaternion: [0, 0, 0, 0]", 7, "a quaternion of norm 0"),
@@ -123,7 +173,12 @@ CASES = [
         "expected 3 numbers, found 2",
     ),
     # Meshes
-    (CAN, "{mesh: objects/bwl.obj, on: table}", 7, "no mesh file 'objects/bwl.obj'. Did you mean 'objects/bowl.obj'"),
+    (
+        CAN,
+        "{mesh: objects/bwl.obj, on: table}",
+        7,
+        "no mesh file 'objects/bwl.obj'. Did you mean 'objects/bowl.obj'",
+    ),
     pytest.param(
         CAN,
         "{mesh: pybullet_data/duc.obj, on: table}",
@@ -131,14 +186,28 @@ CASES = [
         "Did you mean 'pybullet_data/duck.obj'",
         marks=NEEDS_PYBULLET,
     ),
-    (CAN, f"{{mesh: {MESHES}/plane_implicit.urdf, on: table}}", 7, "has a <plane>, which has no end"),
+    (
+        CAN,
+        f"{{mesh: {MESHES}/plane_implicit.urdf, on: table}}",
+        7,
+        "has a <plane>, which has no end",
+    ),
     (CAN, "{mesh: objects/bowl.obj, scale: 0, on: table}", 7, "bodies.can.scale: must be positive"),
-    (CAN, "{mesh: objects/bowl.obj, scale: 1000, on: table}", 7, "160 x 160 x 55 m large.*scale: 0.001"),
+    (
+        CAN,
+        "{mesh: objects/bowl.obj, scale: 1000, on: table}",
+        7,
+        "160 x 160 x 55 m large.*scale: 0.001",
+    ),
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "line", "message"), CASES, ids=[f"{n}" for n in range(len(CASES))])
-def test_one_clear_error(tmp_path: Path, old: str, new: str, line: int | None, message: str) -> None:
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message"), CASES, ids=[f"{n}" for n in range(len(CASES))]
+)
+def test_one_clear_error(
+    tmp_path: Path, old: str, new: str, line: int | None, message: str
+) -> None:
     assert GOOD.count(old) == 1
     file = tmp_path / "mine.yaml"
     file.write_text(GOOD.replace(old, new))
@@ -177,9 +246,13 @@ def test_overlaps_are_named_with_their_depth(tmp_path: Path, other: str, depth: 
 
 
 def test_a_missing_file_and_an_unknown_name() -> None:
-    with pytest.raises(InputError, match=r"no such file: nowhere/four_objects.yaml.*Did you mean 'four_objects'"):
+    with pytest.raises(
+        InputError, match=r"no such file: nowhere/four_objects.yaml.*Did you mean 'four_objects'"
+    ):
         load_scene("nowhere/four_objects.yaml")
-    with pytest.raises(InputError, match=r"unknown problem 'for_objects'.*Did you mean 'four_objects'"):
+    with pytest.raises(
+        InputError, match=r"unknown problem 'for_objects'.*Did you mean 'four_objects'"
+    ):
         load_scene("for_objects")
 
 

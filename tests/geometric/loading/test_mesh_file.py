@@ -39,7 +39,10 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        ("a.obj", b"# gr\xfc\xdfe\nmtllib b\xe4r.mtl\no \xc4\nusemtl \xd6l\n" + TETRAHEDRON.encode()),
+        (
+            "a.obj",
+            b"# gr\xfc\xdfe\nmtllib b\xe4r.mtl\no \xc4\nusemtl \xd6l\n" + TETRAHEDRON.encode(),
+        ),
         ("a.obj", TETRAHEDRON.encode("utf-16")),
         ("a.obj", b"\xef\xbb\xbf" + TETRAHEDRON.encode()),
         ("a.obj", TETRAHEDRON.replace("\n", "\r").encode()),
@@ -67,9 +70,21 @@ def test_odd_files_are_read(tmp_path: Path, name: str, content: bytes) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("a.obj", TETRAHEDRON.replace("v 0 0 0.07", "v 0 0").encode(), "no three coordinates|cannot read"),
-        ("a.obj", TETRAHEDRON.replace("f 1 4 3", "f 0 4 3").encode(), "corner 0, but they count from 1"),
-        ("a.obj", TETRAHEDRON.replace("f 1 4 3", "f 1 4 99999999999").encode(), "missing corner|does not hold"),
+        (
+            "a.obj",
+            TETRAHEDRON.replace("v 0 0 0.07", "v 0 0").encode(),
+            "no three coordinates|cannot read",
+        ),
+        (
+            "a.obj",
+            TETRAHEDRON.replace("f 1 4 3", "f 0 4 3").encode(),
+            "corner 0, but they count from 1",
+        ),
+        (
+            "a.obj",
+            TETRAHEDRON.replace("f 1 4 3", "f 1 4 99999999999").encode(),
+            "missing corner|does not hold",
+        ),
         ("a.obj", TETRAHEDRON.replace("0.07", "1e308").encode(), "m large"),
         ("a.stl", STL[: len(STL) // 2], "cut off"),
         ("a.stl", BINARY_STL[:96] + b"\x00\x00\xa0\x7f" + BINARY_STL[100:], "not finite"),
@@ -82,8 +97,16 @@ def test_odd_files_are_read(tmp_path: Path, name: str, content: bytes) -> None:
         ("a.ply", PLY.replace(b"face 12", b"face many"), "no number of elements"),
         ("a.glb", GLB[: len(GLB) // 2], "cut off"),
         ("a.gltf", b"[" * 100_000, "no glTF file"),
-        ("a.gltf", b'{"asset": {"version": "2.0"}, "accessors": [{"count": 4000000000}]}', "claims too many"),
-        ("a.gltf", b'{"asset": {"version": "2.0"}, "accessors": [{"count": -1}]}', "claims too many"),
+        (
+            "a.gltf",
+            b'{"asset": {"version": "2.0"}, "accessors": [{"count": 4000000000}]}',
+            "claims too many",
+        ),
+        (
+            "a.gltf",
+            b'{"asset": {"version": "2.0"}, "accessors": [{"count": -1}]}',
+            "claims too many",
+        ),
         ("a.dae", b"<COLLADA>", "no element found"),
         ("a.dae", b"<svg/>", "it is no COLLADA file, but <svg>"),
         ("a.urdf", b"<a>" * 100_000, "cannot read"),
@@ -95,7 +118,11 @@ def test_broken_files_are_refused_in_our_words(
     (tmp_path / name).write_bytes(content)
     with caplog.at_level(logging.DEBUG), pytest.raises(InputError, match=message) as caught:
         load_mesh(tmp_path / name)
-    assert name in caught.value.message and "\n" not in str(caught.value) and len(str(caught.value)) < 400
+    assert (
+        name in caught.value.message
+        and "\n" not in str(caught.value)
+        and len(str(caught.value)) < 400
+    )
     assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
 
 
@@ -159,9 +186,16 @@ def test_colladas_unit_and_nodes_count(
 ) -> None:
     (tmp_path / "a.dae").write_text(DAE.replace("NODE", node).replace("GROUP", GROUP))
     vertices, faces = read_triangles(tmp_path / "a.dae")
-    assert vertices.min(axis=0) == pytest.approx(low, abs=1e-12) and vertices.max(axis=0) == pytest.approx(high)
+    assert vertices.min(axis=0) == pytest.approx(low, abs=1e-12) and vertices.max(
+        axis=0
+    ) == pytest.approx(high)
     a, b, c = vertices[faces].transpose(1, 0, 2)
-    volume = np.einsum("ij,ij->", a - vertices.mean(axis=0), np.cross(b, c) - np.cross(b, a) - np.cross(a, c)) / 6
+    volume = (
+        np.einsum(
+            "ij,ij->", a - vertices.mean(axis=0), np.cross(b, c) - np.cross(b, a) - np.cross(a, c)
+        )
+        / 6
+    )
     assert volume > 0  # outward, mirrored or not
 
 
@@ -179,7 +213,12 @@ def test_colladas_ways_to_say_triangles(tmp_path: Path, group: str) -> None:
     (tmp_path / "a.dae").write_text(DAE.replace("NODE", "").replace("GROUP", group))
     vertices, faces = read_collada(tmp_path / "a.dae", 10_000)
     assert len(faces) == 4 and len(vertices) == 4
-    assert {tuple(sorted(face)) for face in faces.tolist()} == {(0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)}
+    assert {tuple(sorted(face)) for face in faces.tolist()} == {
+        (0, 1, 2),
+        (0, 1, 3),
+        (1, 2, 3),
+        (0, 2, 3),
+    }
     assert load_mesh(tmp_path / "a.dae").parts
 
 

@@ -46,7 +46,9 @@ def write_obj(path: Path, vertices: object, faces: object) -> Path:
 def corner(width: float = 0.2) -> tuple[Array, Array]:
     """A cube without one octant, closed, (n, 3) and (m, 3): cuts along the notch meet inside it."""
     half = width / 2
-    full = [(i, j, k) for i in range(2) for j in range(2) for k in range(2) if (i, j, k) != (1, 1, 1)]
+    full = [
+        (i, j, k) for i in range(2) for j in range(2) for k in range(2) if (i, j, k) != (1, 1, 1)
+    ]
     squares = []
     for cell in full:
         for axis in range(3):
@@ -68,7 +70,10 @@ def corner(width: float = 0.2) -> tuple[Array, Array]:
 
 def beyond(points: Array, pieces: list[Array]) -> Array:
     """How far each point (n, 3) lies outside of the nearest piece, metres; negative inside."""
-    distances = [(points @ e[:, :3].T + e[:, 3]).max(axis=1) for e in (ConvexHull(piece).equations for piece in pieces)]
+    distances = [
+        (points @ e[:, :3].T + e[:, 3]).max(axis=1)
+        for e in (ConvexHull(piece).equations for piece in pieces)
+    ]
     return np.min(distances, axis=0)
 
 
@@ -76,9 +81,13 @@ def on_surface(vertices: Array, faces: Array, count: int) -> Array:
     """Random points (count, 3) on a surface."""
     rng = np.random.default_rng(0)
     corners = vertices[faces]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
     weights = rng.dirichlet((1, 1, 1), size=count)
-    return np.einsum("ij,ijk->ik", weights, corners[rng.choice(len(faces), size=count, p=areas / areas.sum())])
+    return np.einsum(
+        "ij,ijk->ik", weights, corners[rng.choice(len(faces), size=count, p=areas / areas.sum())]
+    )
 
 
 def hulls(mesh: Mesh) -> list[Array]:
@@ -105,7 +114,9 @@ def test_pieces_contain_the_solid_where_cuts_meet_inside_it() -> None:
     solid = points[(points < 0.1).any(axis=1)]
     assert len(solid) > 3000
     assert beyond(solid, pieces).max() < 1e-6
-    assert sum(ConvexHull(piece).volume for piece in pieces) == pytest.approx(0.2**3 * 7 / 8, rel=0.02)
+    assert sum(ConvexHull(piece).volume for piece in pieces) == pytest.approx(
+        0.2**3 * 7 / 8, rel=0.02
+    )
 
 
 def test_a_nearly_convex_mesh_is_one_hull() -> None:
@@ -132,7 +143,9 @@ def test_the_same_file_gives_the_same_pieces() -> None:
     path = find_mesh("objects/mustard_bottle.obj", Path())
     vertices, faces = corner()
     for first, second in ((compute_pieces(path, ONE)[0], compute_pieces(path, ONE)[0]),):
-        assert all(np.array_equal(a.vertices, b.vertices) for a, b in zip(first, second, strict=True))
+        assert all(
+            np.array_equal(a.vertices, b.vertices) for a, b in zip(first, second, strict=True)
+        )
     again = decompose(vertices, faces)
     assert all(np.array_equal(a, b) for a, b in zip(decompose(vertices, faces), again, strict=True))
 
@@ -157,10 +170,17 @@ def test_the_second_load_reads_the_cache(tmp_path: Path) -> None:
     second = load_mesh(path)
     assert unhindered() - started < 0.1
     assert all(np.array_equal(a, b) for a, b in zip(hulls(first), hulls(second), strict=True))
-    code = "import sys; from pathlib import Path; from tamp.geometric.loading.meshes import load_mesh;"
+    code = (
+        "import sys; from pathlib import Path; from tamp.geometric.loading.meshes import load_mesh;"
+    )
     code += f"load_mesh(Path({str(path)!r}));"
     code += "print([name for name in ('trimesh', 'scipy') if name in sys.modules])"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+    assert (
+        subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True
+        ).stdout
+        == "[]\n"
+    )
     kept[0].write_bytes(b"broken")
     third = load_mesh(path)
     assert all(np.array_equal(a, b) for a, b in zip(hulls(first), hulls(third), strict=True))
@@ -170,12 +190,16 @@ def test_the_second_load_reads_the_cache(tmp_path: Path) -> None:
 def test_another_content_or_scale_is_another_entry(tmp_path: Path) -> None:
     path = write_obj(tmp_path / "cube.obj", CUBE, CUBE_FACES)
     assert np.ptp(hulls(load_mesh(path))[0], axis=0) == pytest.approx((0.1, 0.1, 0.1))
-    assert np.ptp(hulls(load_mesh(path, (2.0, 1.0, 0.5)))[0], axis=0) == pytest.approx((0.2, 0.1, 0.05))
+    assert np.ptp(hulls(load_mesh(path, (2.0, 1.0, 0.5)))[0], axis=0) == pytest.approx(
+        (0.2, 0.1, 0.05)
+    )
     write_obj(path, np.array(CUBE) * 3, CUBE_FACES)
     assert np.ptp(hulls(load_mesh(path))[0], axis=0) == pytest.approx((0.3, 0.3, 0.3))
 
 
-def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_that_cannot_be_written_is_no_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TAMP_CACHE", str(tmp_path / "file" / "below"))
     assert load_mesh(write_obj(tmp_path / "cube.obj", CUBE, CUBE_FACES)).parts
@@ -184,7 +208,10 @@ def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch:
 def test_an_open_mesh_is_closed_with_a_warning(tmp_path: Path) -> None:
     mesh = load_mesh(write_obj(tmp_path / "open.obj", CUBE, CUBE_FACES[:-1]))
     assert len(mesh.parts) == 1 and ConvexHull(hulls(mesh)[0]).volume == pytest.approx(0.001)
-    assert len(mesh.warnings) == 1 and "not watertight (3 open edges): they were closed" in mesh.warnings[0]
+    assert (
+        len(mesh.warnings) == 1
+        and "not watertight (3 open edges): they were closed" in mesh.warnings[0]
+    )
 
 
 def test_a_mesh_that_stays_open_is_taken_as_a_surface(tmp_path: Path) -> None:
@@ -203,7 +230,9 @@ def test_corners_apart_and_inside_out_are_repaired(tmp_path: Path) -> None:
     for points in (soup, apart):
         mesh = load_mesh(write_obj(tmp_path / "soup.obj", points, np.arange(36).reshape(-1, 3)))
         assert len(mesh.parts) == 1
-    surface = read_surface(write_obj(tmp_path / "out.obj", CUBE, np.array(CUBE_FACES)[:, ::-1]), ONE)
+    surface = read_surface(
+        write_obj(tmp_path / "out.obj", CUBE, np.array(CUBE_FACES)[:, ::-1]), ONE
+    )
     assert surface.volume == pytest.approx(0.001) and not surface.warnings
 
 
@@ -217,23 +246,31 @@ def test_two_bodies_that_touch_are_closed(tmp_path: Path) -> None:
 
 def test_stl_in_both_ways(tmp_path: Path) -> None:
     triangles = np.array(CUBE)[np.array(CUBE_FACES)].astype("<f4")
-    records = np.zeros(12, dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    records = np.zeros(
+        12, dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")]
+    )
     records["corners"] = triangles
     (tmp_path / "binary.stl").write_bytes(b"\0" * 80 + np.uint32(12).tobytes() + records.tobytes())
     text = "".join(
-        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in t) + "endloop\nendfacet\n"
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in t)
+        + "endloop\nendfacet\n"
         for t in triangles
     )
     (tmp_path / "text.stl").write_text(f"solid cube\n{text}endsolid cube\n")
     for name in ("binary.stl", "text.stl"):
-        assert ConvexHull(hulls(load_mesh(tmp_path / name))[0]).volume == pytest.approx(0.001, rel=1e-5)
+        assert ConvexHull(hulls(load_mesh(tmp_path / name))[0]).volume == pytest.approx(
+            0.001, rel=1e-5
+        )
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "binary"])
 def test_ply_in_both_ways(tmp_path: Path, encoding: str) -> None:
     mesh = trimesh.Trimesh(CUBE, CUBE_FACES, process=False)
     mesh.export(tmp_path / "cube.ply", encoding=encoding)
-    assert ConvexHull(hulls(load_mesh(tmp_path / "cube.ply"))[0]).volume == pytest.approx(0.001, rel=1e-5)
+    assert ConvexHull(hulls(load_mesh(tmp_path / "cube.ply"))[0]).volume == pytest.approx(
+        0.001, rel=1e-5
+    )
 
 
 @pytest.mark.parametrize(
@@ -250,7 +287,9 @@ def test_ply_in_both_ways(tmp_path: Path, encoding: str) -> None:
         (np.array(CUBE) / 1000, CUBE_FACES, "m small.*scale: 1000"),
     ],
 )
-def test_what_is_no_solid_is_refused(tmp_path: Path, vertices: object, faces: object, message: str) -> None:
+def test_what_is_no_solid_is_refused(
+    tmp_path: Path, vertices: object, faces: object, message: str
+) -> None:
     path = write_obj(tmp_path / "bad.obj", vertices, faces)
     with pytest.raises(InputError, match=message) as caught:
         load_mesh(path)
@@ -272,7 +311,9 @@ def test_where_meshes_are_looked_for(tmp_path: Path) -> None:
     assert find_mesh("objects/mine.obj", tmp_path) == mine
     assert find_mesh(str(mine), Path()) == mine
     assert find_mesh("objects/bowl.obj", tmp_path).is_file()
-    with pytest.raises(InputError, match=r"no mesh file 'objects/mime.obj'. Did you mean 'objects/mine.obj'"):
+    with pytest.raises(
+        InputError, match=r"no mesh file 'objects/mime.obj'. Did you mean 'objects/mine.obj'"
+    ):
         find_mesh("objects/mime.obj", tmp_path)
 
 
@@ -283,7 +324,9 @@ def test_meshes_of_pybullet_data_are_found_where_it_is_installed(tmp_path: Path)
 
 def test_pybullet_datas_mug_comes_with_us(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tamp.geometric.loading.meshes._bullet_roots", list)
-    assert find_mesh("pybullet_data/objects/mug.urdf", tmp_path) == find_mesh("objects/mug.urdf", tmp_path)
+    assert find_mesh("pybullet_data/objects/mug.urdf", tmp_path) == find_mesh(
+        "objects/mug.urdf", tmp_path
+    )
     with pytest.raises(InputError, match=r"pybullet_data/duck\.obj") as said:
         find_mesh("pybullet_data/duck.obj", tmp_path)
     assert "not installed" in said.value.remedy
@@ -309,8 +352,14 @@ def test_urdf_of_one_link(tmp_path: Path) -> None:
     cube = write_obj(tmp_path / "cube.obj", CUBE, CUBE_FACES)
     (tmp_path / "lamp.urdf").write_text(URDF)
     mesh = load_mesh(tmp_path / "lamp.urdf", (0.5, 0.5, 0.5))
-    assert [part.shape for part in mesh.parts[:3]] == [Box((0.1, 0.05, 0.05)), Cylinder(0.005, 0.1), Sphere(0.025)]
-    assert mesh.parts[0].pose.position == (0, 0, 0.025) and mesh.parts[0].pose.yaw == pytest.approx(np.pi / 2)
+    assert [part.shape for part in mesh.parts[:3]] == [
+        Box((0.1, 0.05, 0.05)),
+        Cylinder(0.005, 0.1),
+        Sphere(0.025),
+    ]
+    assert mesh.parts[0].pose.position == (0, 0, 0.025) and mesh.parts[0].pose.yaw == pytest.approx(
+        np.pi / 2
+    )
     assert np.ptp(hulls(mesh)[0], axis=0) == pytest.approx((0.05, 0.05, 0.05))
     assert mesh.parts[3].pose.position == (0.05, 0, 0)
     warm = (1.0, 0.5, 0.0, 1.0)
@@ -321,12 +370,20 @@ def test_urdf_of_one_link(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("</robot>", '<link name="shade"/></robot>', r"2 links \(lamp, shade\) that no joint holds together"),
+        (
+            "</robot>",
+            '<link name="shade"/></robot>',
+            r"2 links \(lamp, shade\) that no joint holds together",
+        ),
         ("0.2 0.1 0.1", "0.2 0.1", "size of <box>: expected 3 numbers"),
         ("0.2 0.1 0.1", "0.2 0.1 -1", "not positive"),
         ("0.2 0.1 0.1", "0.2 0.1 nan", "not positive and finite"),
         ('radius="0.05"', 'radius="x"', "'x' is not made of numbers"),
-        ("lamps/cube.obj", "lamps/cub.obj", "names the mesh 'package://lamps/cub.obj', which does not exist"),
+        (
+            "lamps/cube.obj",
+            "lamps/cub.obj",
+            "names the mesh 'package://lamps/cub.obj', which does not exist",
+        ),
         ("</robot>", "", "cannot read 'lamp.urdf'"),
     ],
 )

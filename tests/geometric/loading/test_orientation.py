@@ -25,10 +25,15 @@ HALF = math.sqrt(0.5)
         ("rpy: [90 deg, 0, 0]", (HALF, 0.0, 0.0, HALF)),
         ("rpy: [0, 90 deg, 0]", (0.0, HALF, 0.0, HALF)),
         ("quaternion: [0, 0, 0.7071, 0.7071]", (0.0, 0.0, HALF, HALF)),
-        ("quaternion: [0, 0, 0, 1.009]", (0.0, 0.0, 0.0, 1.0)),  # rounded by hand: made a unit again
+        (
+            "quaternion: [0, 0, 0, 1.009]",
+            (0.0, 0.0, 0.0, 1.0),
+        ),  # rounded by hand: made a unit again
     ],
 )
-def test_each_way_gives_the_rotation(tmp_path: Path, text: str, quaternion: tuple[float, ...]) -> None:
+def test_each_way_gives_the_rotation(
+    tmp_path: Path, text: str, quaternion: tuple[float, ...]
+) -> None:
     found = read_orientation(yaml(tmp_path, text).mapping())
     assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-12)
     assert abs(np.dot(found, quaternion)) == pytest.approx(1.0)  # q and -q are one rotation
@@ -47,7 +52,10 @@ def test_roll_is_applied_first_and_yaw_last(tmp_path: Path) -> None:
         ("yaw: 1\nrpy: [0, 0, 1]", "yaw: 'rpy' and 'yaw' both say how it is turned: keep one"),
         ("quaternion: [0, 0, 0, 1]\nyaw: 0", "'quaternion' and 'yaw' both say"),
         ("quaternion: [0, 0, 0, 0]", "a quaternion of norm 0 is no rotation. No rotation is"),
-        ("quaternion: [1, 0, 0, 1]", "the quaternion's norm is 1.41, not 1. Is its order x, y, z, w?"),
+        (
+            "quaternion: [1, 0, 0, 1]",
+            "the quaternion's norm is 1.41, not 1. Is its order x, y, z, w?",
+        ),
         ("quaternion: [0, 0, 1]", "quaternion: expected 4 numbers, found 3"),
         ("rpy: [0, 1]", "rpy: expected 3 numbers, found 2"),
         ("rpy: [0, 0, 45]", r"rpy\[2\]: 45 radians are more than a full turn"),

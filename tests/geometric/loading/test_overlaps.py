@@ -31,11 +31,15 @@ def test_a_ball_in_a_box_and_a_ball_in_a_ball() -> None:
     (found,) = overlaps(body("box", CUBE, (0, 0, 0.1)), body("ball", Sphere(0.1), (0.17, 0, 0.1)))
     assert found.depth == pytest.approx(0.03, rel=0.05)
     slanted = 0.18 * math.sqrt(0.5)
-    (found,) = overlaps(body("one", Sphere(0.1), (0, 0, 0)), body("two", Sphere(0.1), (slanted, slanted, 0)))
+    (found,) = overlaps(
+        body("one", Sphere(0.1), (0, 0, 0)), body("two", Sphere(0.1), (slanted, slanted, 0))
+    )
     assert found.depth == pytest.approx(0.02, rel=0.05)
 
 
-@pytest.mark.parametrize(("gap", "count"), [(0.01, 0), (0.0, 0), (-0.5 * TOLERANCE, 0), (-2.0 * TOLERANCE, 1)])
+@pytest.mark.parametrize(
+    ("gap", "count"), [(0.01, 0), (0.0, 0), (-0.5 * TOLERANCE, 0), (-2.0 * TOLERANCE, 1)]
+)
 def test_touching_within_a_millimetre_is_no_overlap(gap: float, count: int) -> None:
     assert len(overlaps(body("a", CUBE, (0, 0, 0)), body("b", CUBE, (0.2 + gap, 0, 0)))) == count
 
@@ -43,11 +47,18 @@ def test_touching_within_a_millimetre_is_no_overlap(gap: float, count: int) -> N
 def test_boxes_around_them_may_overlap_where_they_do_not() -> None:
     # Two round cans whose corners of the bounding boxes meet: the circles are apart.
     near = 0.17
-    assert overlaps(body("a", Cylinder(0.1, 0.2), (0, 0, 0)), body("b", Cylinder(0.1, 0.2), (near, near, 0))) == []
+    assert (
+        overlaps(
+            body("a", Cylinder(0.1, 0.2), (0, 0, 0)), body("b", Cylinder(0.1, 0.2), (near, near, 0))
+        )
+        == []
+    )
 
 
 def test_the_deepest_of_several_parts_counts() -> None:
-    comb = Body("comb", tuple(Part(CUBE, Pose((x, 0.0, 0.0))) for x in (-1.0, 0.0, 1.0)), Pose(), True)
+    comb = Body(
+        "comb", tuple(Part(CUBE, Pose((x, 0.0, 0.0))) for x in (-1.0, 0.0, 1.0)), Pose(), True
+    )
     pin = body("pin", CUBE, (1.15, 0.0, 0.0))
     (found,) = overlaps(comb, pin)
     assert found.depth == pytest.approx(0.05, rel=0.05)

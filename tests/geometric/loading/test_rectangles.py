@@ -76,12 +76,14 @@ def test_what_stands_in_the_middle_leaves_the_larger_side() -> None:
 
 def test_without_area_there_is_none() -> None:
     assert largest_of_union(np.array([[0.0, 0.0, 0.0, 1.0]]), NONE) == (0.0, 0.0, 0.0, 0.0)
-    assert largest_of_union(np.array([[0.0, 1.0, 0.0, 1.0]]), np.array([[-1.0, 2.0, -1.0, 2.0]])) == (0, 0, 0, 0)
+    assert largest_of_union(
+        np.array([[0.0, 1.0, 0.0, 1.0]]), np.array([[-1.0, 2.0, -1.0, 2.0]])
+    ) == (0, 0, 0, 0)
 
 
-_RECTANGLE = st.tuples(st.integers(0, 6), st.integers(1, 4), st.integers(0, 6), st.integers(1, 4)).map(
-    lambda r: (r[0], r[0] + r[1], r[2], r[2] + r[3])
-)
+_RECTANGLE = st.tuples(
+    st.integers(0, 6), st.integers(1, 4), st.integers(0, 6), st.integers(1, 4)
+).map(lambda r: (r[0], r[0] + r[1], r[2], r[2] + r[3]))
 
 
 @given(st.lists(_RECTANGLE, min_size=1, max_size=4), st.lists(_RECTANGLE, max_size=2))

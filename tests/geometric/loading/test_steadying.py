@@ -25,7 +25,12 @@ def steadied(folder: Path, text: str) -> tuple[dict[str, Body], tuple[str, ...]]
 
 def leaning(degrees: float, size: tuple[float, float, float] = (0.1, 0.2, 0.3)) -> Body:
     """A box turned about the world's x axis."""
-    return Body("box", (Part(Box(size)),), Pose.from_xyz_rpy((0, 0, 1.0), (math.radians(degrees), 0, 0)), True)
+    return Body(
+        "box",
+        (Part(Box(size)),),
+        Pose.from_xyz_rpy((0, 0, 1.0), (math.radians(degrees), 0, 0)),
+        True,
+    )
 
 
 @pytest.mark.parametrize("degrees", [-15.0, 3.0, 19.0])
@@ -53,11 +58,15 @@ def test_a_box_past_its_balance_rolls_on_to_the_other_side() -> None:
     given = leaning(80.0, (0.2, 0.3, 0.1))
     turn = tip(given)
     assert turn is not None
-    assert abs((turn @ given.pose.rotation)[2, 1]) == pytest.approx(1.0, abs=1e-6)  # its y is vertical now
+    assert abs((turn @ given.pose.rotation)[2, 1]) == pytest.approx(
+        1.0, abs=1e-6
+    )  # its y is vertical now
 
 
 def test_one_that_leans_on_a_corner_rolls_over_two_edges() -> None:
-    given = Body("box", (Part(Box((0.2, 0.2, 0.2))),), Pose.from_xyz_rpy((0, 0, 1), (0.1, 0.15, 0.7)), True)
+    given = Body(
+        "box", (Part(Box((0.2, 0.2, 0.2))),), Pose.from_xyz_rpy((0, 0, 1), (0.1, 0.15, 0.7)), True
+    )
     turn = tip(given)
     assert turn is not None
     R = turn @ given.pose.rotation
@@ -107,7 +116,9 @@ def test_over_the_edge_is_refused_with_how_far(tmp_path: Path) -> None:
     tall = "pin: {box: [0.04, 0.04, 0.04], fixed: true, at: [3, 0, 0.02]}\nrod: {box: [0.8, 0.02, 0.02], on: pin}"
     assert steadied(tmp_path, tall)[1] == ()
     with pytest.raises(InputError, match=r"stick.on: stick does not stand on 'table': .*Move it"):
-        steadied(tmp_path, TABLE + "stick: {box: [0.02, 0.02, 0.3], on: table, rpy: [45 deg, 0, 0]}")
+        steadied(
+            tmp_path, TABLE + "stick: {box: [0.02, 0.02, 0.3], on: table, rpy: [45 deg, 0, 0]}"
+        )
 
 
 def test_in_the_air_there_is_a_warning_and_no_support(tmp_path: Path) -> None:
@@ -118,7 +129,10 @@ def test_in_the_air_there_is_a_warning_and_no_support(tmp_path: Path) -> None:
 
 
 def test_a_body_knows_which_movable_ones_carry_it(tmp_path: Path) -> None:
-    text = "a: {box: [0.2, 0.2, 0.1], on: floor}\nb: {box: [0.1, 0.1, 0.1], on: a}\n" + TABLE.replace("[0, 0", "[3, 0")
+    text = (
+        "a: {box: [0.2, 0.2, 0.1], on: floor}\nb: {box: [0.1, 0.1, 0.1], on: a}\n"
+        + TABLE.replace("[0, 0", "[3, 0")
+    )
     bodies, warnings = steadied(tmp_path, text + "c: {box: [0.1, 0.1, 0.1], on: table}")
     assert warnings == ()
     assert (bodies["a"].carriers, bodies["b"].carriers, bodies["c"].carriers) == ((), ("a",), ())

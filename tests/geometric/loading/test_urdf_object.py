@@ -59,7 +59,9 @@ def test_fixed_joints_hold_links_together(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic", "floating"])
 def test_movable_joints_are_held_at_zero_and_said(tmp_path: Path, kind: str) -> None:
     mesh = load_mesh(written(tmp_path, TREE.replace("TYPE", kind)))
-    assert mesh.warnings == ("'thing.urdf': its joint b is held at 0, for an object is one rigid body",)
+    assert mesh.warnings == (
+        "'thing.urdf': its joint b is held at 0, for an object is one rigid body",
+    )
     assert mesh.parts == load_mesh(written(tmp_path, TREE.replace("TYPE", "fixed"))).parts
 
 
@@ -107,7 +109,11 @@ def test_the_problem_counts_more_than_the_file(tmp_path: Path) -> None:
     for more, mass, friction in (("", 0.7, 0.9), (", mass: 2, friction: 0.1", 2.0, 0.1)):
         loaded = load_scene(written(tmp_path, SCENE.replace("BRICK", body % more), "scene.yaml"))
         brick = loaded.scene.bodies["a"]
-        assert (brick.mass, brick.friction, brick.center_of_mass) == (mass, friction, (0.01, 0.0, 0.0))
+        assert (brick.mass, brick.friction, brick.center_of_mass) == (
+            mass,
+            friction,
+            (0.01, 0.0, 0.0),
+        )
 
 
 @pytest.mark.parametrize(
@@ -117,7 +123,10 @@ def test_the_problem_counts_more_than_the_file(tmp_path: Path) -> None:
         ('<inertial><mass value="x"/></inertial>', "value of <mass>: 'x'"),
         ('<inertial><mass value="nan"/></inertial>', "value of <mass>: 'nan'"),
         ('<inertial><mass value="1"/><origin xyz="a b c"/></inertial>', "xyz of <origin>"),
-        ('<contact><lateral_friction value="-1"/></contact>', "lateral_friction -1 of link 'b' is negative"),
+        (
+            '<contact><lateral_friction value="-1"/></contact>',
+            "lateral_friction -1 of link 'b' is negative",
+        ),
     ],
 )
 def test_impossible_inertia_is_refused(tmp_path: Path, inertial: str, message: str) -> None:
@@ -126,9 +135,19 @@ def test_impossible_inertia_is_refused(tmp_path: Path, inertial: str, message: s
 
 
 def test_a_centre_of_mass_out_of_the_shape_is_said(tmp_path: Path) -> None:
-    mesh = load_mesh(written(tmp_path, BRICK.format('<inertial><origin xyz="3 0 0"/><mass value="0"/></inertial>')))
-    assert mesh.mass is None and mesh.center_of_mass is None and not mesh.warnings  # a mass of 0 says nothing
-    mesh = load_mesh(written(tmp_path, BRICK.format('<inertial><origin xyz="3 0 0"/><mass value="1"/></inertial>')))
+    mesh = load_mesh(
+        written(
+            tmp_path, BRICK.format('<inertial><origin xyz="3 0 0"/><mass value="0"/></inertial>')
+        )
+    )
+    assert (
+        mesh.mass is None and mesh.center_of_mass is None and not mesh.warnings
+    )  # a mass of 0 says nothing
+    mesh = load_mesh(
+        written(
+            tmp_path, BRICK.format('<inertial><origin xyz="3 0 0"/><mass value="1"/></inertial>')
+        )
+    )
     assert mesh.mass == 1 and mesh.center_of_mass is None and "out of its shape" in mesh.warnings[0]
 
 
@@ -147,7 +166,9 @@ def test_a_centre_of_mass_out_of_the_shape_is_said(tmp_path: Path) -> None:
 )
 def test_a_drawing_never_stops_planning(tmp_path: Path, visual: str) -> None:
     written(tmp_path, "", "empty.obj")
-    mesh = load_mesh(written(tmp_path, BRICK.format(f"<visual><geometry>{visual}</geometry></visual>")))
+    mesh = load_mesh(
+        written(tmp_path, BRICK.format(f"<visual><geometry>{visual}</geometry></visual>"))
+    )
     assert mesh.parts == (Part(Box((0.06, 0.08, 0.14))),) and mesh.visuals == ()
     assert len(mesh.warnings) == 1 and mesh.warnings[0].endswith(": the collision shape is drawn")
 
@@ -155,9 +176,17 @@ def test_a_drawing_never_stops_planning(tmp_path: Path, visual: str) -> None:
 def test_only_visuals_is_said(tmp_path: Path) -> None:
     text = BRICK.format("").replace("collision", "visual")
     mesh = load_mesh(written(tmp_path, text))
-    assert len(mesh.parts) == 1 and "has no collision geometry: what it shows is taken for it" in mesh.warnings[0]
+    assert (
+        len(mesh.parts) == 1
+        and "has no collision geometry: what it shows is taken for it" in mesh.warnings[0]
+    )
     with pytest.raises(InputError, match=r"neither collision nor visual geometry: .*'gone.obj'"):
-        load_mesh(written(tmp_path, text.replace('<box size="0.06 0.08 0.14"/>', '<mesh filename="gone.obj"/>')))
+        load_mesh(
+            written(
+                tmp_path,
+                text.replace('<box size="0.06 0.08 0.14"/>', '<mesh filename="gone.obj"/>'),
+            )
+        )
 
 
 def test_a_simulators_own_geometry_is_replaced_by_what_is_shown(tmp_path: Path) -> None:
@@ -170,7 +199,9 @@ def test_a_simulators_own_geometry_is_replaced_by_what_is_shown(tmp_path: Path) 
 
 
 def test_a_capsule_is_a_cylinder_with_balls(tmp_path: Path) -> None:
-    text = BRICK.format("").replace('<box size="0.06 0.08 0.14"/>', '<capsule radius="0.03" length="0.1"/>')
+    text = BRICK.format("").replace(
+        '<box size="0.06 0.08 0.14"/>', '<capsule radius="0.03" length="0.1"/>'
+    )
     mesh = load_mesh(written(tmp_path, text))
     assert [part.shape for part in mesh.parts] == [Cylinder(0.03, 0.1), Sphere(0.03), Sphere(0.03)]
     low, high = bounds(mesh.parts, Pose())
@@ -206,7 +237,9 @@ def test_text_as_people_have_it(tmp_path: Path, content: bytes) -> None:
 )
 def test_scales_and_mirrors(tmp_path: Path, mesh: str, size: tuple[float, float, float]) -> None:
     written(tmp_path, TETRAHEDRON, "t.obj")
-    made = load_mesh(written(tmp_path, BRICK.format("").replace('<box size="0.06 0.08 0.14"/>', mesh)))
+    made = load_mesh(
+        written(tmp_path, BRICK.format("").replace('<box size="0.06 0.08 0.14"/>', mesh))
+    )
     low, high = bounds(made.parts, Pose())
     assert high - low == pytest.approx(size) and not made.warnings
     assert (low[0] < -0.04) == ("-1 1 1" in mesh) and (low[2] < -0.1) == ("-2" in mesh)
@@ -228,19 +261,27 @@ def test_a_turned_mesh_has_the_box_of_its_corners(tmp_path: Path) -> None:
         for i in range(59)
         for j in range(120)
     ]
-    written(tmp_path, "\n".join(rows + ["f " + " ".join(str(k + 1) for k in quad) for quad in quads]), "t.obj")
+    written(
+        tmp_path,
+        "\n".join(rows + ["f " + " ".join(str(k + 1) for k in quad) for quad in quads]),
+        "t.obj",
+    )
     points = np.array([[float(word) for word in row.split()[1:]] for row in rows])
     rpy = (0.4, -0.7, 1.1)
     mesh = f'<mesh filename="t.obj"/></geometry><origin rpy="{rpy[0]} {rpy[1]} {rpy[2]}" xyz="1 2 3"/><geometry>'
     made = load_mesh(
         written(
             tmp_path,
-            BRICK.format("").replace('<box size="0.06 0.08 0.14"/>', mesh).replace("<geometry></geometry>", ""),
+            BRICK.format("")
+            .replace('<box size="0.06 0.08 0.14"/>', mesh)
+            .replace("<geometry></geometry>", ""),
         )
     )
     turned = Pose.from_xyz_rpy((1, 2, 3), rpy).apply(points)
     low, high = bounds(made.parts, Pose())
-    assert low == pytest.approx(turned.min(axis=0), abs=1e-4) and high == pytest.approx(turned.max(axis=0), abs=1e-4)
+    assert low == pytest.approx(turned.min(axis=0), abs=1e-4) and high == pytest.approx(
+        turned.max(axis=0), abs=1e-4
+    )
 
 
 SCENE = """

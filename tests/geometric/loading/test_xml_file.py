@@ -21,7 +21,8 @@ TEXT = '<robot name="Grüße"><link/></robot>'
         b'\n\n  <?xml version="1.0" encoding="utf-8"?>\n' + TEXT.encode() + b"\n\0",
         codecs.BOM_UTF8 + TEXT.encode(),
         codecs.BOM_UTF16_LE + TEXT.encode("utf-16-le"),
-        codecs.BOM_UTF16_BE + ('<?xml version="1.0" encoding="utf-16"?>' + TEXT).encode("utf-16-be"),
+        codecs.BOM_UTF16_BE
+        + ('<?xml version="1.0" encoding="utf-16"?>' + TEXT).encode("utf-16-be"),
         b'<?xml version="1.0" encoding="ISO-8859-1"?>' + TEXT.encode("latin-1"),
         b"<?xml version='1.0' encoding='windows-1252'?>" + TEXT.encode("cp1252"),
         # It says one encoding, or none, and has another.

@@ -29,7 +29,9 @@ def file(tmp_path: Path) -> Path:
         (b"a: \x07\n", "not valid YAML", None),
     ],
 )
-def test_what_is_no_yaml_is_told_with_its_line(file: Path, content: bytes, words: str, line: int | None) -> None:
+def test_what_is_no_yaml_is_told_with_its_line(
+    file: Path, content: bytes, words: str, line: int | None
+) -> None:
     file.write_bytes(content)
     with pytest.raises(InputError, match=words) as told:
         read_yaml(file)

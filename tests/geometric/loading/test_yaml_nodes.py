@@ -36,12 +36,16 @@ def value(tmp_path: Path) -> Callable[[str], Node]:
         ("1e-1", 0.1),
     ],
 )
-def test_angles_are_radians_unless_they_say_degrees(value: Callable[[str], Node], text: str, radians: float) -> None:
+def test_angles_are_radians_unless_they_say_degrees(
+    value: Callable[[str], Node], text: str, radians: float
+) -> None:
     assert value(text).angle() == pytest.approx(radians)
 
 
 def test_a_plain_angle_beyond_a_turn_was_meant_in_degrees(value: Callable[[str], Node]) -> None:
-    with pytest.raises(InputError, match=r"v: 90 radians are more than a full turn. Write '90 deg' or 'rad'") as told:
+    with pytest.raises(
+        InputError, match=r"v: 90 radians are more than a full turn. Write '90 deg' or 'rad'"
+    ) as told:
         value("90").angle()
     assert told.value.line == 2
 
@@ -82,7 +86,9 @@ def test_what_is_wrong_is_said(
 
 
 def test_a_misspelt_word_gets_its_neighbour(value: Callable[[str], Node]) -> None:
-    with pytest.raises(InputError, match=r"unknown colour 'gren'.*Choices: red, green. Did you mean 'green'?"):
+    with pytest.raises(
+        InputError, match=r"unknown colour 'gren'.*Choices: red, green. Did you mean 'green'?"
+    ):
         value("gren").text(("red", "green"), "colour")
     with pytest.raises(InputError, match=r"unknown key 'radios'.*Did you mean 'radius'?"):
         value("{radios: 1}").mapping(("radius", "height"))
@@ -113,7 +119,10 @@ def test_merged_entries_give_way_to_own_ones_and_earlier_to_later(tmp_path: Path
     node = yaml(tmp_path, "x: &x {a: 1, b: 1}\ny: &y {b: 2, c: 2}\nz: {<<: [*x, *y], c: 3}\n")
     merged = node.mapping()["z"].mapping()
     assert {key: entry.number() for key, entry in merged.items()} == {"a": 1.0, "b": 1.0, "c": 3.0}
-    assert (merged["a"].line, merged["c"].line) == (1, 3)  # where they stand, not where they were merged
+    assert (merged["a"].line, merged["c"].line) == (
+        1,
+        3,
+    )  # where they stand, not where they were merged
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,16 @@ BASE = np.array([0.3, -0.2, 1.0])
 
 
 def _plan(checker: Sampled, goals: Array = GOAL, seed: int = 0, **options: int) -> Planned:
-    return plan_arm(checker, BASE, START, goals, JointLimits(), np.random.default_rng(seed), Deadline(20), **options)
+    return plan_arm(
+        checker,
+        BASE,
+        START,
+        goals,
+        JointLimits(),
+        np.random.default_rng(seed),
+        Deadline(20),
+        **options,
+    )
 
 
 def _certified(checker: Sampled, path: Array) -> bool:

@@ -17,8 +17,19 @@ ROOM = Room((-3.0, 3.0), (-3.0, 3.0))
 START, GOAL = np.array([-2.0, 0.0, 3.0]), np.array([2.0, 0.0, -3.0])
 
 
-def _plan(checker: Sampled, start: Array = START, goal: Array = GOAL, seed: int = 0, steering: str = "se2") -> Planned:
-    return plan_base(checker, ARM, start, goal, ROOM, np.random.default_rng(seed), Deadline(20), steering=steering)
+def _plan(
+    checker: Sampled, start: Array = START, goal: Array = GOAL, seed: int = 0, steering: str = "se2"
+) -> Planned:
+    return plan_base(
+        checker,
+        ARM,
+        start,
+        goal,
+        ROOM,
+        np.random.default_rng(seed),
+        Deadline(20),
+        steering=steering,
+    )
 
 
 def _certified(checker: Sampled, path: Array) -> bool:
@@ -32,7 +43,9 @@ def _same_place(a: Array, b: Array) -> bool:
 
 def test_an_empty_room_is_crossed_straight_turning_the_shorter_way() -> None:
     path = _plan(Sampled(lambda _: False)).path
-    assert path is not None and np.allclose(path, np.array([START, np.array([2.0, 0.0, 2 * np.pi - 3.0])]))
+    assert path is not None and np.allclose(
+        path, np.array([START, np.array([2.0, 0.0, 2 * np.pi - 3.0])])
+    )
 
 
 @pytest.mark.parametrize("steering", ["se2", "reeds-shepp", "differential"])
@@ -67,7 +80,9 @@ def test_reeds_shepp_keeps_the_turning_radius() -> None:
     assert np.all(np.abs(steps[:, 2]) <= 0.051 / 0.5)
     heading = 0.5 * (path[1:, 2] + path[:-1, 2])
     sideways = np.abs(-np.sin(heading) * steps[:, 0] + np.cos(heading) * steps[:, 1])
-    assert np.all(sideways <= 0.002)  # a car does not slide; where it reverses, the samples cut the tip of the cusp
+    assert np.all(
+        sideways <= 0.002
+    )  # a car does not slide; where it reverses, the samples cut the tip of the cusp
 
 
 def test_the_failure_says_why() -> None:
@@ -78,7 +93,9 @@ def test_the_failure_says_why() -> None:
 
 
 def test_unknown_steering_is_refused_with_the_choices() -> None:
-    with pytest.raises(ValueError, match=r"unknown steering 'dubins'. Choices: se2, reeds-shepp, differential"):
+    with pytest.raises(
+        ValueError, match=r"unknown steering 'dubins'. Choices: se2, reeds-shepp, differential"
+    ):
         _plan(Sampled(lambda _: False), steering="dubins")
 
 
@@ -93,22 +110,32 @@ def test_the_seed_decides(steering: str) -> None:
 @pytest.mark.parametrize("yaw", [np.pi, -np.pi, 3 * np.pi, np.radians(179.99999)])
 def test_a_start_turned_round_drives_off(steering: str, yaw: float) -> None:
     checker = Sampled(round_table, 0.05)
-    for start, goal in (((-2.0, 0.0, yaw), GOAL), (START, (2.0, 0.0, yaw)), ((-2.0, 0.0, yaw), (2.0, 0.0, yaw))):
+    for start, goal in (
+        ((-2.0, 0.0, yaw), GOAL),
+        (START, (2.0, 0.0, yaw)),
+        ((-2.0, 0.0, yaw), (2.0, 0.0, yaw)),
+    ):
         planned = _plan(checker, np.array(start), np.array(goal), steering=steering)
         assert planned.path is not None and len(planned.path) > 2
-        assert np.array_equal(planned.path[0], start) and _same_place(planned.path[-1], np.array(goal))
+        assert np.array_equal(planned.path[0], start) and _same_place(
+            planned.path[-1], np.array(goal)
+        )
         assert _certified(checker, planned.path)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_differential_drive_turns_or_drives_straight(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    start, goal = (np.array([side * 2.0, *rng.uniform((-2.0, -3.0), (2.0, 3.0))]) for side in (-1.0, 1.0))
+    start, goal = (
+        np.array([side * 2.0, *rng.uniform((-2.0, -3.0), (2.0, 3.0))]) for side in (-1.0, 1.0)
+    )
     path = _plan(Sampled(round_table, 0.02), start, goal, seed, "differential").path
     assert path is not None and np.array_equal(path[0], start) and _same_place(path[-1], goal)
     for a, b in pairwise(path):
         moved = b[:2] - a[:2]
-        if np.linalg.norm(moved) > 1e-9:  # then it does not turn, and goes where it looks, or straight back
+        if (
+            np.linalg.norm(moved) > 1e-9
+        ):  # then it does not turn, and goes where it looks, or straight back
             assert abs(b[2] - a[2]) < 1e-9
             assert abs(moved[1] * np.cos(a[2]) - moved[0] * np.sin(a[2])) < 1e-9
 

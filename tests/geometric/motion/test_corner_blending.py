@@ -8,7 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.corner_blending import CHORD, HALVINGS, MOST, ROUNDING, SHARE, STEP, Corner, corners, lay
+from tamp.geometric.motion.corner_blending import (
+    CHORD,
+    HALVINGS,
+    MOST,
+    ROUNDING,
+    SHARE,
+    STEP,
+    Corner,
+    corners,
+    lay,
+)
 
 PUSH = np.array([2.0, 2.0])
 ELBOW = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
@@ -30,7 +40,9 @@ def test_without_a_checker_the_motion_rests_at_each_sharp_corner() -> None:
 
 
 @pytest.mark.parametrize(("edge", "reach"), [(0.5, SHARE * 0.5), (5.0, ROUNDING)])
-def test_a_free_corner_is_rounded_by_a_share_of_the_shorter_edge_up_to_a_limit(edge: float, reach: float) -> None:
+def test_a_free_corner_is_rounded_by_a_share_of_the_shorter_edge_up_to_a_limit(
+    edge: float, reach: float
+) -> None:
     path = np.array([[0.0, 0.0], [edge, 0.0], [edge, 9.0]])
     _, elbow, _ = corners(path, PUSH, anywhere)
     assert elbow.reach == pytest.approx(reach) and elbow.taken == elbow.reach
@@ -40,14 +52,18 @@ def test_the_rounding_is_the_parabola_that_touches_both_edges() -> None:
     elbow = Corner(np.array([1.0, 0.0]), np.array([1.0, 0.0]), np.array([0.0, 1.0]), reach=0.12)
     curve = elbow.curve()
     assert curve[0] == pytest.approx([0.88, 0.0]) and curve[-1] == pytest.approx([1.0, 0.12])
-    middle = elbow.vertex + 0.25 * 0.12 * (elbow.after - elbow.before)  # half way: a quarter of each leg
+    middle = elbow.vertex + 0.25 * 0.12 * (
+        elbow.after - elbow.before
+    )  # half way: a quarter of each leg
     assert curve[len(curve) // 2] == pytest.approx(middle)
     # In the station s it is x'' constant: velocity turns from one edge's direction to the other's over two reaches.
     assert elbow.before + 2 * 0.12 * elbow.bend == pytest.approx(elbow.after)
 
 
 @pytest.mark.parametrize(("reach", "chords"), [(0.001, 2), (2 * CHORD, 4), (ROUNDING, 8)])
-def test_a_rounding_has_chords_of_one_length_between_two_and_eight(reach: float, chords: int) -> None:
+def test_a_rounding_has_chords_of_one_length_between_two_and_eight(
+    reach: float, chords: int
+) -> None:
     elbow = Corner(np.zeros(2), np.array([1.0, 0.0]), np.array([0.0, 1.0]), reach=reach)
     assert len(elbow.shares()) == chords + 1
     assert elbow.curve().shape == (chords + 1, 2)
@@ -109,7 +125,9 @@ def test_bends_act_within_the_rounding_alone() -> None:
     passed = corners(ELBOW, PUSH, anywhere)
     rail = lay(passed)
     inside = np.linalg.norm(rail.positions - [1.0, 0.0], axis=1) < passed[1].reach - 1e-9
-    assert rail.bends_before[inside] == pytest.approx(np.tile(passed[1].bend, (int(inside.sum()), 1)))
+    assert rail.bends_before[inside] == pytest.approx(
+        np.tile(passed[1].bend, (int(inside.sum()), 1))
+    )
     outside = np.linalg.norm(rail.positions - [1.0, 0.0], axis=1) > passed[1].reach + 1e-9
     assert (rail.bends_before[outside] == 0.0).all() and (rail.bends_after[outside] == 0.0).all()
 

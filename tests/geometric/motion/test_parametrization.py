@@ -18,7 +18,15 @@ def straight(end: tuple[float, float], count: int = 201) -> Rail:
     station = np.linspace(0.0, math.hypot(*end), count)
     u = np.array(end) / math.hypot(*end)
     rows, zero = np.tile(u, (count, 1)), np.zeros((count, 2))
-    return Rail(station[:, None] * u, station, rows, np.abs(rows), zero, zero, np.ones(count - 1, dtype=bool))
+    return Rail(
+        station[:, None] * u,
+        station,
+        rows,
+        np.abs(rows),
+        zero,
+        zero,
+        np.ones(count - 1, dtype=bool),
+    )
 
 
 def test_a_straight_line_is_run_at_full_push_then_full_brake() -> None:
@@ -44,7 +52,9 @@ def test_the_joint_with_the_tightest_limit_for_its_way_decides() -> None:
     rail = straight((3.0, 4.0))
     rates = speeds(rail, np.array([0.6, 0.1]), np.array([5.0, 5.0]))
     assert rates is not None
-    assert rates.max() == pytest.approx(0.1 / 0.8)  # the second coordinate moves 0.8 of each station
+    assert rates.max() == pytest.approx(
+        0.1 / 0.8
+    )  # the second coordinate moves 0.8 of each station
 
 
 def test_it_begins_and_ends_at_rest() -> None:
@@ -64,4 +74,6 @@ def test_through_a_rounding_it_goes_no_faster_than_the_bend_allows() -> None:
     bent = np.abs(rail.bends_before).max(axis=1) > 0.0
     assert bent.any()
     assert (np.abs(rail.bends_before[bent]) * rates[bent, None] ** 2 <= push + 1e-6).all()
-    assert rates[bent].min() > 0.5 * math.sqrt(1.0 / np.abs(passed[1].bend).max())  # and not needlessly slow
+    assert rates[bent].min() > 0.5 * math.sqrt(
+        1.0 / np.abs(passed[1].bend).max()
+    )  # and not needlessly slow

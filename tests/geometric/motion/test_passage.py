@@ -43,7 +43,9 @@ def test_the_disc_is_the_largest_in_the_base(robot: Robot) -> None:
 
 @pytest.mark.parametrize("middle", [-1.0, 0.0, 0.7])
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
-def test_a_door_narrower_than_the_base_is_named_with_its_width(robot: Robot, share: float, middle: float) -> None:
+def test_a_door_narrower_than_the_base_is_named_with_its_width(
+    robot: Robot, share: float, middle: float
+) -> None:
     width = share * 2 * Passage(scene(), robot).radius
     gap = behind(robot, *door(width, middle))
     assert gap is not None
@@ -80,9 +82,13 @@ def test_a_room_too_large_for_fine_cells_is_not_judged(robot: Robot) -> None:
 
 
 def test_clearance_is_the_distance_from_what_stands_there(robot: Robot) -> None:
-    passage = Passage(scene(body("post", Cylinder(0.2, 2.0), (0.0, 0.0, 1.0), movable=False)), robot)
+    passage = Passage(
+        scene(body("post", Cylinder(0.2, 2.0), (0.0, 0.0, 1.0), movable=False)), robot
+    )
     points = np.array([[1.0, 0.0], [0.0, -0.7], [0.1, 0.0]])
-    assert passage.clearance(points) == pytest.approx([0.8, 0.5, 0.0], abs=0.005)  # a prism of 32 sides
+    assert passage.clearance(points) == pytest.approx(
+        [0.8, 0.5, 0.0], abs=0.005
+    )  # a prism of 32 sides
     assert np.isinf(Passage(scene(), robot).clearance(points)).all()
 
 

@@ -14,7 +14,9 @@ def test_nearest_is_the_same_angle_within_half_a_turn(reference: float, angle: f
     moved = nearest(np.array([5.0, reference]), np.array([-5.0, angle]), (1,))
     assert moved[0] == -5.0
     assert abs(moved[1] - reference) <= np.pi + 1e-9
-    assert np.isclose(np.cos(moved[1]), np.cos(angle)) and np.isclose(np.sin(moved[1]), np.sin(angle))
+    assert np.isclose(np.cos(moved[1]), np.cos(angle)) and np.isclose(
+        np.sin(moved[1]), np.sin(angle)
+    )
 
 
 def test_nearest_leaves_a_near_angle_exactly() -> None:
@@ -38,7 +40,9 @@ def test_lengths_weigh_coordinates() -> None:
 
 def test_at_runs_along_the_path() -> None:
     path = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]])
-    assert np.allclose(at(path, np.array([0.0, 0.5, 1.5, 3.0])), [[0, 0], [0.5, 0], [1, 0.5], [1, 2]])
+    assert np.allclose(
+        at(path, np.array([0.0, 0.5, 1.5, 3.0])), [[0, 0], [0.5, 0], [1, 0.5], [1, 2]]
+    )
 
 
 def test_without_repeats() -> None:

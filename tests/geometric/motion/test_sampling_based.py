@@ -26,7 +26,12 @@ def _wall(a: Array, b: Array) -> bool:
     return Sampled(wall_with_gap, 0.05).edge_free(np.append(base, a), np.append(base, b))
 
 
-def _search(seed: int, edge_free: Callable[[Array, Array], bool] = _wall, checks: int = 2000, seconds: float = 20.0):
+def _search(
+    seed: int,
+    edge_free: Callable[[Array, Array], bool] = _wall,
+    checks: int = 2000,
+    seconds: float = 20.0,
+):
     return connect(
         SPACE, START, [GOAL], edge_free, seed=seed, checks=checks, deadline=Deadline(seconds), reach=1.0
     )  # fmt: skip
@@ -67,7 +72,9 @@ def test_the_seed_decides_in_two_processes(root: Path) -> None:
         "import hashlib; print(n, hashlib.sha256(p.tobytes()).hexdigest())"
     )
     outputs = [
-        subprocess.run([sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True)
+        subprocess.run(
+            [sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True
+        )
         for _ in range(2)
     ]
     assert outputs[0].stdout == outputs[1].stdout and len(outputs[0].stdout.split()[1]) == 64
@@ -113,7 +120,9 @@ def test_an_interrupted_process_dies_of_nothing_but_the_exception(root: Path) ->
         "try: _search(1, lambda a, b: False, checks=10**9)\n"
         "except KeyboardInterrupt: raise SystemExit(130)\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=False
+    )
     assert ended.returncode == 130 and ended.stderr == ""
 
 
@@ -136,13 +145,23 @@ def test_a_curve_keeps_its_turning_radius() -> None:
         steps = np.diff(samples, axis=0)
         turns = np.abs((steps[:, 2] + np.pi) % (2 * np.pi) - np.pi)
         travelled = np.hypot(steps[:, 0], steps[:, 1])
-        assert np.all(turns <= 0.02 / 0.5 + 1e-6)  # a step along the curve turns by its length over the radius
+        assert np.all(
+            turns <= 0.02 / 0.5 + 1e-6
+        )  # a step along the curve turns by its length over the radius
         assert np.all(travelled <= 0.02 + 1e-9)
         looked += 1
     assert looked == 20
 
 
-TURNS = [math.pi, -math.pi, 3 * math.pi, math.radians(179.99999), math.nextafter(math.pi, 0.0), -3 * math.pi, 0.0]
+TURNS = [
+    math.pi,
+    -math.pi,
+    3 * math.pi,
+    math.radians(179.99999),
+    math.nextafter(math.pi, 0.0),
+    -3 * math.pi,
+    0.0,
+]
 
 
 @pytest.mark.parametrize("radius", [None, 0.5])
@@ -152,7 +171,10 @@ def test_no_yaw_makes_the_planner_wait(radius: float | None, yaw: float) -> None
     pillar = np.array([0.0, 0.0])
 
     def edge_free(a: Array, b: Array) -> bool:
-        return all(float(np.linalg.norm(a[:2] + t * (b - a)[:2] - pillar)) > 0.5 for t in np.linspace(0.0, 1.0, 30))
+        return all(
+            float(np.linalg.norm(a[:2] + t * (b - a)[:2] - pillar)) > 0.5
+            for t in np.linspace(0.0, 1.0, 30)
+        )
 
     for start, goal in ((yaw, 1.0), (1.0, yaw), (yaw, yaw)):
         began = unhindered()
@@ -168,10 +190,19 @@ def test_no_yaw_makes_the_planner_wait(radius: float | None, yaw: float) -> None
 def test_ends_out_of_the_bounds_are_no_reason_to_wait() -> None:
     outside = np.array([3.5, *[0.0] * 6])
     nowhere = np.full(7, np.nan)
-    for start, goals in ((outside, [GOAL]), (START, [outside]), (START, [nowhere]), (nowhere, [GOAL])):
+    for start, goals in (
+        (outside, [GOAL]),
+        (START, [outside]),
+        (START, [nowhere]),
+        (nowhere, [GOAL]),
+    ):
         began = unhindered()
-        path, checks = connect(SPACE, start, goals, _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
+        path, checks = connect(
+            SPACE, start, goals, _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0
+        )
         assert path is None and checks == 0
         assert unhindered() - began < 5
-    path, _ = connect(SPACE, START, [outside, GOAL], _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0)
+    path, _ = connect(
+        SPACE, START, [outside, GOAL], _wall, seed=1, checks=2000, deadline=Deadline(20), reach=1.0
+    )
     assert path is not None and np.array_equal(path[-1], GOAL)

@@ -18,14 +18,18 @@ def _random_paths(count: int = 12) -> list[Array]:
     return [rng.uniform(-1.5, 1.5, (rng.integers(2, 9), 7)) for _ in range(count)]
 
 
-def _respects_limits(timed: Timed, velocity: Array = VELOCITY, acceleration: Array = ACCELERATION) -> bool:
+def _respects_limits(
+    timed: Timed, velocity: Array = VELOCITY, acceleration: Array = ACCELERATION
+) -> bool:
     """By finite differences: velocities between samples, accelerations between their middles; at rest around."""
     spans = np.diff(timed.times)
     rates = np.diff(timed.positions, axis=0) / spans[:, None]
     zero = np.zeros((1, rates.shape[1]))
     middles = 0.5 * (np.append(0.0, spans) + np.append(spans, 0.0))
     changes = np.diff(np.concatenate([zero, rates, zero]), axis=0) / middles[:, None]
-    return bool(np.all(np.abs(rates) <= velocity + 1e-6) and np.all(np.abs(changes) <= acceleration + 1e-6))
+    return bool(
+        np.all(np.abs(rates) <= velocity + 1e-6) and np.all(np.abs(changes) <= acceleration + 1e-6)
+    )
 
 
 def _distance(point: Array, polyline: Array) -> float:
@@ -43,7 +47,9 @@ def test_limits_order_and_ends(rounded: bool) -> None:
     for path in _random_paths():
         timed = time_path(path, VELOCITY, ACCELERATION, (lambda _a, _b: True) if rounded else None)
         assert timed.times[0] == 0.0 and np.all(np.diff(timed.times) > 0.0)
-        assert np.array_equal(timed.positions[0], path[0]) and np.array_equal(timed.positions[-1], path[-1])
+        assert np.array_equal(timed.positions[0], path[0]) and np.array_equal(
+            timed.positions[-1], path[-1]
+        )
         assert _respects_limits(timed)
         assert np.max(np.diff(timed.times)) < 0.1
         looked += 1
@@ -67,7 +73,9 @@ def test_what_is_rounded_was_certified() -> None:
         rng = np.random.default_rng(seed)
         allowed: list[Array] = []
 
-        def edge_free(a: Array, b: Array, rng: np.random.Generator = rng, allowed: list[Array] = allowed) -> bool:
+        def edge_free(
+            a: Array, b: Array, rng: np.random.Generator = rng, allowed: list[Array] = allowed
+        ) -> bool:
             free = bool(rng.uniform() < 0.9)
             if free:
                 allowed.append(np.array([a, b]))
@@ -93,13 +101,18 @@ def test_a_refused_rounding_rests_at_the_corner() -> None:
     path = np.array([[0.0] * 7, [1.0] * 7, [0.0, 1.0] * 3 + [0.0]])
     timed = time_path(path, VELOCITY, ACCELERATION, lambda _a, _b: False)
     corner = next(i for i, row in enumerate(timed.positions) if np.array_equal(row, path[1]))
-    before = np.abs(timed.positions[corner] - timed.positions[corner - 1]) / np.diff(timed.times)[corner - 1]
+    before = (
+        np.abs(timed.positions[corner] - timed.positions[corner - 1])
+        / np.diff(timed.times)[corner - 1]
+    )
     assert np.all(before <= ACCELERATION * TICK)
 
 
 def test_a_straight_line_takes_the_least_time() -> None:
     timed = time_path(np.array([[0.0, 0.0], [2.0, 0.5]]), np.ones(2), np.ones(2))
-    assert np.isclose(timed.duration, 3.0)  # one second to speed up, one at full speed, one to brake
+    assert np.isclose(
+        timed.duration, 3.0
+    )  # one second to speed up, one at full speed, one to brake
     short = time_path(np.array([[0.0, 0.0], [0.25, 0.0]]), np.ones(2), np.ones(2))
     assert np.isclose(short.duration, 1.0)
 

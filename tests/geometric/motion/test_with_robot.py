@@ -48,13 +48,17 @@ def _past_the_pillar(collisions: Collisions, robot: Robot, seed: int) -> Array:
     held = Attachment("can", Pose(), 0.06)
     arrangement = collisions.arrangement({}, held)
     start, goal = (np.array([turn, 0.3, 0.0, -1.8, 0.0, 2.1, 0.8]) for turn in (-0.9, 0.9))
-    planned = plan_arm(arrangement, np.zeros(3), start, goal, robot, np.random.default_rng(seed), Deadline(30))
+    planned = plan_arm(
+        arrangement, np.zeros(3), start, goal, robot, np.random.default_rng(seed), Deadline(30)
+    )
     assert planned.path is not None, planned.failure
     return planned.path
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_arm_carries_a_can_past_a_pillar(collisions: Collisions, robot: Robot, seed: int) -> None:
+def test_the_arm_carries_a_can_past_a_pillar(
+    collisions: Collisions, robot: Robot, seed: int
+) -> None:
     path = _past_the_pillar(collisions, robot, seed)
     assert len(path) > 2  # the pillar is in the straight way
     arrangement = collisions.arrangement({}, Attachment("can", Pose(), 0.06))
@@ -69,7 +73,9 @@ def test_the_arm_carries_a_can_past_a_pillar(collisions: Collisions, robot: Robo
 
 
 @pytest.mark.parametrize("steering", ["se2", "reeds-shepp"])
-def test_the_base_drives_round_furniture(collisions: Collisions, robot: Robot, steering: str) -> None:
+def test_the_base_drives_round_furniture(
+    collisions: Collisions, robot: Robot, steering: str
+) -> None:
     can = collisions.scene.bodies["can"].pose
     arrangement = collisions.arrangement({"can": can})
     arm = np.array(robot.home)
@@ -102,7 +108,9 @@ collisions = Collisions(load_scene(file).scene, robot, Kinematics(robot))
 print([hashlib.sha256(_past_the_pillar(collisions, robot, seed).tobytes()).hexdigest() for seed in (0, 1, 0)])
 """
     ends = [
-        subprocess.run([sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True)
+        subprocess.run(
+            [sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=True
+        )
         for _ in range(2)
     ]
     assert ends[0].stdout == ends[1].stdout

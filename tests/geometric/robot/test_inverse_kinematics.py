@@ -89,11 +89,17 @@ def test_the_pose_asked_for_is_left_alone(robot: Robot, kinematics: Kinematics, 
 
 def test_singular_poses_are_solved(robot: Robot, kinematics: Kinematics, ik: ArmIK) -> None:
     """The elbow stretched, the shoulder straight up, the wrist's axes in line."""
-    for q in ([0, 0.5, 0, -0.02, 0, 1.5, 0.7], [0.3, 0.0, 0.2, -1.5, 0, 1.5, 0], [0, 0.3, 0, -2, 0, 0.01, 0]):
+    for q in (
+        [0, 0.5, 0, -0.02, 0, 1.5, 0.7],
+        [0.3, 0.0, 0.2, -1.5, 0, 1.5, 0],
+        [0, 0.3, 0, -2, 0, 0.01, 0],
+    ):
         assert len(ik.solve(kinematics.arm_tool(np.array(q))))
 
 
-def test_following_a_line_is_continuous_and_exact(robot: Robot, kinematics: Kinematics, ik: ArmIK) -> None:
+def test_following_a_line_is_continuous_and_exact(
+    robot: Robot, kinematics: Kinematics, ik: ArmIK
+) -> None:
     followed = 0
     for q in confs(robot, 200):
         poses = line(kinematics, q, 0.1, 10)

@@ -23,53 +23,84 @@ def kinematics(robot: Robot) -> Kinematics:
 
 def random_confs(robot: Robot, count: int) -> np.ndarray:
     rng = np.random.default_rng(1)
-    return np.hstack([rng.uniform(-3, 3, (count, 3)), rng.uniform(robot.lower, robot.upper, (count, 7))])
+    return np.hstack(
+        [rng.uniform(-3, 3, (count, 3)), rng.uniform(robot.lower, robot.upper, (count, 7))]
+    )
 
 
 def test_link_poses_agree_with_pybullet(robot: Robot, kinematics: Kinematics) -> None:
     bullet = pytest.importorskip("pybullet")
     client = bullet.connect(bullet.DIRECT)
     arm = bullet.loadURDF(str(robot.urdf), useFixedBase=True, physicsClientId=client)
-    info = [bullet.getJointInfo(arm, i, physicsClientId=client) for i in range(bullet.getNumJoints(arm, client))]
+    info = [
+        bullet.getJointInfo(arm, i, physicsClientId=client)
+        for i in range(bullet.getNumJoints(arm, client))
+    ]
     index_of = {entry[1].decode(): entry[0] for entry in info}
     link_of = {entry[12].decode(): entry[0] for entry in info}
-    inertial = Pose(bullet.getDynamicsInfo(arm, -1, physicsClientId=client)[3])  # pybullet places the centre of mass
+    inertial = Pose(
+        bullet.getDynamicsInfo(arm, -1, physicsClientId=client)[3]
+    )  # pybullet places the centre of mass
     checked = 0
     for number, conf in enumerate(random_confs(robot, 20)):
         opening = 0.004 * number
         mount = Pose.from_matrix(base_matrix(conf) @ robot.T_base_arm.matrix)
         mount = mount @ inertial
-        bullet.resetBasePositionAndOrientation(arm, mount.position, mount.quaternion, physicsClientId=client)
+        bullet.resetBasePositionAndOrientation(
+            arm, mount.position, mount.quaternion, physicsClientId=client
+        )
         values = dict(zip((joint.name for joint in robot.joints), conf[3:], strict=True))
         values |= {finger.name: opening / 2 for finger in robot.fingers}
         for name, value in values.items():
             bullet.resetJointState(arm, index_of[name], value, physicsClientId=client)
         for name, T in kinematics.link_poses(conf, opening).items():
             if name in link_of:
-                state = bullet.getLinkState(arm, link_of[name], computeForwardKinematics=True, physicsClientId=client)
+                state = bullet.getLinkState(
+                    arm, link_of[name], computeForwardKinematics=True, physicsClientId=client
+                )
                 assert np.allclose(T, Pose(state[4], state[5]).matrix, atol=1e-6)
                 checked += 1
     bullet.disconnect(client)
     assert checked == 20 * 10
 
 
-def test_link_poses_cover_all_links_and_the_tool_is_on_the_hand(robot: Robot, kinematics: Kinematics) -> None:
+def test_link_poses_cover_all_links_and_the_tool_is_on_the_hand(
+    robot: Robot, kinematics: Kinematics
+) -> None:
     conf = random_confs(robot, 1)[0]
     poses = kinematics.link_poses(conf, 0.05)
     assert list(poses) == [link.name for link in robot.links]
-    assert np.allclose(poses["panda_hand"] @ robot.T_hand_tool.matrix, kinematics.tool(conf), atol=1e-12)
-    assert np.allclose(base_matrix(conf) @ kinematics.arm_tool(conf[3:]), kinematics.tool(conf), atol=1e-12)
-    gap = np.linalg.inv(poses["panda_hand"]) @ (poses["panda_leftfinger"] - poses["panda_rightfinger"])[:, 3]
+    assert np.allclose(
+        poses["panda_hand"] @ robot.T_hand_tool.matrix, kinematics.tool(conf), atol=1e-12
+    )
+    assert np.allclose(
+        base_matrix(conf) @ kinematics.arm_tool(conf[3:]), kinematics.tool(conf), atol=1e-12
+    )
+    gap = (
+        np.linalg.inv(poses["panda_hand"])
+        @ (poses["panda_leftfinger"] - poses["panda_rightfinger"])[:, 3]
+    )
     assert np.allclose(gap[:3], (0.0, 0.05, 0.0), atol=1e-12)
 
 
 def test_earlier_results_are_not_overwritten(robot: Robot, kinematics: Kinematics) -> None:
     first, second = random_confs(robot, 2)
-    tool, poses, jacobian = kinematics.tool(first), kinematics.link_poses(first, 0.0), kinematics.jacobian(first)
+    tool, poses, jacobian = (
+        kinematics.tool(first),
+        kinematics.link_poses(first, 0.0),
+        kinematics.jacobian(first),
+    )
     kept = tool.copy(), poses["panda_link3"].copy(), jacobian.copy()
-    for compute in (kinematics.tool, lambda conf: kinematics.link_poses(conf, 0.0), kinematics.jacobian):
+    for compute in (
+        kinematics.tool,
+        lambda conf: kinematics.link_poses(conf, 0.0),
+        kinematics.jacobian,
+    ):
         compute(second)
-    assert all(np.array_equal(a, b) for a, b in zip((tool, poses["panda_link3"], jacobian), kept, strict=True))
+    assert all(
+        np.array_equal(a, b)
+        for a, b in zip((tool, poses["panda_link3"], jacobian), kept, strict=True)
+    )
 
 
 def test_jacobian_agrees_with_finite_differences(robot: Robot, kinematics: Kinematics) -> None:

@@ -33,7 +33,9 @@ SIDE = Pose((0.3, 0.4, 0.9)).matrix @ Pose.from_xyz_rpy((0, 0, 0), (0.0, math.pi
 
 
 @pytest.mark.parametrize("T_world_tool", [TOP, SIDE], ids=["top", "side"])
-def test_most_base_poses_have_ik(robot: Robot, reachability: Reachability, T_world_tool: np.ndarray) -> None:
+def test_most_base_poses_have_ik(
+    robot: Robot, reachability: Reachability, T_world_tool: np.ndarray
+) -> None:
     ik = ArmIK(robot)
     bases = reachability.sample(T_world_tool, np.random.default_rng(0), 200)
     T_base_tools = np.array([np.linalg.inv(base_matrix(base)) @ T_world_tool for base in bases])
@@ -55,7 +57,9 @@ def test_samples_move_with_the_tool(reachability: Reachability) -> None:
         assert np.allclose(moved @ base_matrix(a), base_matrix(b), atol=1e-9)
 
 
-def test_the_same_generator_gives_the_same_base_poses(robot: Robot, reachability: Reachability) -> None:
+def test_the_same_generator_gives_the_same_base_poses(
+    robot: Robot, reachability: Reachability
+) -> None:
     first = reachability.sample(SIDE, np.random.default_rng(3), 20)
     assert first.shape == (20, 3) and np.all(np.abs(first[:, 2]) <= math.pi)
     assert np.array_equal(first, Reachability(robot).sample(SIDE, np.random.default_rng(3), 20))

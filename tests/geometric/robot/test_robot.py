@@ -34,7 +34,9 @@ def test_hulls_contain_every_vertex_of_the_urdfs_meshes(robot: Robot) -> None:
         (part,) = link.parts
         assert isinstance(part.shape, Hull)
         assert np.max(hull_depth(part.shape, vertices[link.name])) < 1e-9
-        assert np.max(hull_depth(part.shape, part.shape.vertices.mean(axis=0, keepdims=True))) < -1e-3  # outward
+        assert (
+            np.max(hull_depth(part.shape, part.shape.vertices.mean(axis=0, keepdims=True))) < -1e-3
+        )  # outward
         checked += 1
     assert checked == 11
 
@@ -43,7 +45,11 @@ def test_hulls_are_closed(robot: Robot) -> None:
     for link in robot.links[1:]:
         hull = link.parts[0].shape
         assert isinstance(hull, Hull)
-        edges = [(a, b) for face in hull.faces.tolist() for a, b in zip(face, [*face[1:], face[0]], strict=True)]
+        edges = [
+            (a, b)
+            for face in hull.faces.tolist()
+            for a, b in zip(face, [*face[1:], face[0]], strict=True)
+        ]
         assert len(edges) == len(set(edges)) and {(b, a) for a, b in edges} == set(edges)
 
 
@@ -59,11 +65,19 @@ def test_limits(robot: Robot) -> None:
     margin = np.radians(0.5)
     maker = [(-2.8973, 2.8973), (-1.7628, 1.7628), (-2.8973, 2.8973), (-3.0718, -0.0698), (-2.8973, 2.8973),
              (-0.0175, 3.7525), (-2.8973, 2.8973)]  # fmt: skip
-    assert np.allclose(np.column_stack([robot.lower, robot.upper]), np.array(maker) + np.array([margin, -margin]))
+    assert np.allclose(
+        np.column_stack([robot.lower, robot.upper]), np.array(maker) + np.array([margin, -margin])
+    )
     assert robot.velocity[3:] == (2.175,) * 4 + (2.61,) * 3
-    assert all(j.lower < lo and up < j.upper for j, lo, up in zip(robot.joints, robot.lower, robot.upper, strict=True))
+    assert all(
+        j.lower < lo and up < j.upper
+        for j, lo, up in zip(robot.joints, robot.lower, robot.upper, strict=True)
+    )
     assert all(lo < q < up for lo, q, up in zip(robot.lower, robot.home, robot.upper, strict=True))
-    assert len(robot.velocity) == len(robot.acceleration) == 10 and min(robot.velocity + robot.acceleration) > 0
+    assert (
+        len(robot.velocity) == len(robot.acceleration) == 10
+        and min(robot.velocity + robot.acceleration) > 0
+    )
 
 
 def test_allowed_pairs_are_sorted_names_of_links(robot: Robot) -> None:
@@ -95,7 +109,10 @@ def test_allowed_pairs_never_or_always_collide_and_home_is_free(robot: Robot) ->
         return {p for p in pairs if fcl.collide(objects[p[0]][0], objects[p[1]][0])}
 
     rng = np.random.default_rng(0)
-    states = [colliding(rng.uniform(robot.lower, robot.upper), rng.uniform(0.0, robot.opening)) for _ in range(1500)]
+    states = [
+        colliding(rng.uniform(robot.lower, robot.upper), rng.uniform(0.0, robot.opening))
+        for _ in range(1500)
+    ]
     counts = {pair: sum(pair in state for state in states) for pair in pairs}
     fingers = ("panda_leftfinger", "panda_rightfinger")
     assert all(counts[pair] in (0, len(states)) for pair in robot.allowed - {fingers})
@@ -109,13 +126,17 @@ def test_home_is_compact_and_points_down(robot: Robot) -> None:
     conf = np.concatenate([np.zeros(3), robot.home])
     tool = kinematics.tool(conf)
     assert tool[2, 2] == pytest.approx(-1.0, abs=1e-6)
-    assert tool[2, 3] - 0.25 > 0.7  # a held object of 25 cm passes over the base and an ordinary table
+    assert (
+        tool[2, 3] - 0.25 > 0.7
+    )  # a held object of 25 cm passes over the base and an ordinary table
     poses = kinematics.link_poses(conf, robot.opening)
     for link in robot.links[1:]:
         hull = link.parts[0].shape
         assert isinstance(hull, Hull)
         points = hull.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3]
-        assert np.max(np.linalg.norm(points[:, :2], axis=1)) < 0.53  # inside the circle that the base itself sweeps
+        assert (
+            np.max(np.linalg.norm(points[:, :2], axis=1)) < 0.53
+        )  # inside the circle that the base itself sweeps
 
 
 @pytest.mark.parametrize("name", sorted(ROBOTS))

@@ -40,6 +40,9 @@ def test_slack_bounds_how_far_spheres_stand_out() -> None:
                 a, b, c = (part.shape.vertices[part.shape.faces[:, i]] for i in range(3))
                 normals = np.cross(b - a, c - a)
                 lengths = np.linalg.norm(normals, axis=1)
-                normals, a = normals[lengths > 1e-9] / lengths[lengths > 1e-9, None], a[lengths > 1e-9]
+                normals, a = (
+                    normals[lengths > 1e-9] / lengths[lengths > 1e-9, None],
+                    a[lengths > 1e-9],
+                )
                 depth = np.einsum("fx,fx->f", normals, a)[:, None] - normals @ leaves[:, :3].T
                 assert (leaves[:, 3] - depth.min(axis=0) <= slack + 1e-6).all(), link.name

@@ -21,7 +21,10 @@ Propose = Callable[[Scene, Sequence[str], int, Random], Any]
 
 def at_rest(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Pose]:
     """World poses that the hand-made sampler would take."""
-    T_world_region, faces = scene.world_pose(scene.region(arguments[1])), stable_faces_of(scene.bodies[arguments[0]])
+    T_world_region, faces = (
+        scene.world_pose(scene.region(arguments[1])),
+        stable_faces_of(scene.bodies[arguments[0]]),
+    )
     placements = SurfacePlacements().propose(scene, arguments, count, rng)
     return [placed_pose(faces, placement, T_world_region) for placement in placements]
 
@@ -73,13 +76,20 @@ def a_room_away(scene: Scene, arguments: Sequence[str], count: int, rng: Random)
 
 def sunken(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
     poses = at_rest(scene, arguments, count, rng)
-    return [Pose((pose.position[0], pose.position[1], pose.position[2] - 0.1), pose.quaternion) for pose in poses]
+    return [
+        Pose((pose.position[0], pose.position[1], pose.position[2] - 0.1), pose.quaternion)
+        for pose in poses
+    ]
 
 
 def into_others(scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> Any:
     """At rest, but where something stands already: the fluents know."""
     z = at_rest(scene, arguments, 1, rng)[0].position[2]
-    others = [body.pose.position for name, body in scene.bodies.items() if body.movable and name != arguments[0]]
+    others = [
+        body.pose.position
+        for name, body in scene.bodies.items()
+        if body.movable and name != arguments[0]
+    ]
     spots = [others[int(rng.integers(len(others)))] for _ in range(count)]
     return [Pose((x + rng.normal(0, 1e-3), y + rng.normal(0, 1e-3), z)) for x, y, _ in spots]
 

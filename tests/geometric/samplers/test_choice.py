@@ -54,12 +54,18 @@ def test_a_name_with_or_without_a_mode(text: str, choice: Choice) -> None:
         ("un", "surface", "unknown relation 'un'.*Choices: on, inside.*Of one's own: un=FILE.npz"),
         (ANY, "surface", r"unknown relation '\*'"),
         ("on", "surfase", "unknown sampler 'surfase' for 'on'.*Did you mean 'surface'?"),
-        ("on", "learned:alon", "unknown mode 'alon' of sampler 'learned'.*Did you mean 'alone'?.*on=learned:alone"),
+        (
+            "on",
+            "learned:alon",
+            "unknown mode 'alon' of sampler 'learned'.*Did you mean 'alone'?.*on=learned:alone",
+        ),
         ("on", "learned:", "unknown mode '' of sampler 'learned'"),
         ("inside", "learned", "unknown sampler 'learned' for 'inside'"),
     ],
 )
-def test_what_nobody_knows_is_refused_with_the_choices(relation: str, text: str, words: str) -> None:
+def test_what_nobody_knows_is_refused_with_the_choices(
+    relation: str, text: str, words: str
+) -> None:
     with pytest.raises(InputError, match=words):
         parse_choice(relation, text, KNOWN)
 
@@ -94,5 +100,7 @@ def test_pairs_of_the_command_line() -> None:
     assert sampler_choices(("on=uniform", "inside=a=b")) == {"on": "uniform", "inside": "a=b"}
     assert sampler_choices(("on=a", "on=b")) == {"on": "b"}
     for wrong in ("on", "=uniform", "on=", "="):
-        with pytest.raises(InputError, match=f"--sampler wants RELATION=NAME, not '{wrong}'. For example"):
+        with pytest.raises(
+            InputError, match=f"--sampler wants RELATION=NAME, not '{wrong}'. For example"
+        ):
             sampler_choices((wrong,))

@@ -35,7 +35,9 @@ def without() -> Solution:
     return solve(load_problem(PROBLEM), max_time=60.0, seed=0)
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # the alarm may ring in a gc callback
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # the alarm may ring in a gc callback
 @pytest.mark.parametrize("name", [*REPORTED, *UNREPORTED])
 def test_a_hostile_generator_costs_no_success(name: str, without: Solution) -> None:
     propose, said = REPORTED.get(name) or (UNREPORTED[name], "")
@@ -46,14 +48,20 @@ def test_a_hostile_generator_costs_no_success(name: str, without: Solution) -> N
     assert hostile.calls <= 12
     if name in REPORTED:
         (warning,) = solution.warnings
-        assert warning.startswith("sampler 'given' for 'on' is sidelined: ") and said in warning, warning
+        assert warning.startswith("sampler 'given' for 'on' is sidelined: ") and said in warning, (
+            warning
+        )
         assert summary(solution).count(warning) == 1
         if name != "into-others":
-            assert draws(solution) == draws(without)  # the hand-made one does what it would do alone
+            assert draws(solution) == draws(
+                without
+            )  # the hand-made one does what it would do alone
     else:
         assert len(solution.warnings) <= 1
     (account,) = [account for account in solution.samplers["on"] if account.name == "given"]
-    assert account.seconds < 2 * PATIENCE + 0.1 * solution.seconds["total"] + 0.3  # the last: a busy machine
+    assert (
+        account.seconds < 2 * PATIENCE + 0.1 * solution.seconds["total"] + 0.3
+    )  # the last: a busy machine
 
 
 @pytest.mark.parametrize("name", ["at-the-edge", "into-others"])
@@ -63,7 +71,9 @@ def test_what_passes_the_first_tests_is_outweighed(name: str) -> None:
     spent = np.zeros(2)
     for seed in range(4):
         for column, groundings in enumerate(({}, {"on": Hostile(propose)})):
-            solution = solve(load_problem("cluttered", groundings=groundings), max_time=60.0, seed=seed)
+            solution = solve(
+                load_problem("cluttered", groundings=groundings), max_time=60.0, seed=seed
+            )
             assert solution.solved
             spent[column] += draws(solution)
     assert spent[1] <= CALM * spent[0], spent
@@ -78,24 +88,32 @@ def test_alone_it_has_to_do_the_work(without: Solution) -> None:
 
 
 def test_alone_and_raising_is_reported() -> None:
-    problem = load_problem("one_object", groundings={"on": Hostile(raising)}, samplers={"on": "given:alone"})
+    problem = load_problem(
+        "one_object", groundings={"on": Hostile(raising)}, samplers={"on": "given:alone"}
+    )
     solution = solve(problem, max_time=30.0, seed=0)
     assert not solution.solved and solution.seconds["total"] < 20.0
-    assert solution.warnings == ("sampler 'given' for 'on': it raised ValueError: the weights are gone",)
+    assert solution.warnings == (
+        "sampler 'given' for 'on': it raised ValueError: the weights are gone",
+    )
     assert "raised ValueError" in "\n".join(solution.explanation)
 
 
 class Learned:
     """The hand-made one with more success: as good as a learned one may get."""
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Placement]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Placement]:
         return SurfacePlacements().propose(scene, arguments, count, rng)
 
 
 def test_the_same_seed_gives_the_same_plan() -> None:
     texts = []
     for _ in range(2):
-        solution = solve(load_problem("cluttered", groundings={"on": Learned()}), max_time=60.0, seed=3)
+        solution = solve(
+            load_problem("cluttered", groundings={"on": Learned()}), max_time=60.0, seed=3
+        )
         texts.append(plan_text(solution).partition('\n "timing": {')[0])
     assert texts[0] == texts[1]
 
@@ -120,7 +138,9 @@ def test_names_from_a_registry() -> None:
         ("surface:mixed", ("surface",), "surface:mixed"),
     ],
 )
-def test_hand_made_ones_are_alone_unless_mixed(chosen: str, names: tuple[str, ...], text: str) -> None:
+def test_hand_made_ones_are_alone_unless_mixed(
+    chosen: str, names: tuple[str, ...], text: str
+) -> None:
     problem = load_problem("one_object", samplers={"on": chosen})
     assert problem.context.mixtures["on"].names == names
     assert problem.samplers["on"] == text
@@ -167,7 +187,9 @@ def test_a_pose_that_is_asked_for_anew_was_in_vain() -> None:
 
 def test_the_clock_does_not_see_a_quick_generator() -> None:
     """A few milliseconds a batch are far from the limit, so that shares depend on counts only."""
-    solution = solve(load_problem("four_objects", groundings={"on": Learned()}), max_time=60.0, seed=1)
+    solution = solve(
+        load_problem("four_objects", groundings={"on": Learned()}), max_time=60.0, seed=1
+    )
     assert solution.solved and not solution.warnings
 
 

@@ -28,7 +28,9 @@ def drawn(where: Scene, region: str, count: int = 300, name: str = "brick") -> l
 
 
 @pytest.mark.parametrize(("region", "size"), [("table", (1.0, 0.6)), ("crate_inside", (0.4, 0.4))])
-def test_every_placement_keeps_the_whole_outline_above_the_region(region: str, size: tuple[float, float]) -> None:
+def test_every_placement_keeps_the_whole_outline_above_the_region(
+    region: str, size: tuple[float, float]
+) -> None:
     faces = stable_faces_of(BRICK)
     for placement in drawn(SCENE, region):
         face = faces.ways[placement.face]
@@ -48,7 +50,10 @@ def test_the_face_that_is_down_is_kept_mostly() -> None:
 def test_under_a_low_ceiling_only_low_faces_are_proposed() -> None:
     tall = body("tall", Box((0.1, 0.1, 0.35)), (0.0, 0.0, 0.7))
     ways = stable_faces_of(tall).ways
-    heights = [ways[placed.face].extent for placed in drawn(scene(crate(), tall), "crate_inside", 50, "tall")]
+    heights = [
+        ways[placed.face].extent
+        for placed in drawn(scene(crate(), tall), "crate_inside", 50, "tall")
+    ]
     assert heights == pytest.approx([0.1] * 50)
     huge = body("huge", Box((0.31, 0.31, 0.31)), (0.0, 0.0, 0.7))
     assert drawn(scene(crate(), huge), "crate_inside", 50, "huge") == []
@@ -77,7 +82,9 @@ def test_a_body_larger_than_the_region_has_its_centre_above_it() -> None:
     rng = np.random.default_rng(1)
     for yaw in rng.uniform(-math.pi, math.pi, 100):
         x, y = position_inside(face, yaw, (1.0, 0.6), rng)
-        assert abs(x) <= 0.5 + 1e-9 and abs(y) <= 0.3 + 1e-9  # its centre of mass is its frame's origin
+        assert (
+            abs(x) <= 0.5 + 1e-9 and abs(y) <= 0.3 + 1e-9
+        )  # its centre of mass is its frame's origin
 
 
 def test_uniform_poses_fill_the_grown_box_of_the_regions_body() -> None:
@@ -96,4 +103,6 @@ def test_uniform_rotations_have_no_preferred_direction() -> None:
     mean = np.mean([pose.rotation for pose in poses], axis=0)
     assert np.abs(mean).max() < 0.05  # the mean of uniform rotations is zero
     ups = np.array([pose.rotation[2, 2] for pose in poses])
-    assert np.histogram(ups, 4, (-1.0, 1.0))[0] / 3000 == pytest.approx(np.full(4, 0.25), abs=0.04)  # Archimedes
+    assert np.histogram(ups, 4, (-1.0, 1.0))[0] / 3000 == pytest.approx(
+        np.full(4, 0.25), abs=0.04
+    )  # Archimedes

@@ -21,7 +21,11 @@ def file(tmp_path: Path) -> Path:
 
 def test_an_object_with_propose_or_classify_is_one(file: Path) -> None:
     assert python_grounding(file).propose(None, (), 3, None) == [3]  # type: ignore[union-attr, arg-type]
-    file.write_text(GOOD.replace("propose(self, scene, arguments, count, rng)", "classify(self, scene, arguments)"))
+    file.write_text(
+        GOOD.replace(
+            "propose(self, scene, arguments, count, rng)", "classify(self, scene, arguments)"
+        )
+    )
     assert hasattr(python_grounding(file), "classify")
 
 
@@ -32,7 +36,10 @@ def test_an_object_with_propose_or_classify_is_one(file: Path) -> None:
         ("grounding = 5\n", "'grounding' has neither propose nor classify"),
         (GOOD.replace("Mine()\n", "Mine\n"), "'grounding' is a class, not an object"),
         ("x = (\n", "it cannot be run: SyntaxError"),
-        ("import no_such_module\n", "it cannot be run: ModuleNotFoundError: No module named 'no_such_module'"),
+        (
+            "import no_such_module\n",
+            "it cannot be run: ModuleNotFoundError: No module named 'no_such_module'",
+        ),
         ("1 / 0\n", "it cannot be run: ZeroDivisionError"),
         ("# coding: no-such\n", "this is no Python file"),
     ],
@@ -64,7 +71,9 @@ def test_a_mode_is_parted_from_a_name(text: str, parts: tuple[str, str]) -> None
 
 
 def test_names_stay_names_and_files_become_objects(file: Path) -> None:
-    names, objects = given_by_files({"on": "uniform:alone", "upright": f"{file}:alone", "inside": str(file)})
+    names, objects = given_by_files(
+        {"on": "uniform:alone", "upright": f"{file}:alone", "inside": str(file)}
+    )
     assert names == {"on": "uniform:alone", "upright": "given:alone", "inside": "given"}
     assert objects.keys() == {"upright", "inside"}
     _, read_before = given_by_files({"on": "gone.py:mixed"}, {"gone.py": GOOD})

@@ -22,7 +22,9 @@ def rim(radius: float, height: float, count: int = 720) -> np.ndarray:
     """Points of both rims of a cylinder, which hold every extreme of it."""
     angle = np.linspace(0.0, 2 * math.pi, count, endpoint=False)
     circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    return np.concatenate([np.column_stack([circle, np.full(count, z)]) for z in (-height / 2, height / 2)])
+    return np.concatenate(
+        [np.column_stack([circle, np.full(count, z)]) for z in (-height / 2, height / 2)]
+    )
 
 
 def test_of_an_upright_box_they_are_its_corners() -> None:
@@ -38,7 +40,9 @@ def test_a_cube_on_its_edge_is_wider_by_the_root_of_two() -> None:
 
 @given(_TURNS)
 @settings(max_examples=40)
-def test_of_a_turned_box_and_hull_they_touch_the_extreme_corners(turn: tuple[float, float, float]) -> None:
+def test_of_a_turned_box_and_hull_they_touch_the_extreme_corners(
+    turn: tuple[float, float, float],
+) -> None:
     pose = Pose.from_xyz_rpy((0.1, -0.2, 0.3), turn)
     corners = pose.apply(cuboid((0.3, 0.5, 0.7)))
     for shape in (Box((0.3, 0.5, 0.7)), hull(cuboid((0.3, 0.5, 0.7)))):
@@ -54,8 +58,12 @@ def test_of_a_turned_cylinder_they_touch_its_rims(turn: tuple[float, float, floa
     points = pose.apply(rim(0.3, 0.8))
     low, high = bounds([Part(Cylinder(0.3, 0.8))], pose)
     # 720 points miss the extreme of a rim by at most r (1 - cos(quarter of a degree)).
-    assert (low <= points.min(axis=0) + 1e-12).all() and low == pytest.approx(points.min(axis=0), abs=5e-6)
-    assert (high >= points.max(axis=0) - 1e-12).all() and high == pytest.approx(points.max(axis=0), abs=5e-6)
+    assert (low <= points.min(axis=0) + 1e-12).all() and low == pytest.approx(
+        points.min(axis=0), abs=5e-6
+    )
+    assert (high >= points.max(axis=0) - 1e-12).all() and high == pytest.approx(
+        points.max(axis=0), abs=5e-6
+    )
 
 
 @given(_TURNS)

@@ -29,7 +29,9 @@ class Answering:
         return self.answer  # type: ignore[return-value]
 
 
-@pytest.mark.parametrize("answer", [0, 1, 0.25, True, np.float32(0.5), np.array(0.75), "0.5", 1 + 5e-7, -5e-7])
+@pytest.mark.parametrize(
+    "answer", [0, 1, 0.25, True, np.float32(0.5), np.array(0.75), "0.5", 1 + 5e-7, -5e-7]
+)
 def test_what_reads_as_a_number_in_0_1_is_a_probability(answer: object) -> None:
     assert probability(Answering(answer), SCENE, ["cup", "table"]) == float(answer)  # type: ignore[arg-type]
 

@@ -19,7 +19,9 @@ def area(corners: np.ndarray) -> float:
 
 
 def test_a_square_with_points_inside_and_on_its_edges_has_four_corners() -> None:
-    points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [1, 0], [2, 1], [0.3, 1.7]], dtype=float)
+    points = np.array(
+        [[0, 0], [2, 0], [2, 2], [0, 2], [1, 1], [1, 0], [2, 1], [0.3, 1.7]], dtype=float
+    )
     corners = outline(points)
     assert {tuple(corner) for corner in corners.tolist()} == {(0, 0), (2, 0), (2, 2), (0, 2)}
     assert area(corners) == pytest.approx(4.0)
@@ -32,7 +34,9 @@ def test_every_point_is_left_of_every_edge(points: list[tuple[int, int]]) -> Non
     if len(corners) < 3:  # on one line, or one point
         return
 
-    assert {tuple(corner) for corner in corners.tolist()} <= {tuple(point) for point in given_points.tolist()}
+    assert {tuple(corner) for corner in corners.tolist()} <= {
+        tuple(point) for point in given_points.tolist()
+    }
     assert area(corners) > 0.0
     for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         edge, to = b - a, given_points - a

@@ -18,7 +18,9 @@ TURNED = Pose.from_xyz_rpy((0.2, -0.3, 0.5), (0.4, 0.5, 0.6))
 
 @pytest.mark.parametrize("factor", [0.001, 0.5, 3.0])
 @pytest.mark.parametrize(
-    "shape", [Box((0.1, 0.2, 0.3)), Cylinder(0.1, 0.4), Sphere(0.15), hull(cuboid((0.1, 0.3, 0.2)))], ids=type
+    "shape",
+    [Box((0.1, 0.2, 0.3)), Cylinder(0.1, 0.4), Sphere(0.15), hull(cuboid((0.1, 0.3, 0.2)))],
+    ids=type,
 )
 def test_the_bounds_of_a_part_scale_about_the_bodys_origin(shape: Shape, factor: float) -> None:
     part = Part(shape, TURNED)
@@ -46,7 +48,11 @@ def test_a_scaled_hull_keeps_its_faces_and_cannot_be_written_to() -> None:
 
 def test_a_drawing_scales_its_mesh_its_pose_and_its_shapes() -> None:
     visual = Visual(
-        Path("drawn.obj"), (Part(Sphere(1.0), Pose((0.0, 1.0, 0.0))),), (1.0, -1.0, 2.0), TURNED, (1.0, 0.0, 0.0, 1.0)
+        Path("drawn.obj"),
+        (Part(Sphere(1.0), Pose((0.0, 1.0, 0.0))),),
+        (1.0, -1.0, 2.0),
+        TURNED,
+        (1.0, 0.0, 0.0, 1.0),
     )
     scaled = scale_visual(visual, 0.5)
     assert scaled.scale == (0.5, -0.5, 1.0)  # what was mirrored stays mirrored

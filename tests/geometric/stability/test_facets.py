@@ -49,7 +49,9 @@ def test_the_turn_brings_the_normal_down_by_the_shortest_way(x: float, y: float,
 def test_down_stays_and_up_turns_over() -> None:
     assert (rotation_to_down(np.array([0.0, 0.0, -1.0])) == np.eye(3)).all()
     over = rotation_to_down(np.array([0.0, 0.0, 1.0]))
-    assert (over @ [0.0, 0.0, 1.0] == [0.0, 0.0, -1.0]).all() and np.linalg.det(over) == pytest.approx(1.0)
+    assert (over @ [0.0, 0.0, 1.0] == [0.0, 0.0, -1.0]).all() and np.linalg.det(
+        over
+    ) == pytest.approx(1.0)
 
 
 def test_a_cube_tips_at_45_degrees_and_a_flat_box_later() -> None:
@@ -58,7 +60,12 @@ def test_a_cube_tips_at_45_degrees_and_a_flat_box_later() -> None:
 
 
 def test_the_nearest_edge_counts_and_beyond_it_nothing_holds() -> None:
-    for centre in ((0.07, 0.02), (-0.07, 0.02), (0.02, 0.07), (0.02, -0.07)):  # 3 cm from each side in turn
+    for centre in (
+        (0.07, 0.02),
+        (-0.07, 0.02),
+        (0.02, 0.07),
+        (0.02, -0.07),
+    ):  # 3 cm from each side in turn
         assert tipping_angle(SQUARE, np.array(centre), 0.03) == pytest.approx(math.radians(45))
     assert tipping_angle(SQUARE, np.array([0.1, 0.0]), 0.2) == pytest.approx(0.0)
     assert tipping_angle(SQUARE, np.array([0.13, 0.0]), 0.03) == pytest.approx(-math.radians(45))

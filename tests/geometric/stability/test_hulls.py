@@ -47,27 +47,42 @@ def test_a_balls_mesh_lies_within_it_and_nearly_fills_it() -> None:
 
 
 def test_the_hull_of_two_parts_spans_what_is_between_them() -> None:
-    apart = of(Part(Box((0.1, 0.1, 0.1)), Pose((-0.45, 0, 0))), Part(Box((0.1, 0.1, 0.1)), Pose((0.45, 0, 0))))
+    apart = of(
+        Part(Box((0.1, 0.1, 0.1)), Pose((-0.45, 0, 0))),
+        Part(Box((0.1, 0.1, 0.1)), Pose((0.45, 0, 0))),
+    )
     vertices, triangles = body_hull(apart)
-    assert volume(vertices, triangles) == pytest.approx(1.0 * 0.1 * 0.1)  # in the body's frame, not the world's
+    assert volume(vertices, triangles) == pytest.approx(
+        1.0 * 0.1 * 0.1
+    )  # in the body's frame, not the world's
     assert vertices.mean(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
 
 def test_the_centre_of_two_parts_is_weighed_by_volume() -> None:
-    uneven = of(Part(Box((0.1, 0.1, 0.1)), Pose((0, 0, 0))), Part(Box((0.1, 0.1, 0.3)), Pose((0, 0, 0.4))))
+    uneven = of(
+        Part(Box((0.1, 0.1, 0.1)), Pose((0, 0, 0))), Part(Box((0.1, 0.1, 0.3)), Pose((0, 0, 0.4)))
+    )
     assert centre_of_mass(uneven) == pytest.approx([0.0, 0.0, 0.3])  # 1 at 0 and 3 at 0.4
 
 
 @pytest.mark.parametrize("at", [(0.0, 0.0, 0.0), (3.0, -2.0, 1.0)])
-def test_the_centre_of_a_tetrahedron_is_the_mean_of_its_corners(at: tuple[float, float, float]) -> None:
-    assert centre_of_mass(of(Part(hull(TETRAHEDRON), Pose(at)))) == pytest.approx(np.array(at) + 0.25)
+def test_the_centre_of_a_tetrahedron_is_the_mean_of_its_corners(
+    at: tuple[float, float, float],
+) -> None:
+    assert centre_of_mass(of(Part(hull(TETRAHEDRON), Pose(at)))) == pytest.approx(
+        np.array(at) + 0.25
+    )
 
 
-@pytest.mark.parametrize("shape", [Box((0.2, 0.3, 0.4)), Cylinder(0.1, 0.5), Sphere(0.2), hull(cuboid((1, 2, 3)))])
+@pytest.mark.parametrize(
+    "shape", [Box((0.2, 0.3, 0.4)), Cylinder(0.1, 0.5), Sphere(0.2), hull(cuboid((1, 2, 3)))]
+)
 def test_the_centre_of_what_is_symmetric_is_its_middle(shape: Shape) -> None:
     pose = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
     assert centre_of_mass(of(Part(shape, pose))) == pytest.approx([0.1, 0.2, 0.3], abs=2e-3)
 
 
 def test_what_a_file_says_of_the_centre_of_mass_counts() -> None:
-    assert centre_of_mass(of(Part(Box((1, 1, 1))), center_of_mass=(0.1, 0.0, -0.4))) == pytest.approx([0.1, 0, -0.4])
+    assert centre_of_mass(
+        of(Part(Box((1, 1, 1))), center_of_mass=(0.1, 0.0, -0.4))
+    ) == pytest.approx([0.1, 0, -0.4])

@@ -47,13 +47,18 @@ def test_the_frames_of_a_placement_are_the_regions() -> None:
     assert upright == 0  # the way up that it has at the start
     pose = placed_pose(FACES, Placement("top", upright, 0.1, 0.05, 0.3), T_WORLD_TOP)
     assert pose.yaw == pytest.approx(0.4 + 0.3)
-    assert T_WORLD_TOP.inverse().apply(np.array([pose.position]))[0] == pytest.approx([0.1, 0.05, 0.1 + CONTACT_GAP])
+    assert T_WORLD_TOP.inverse().apply(np.array([pose.position]))[0] == pytest.approx(
+        [0.1, 0.05, 0.1 + CONTACT_GAP]
+    )
 
 
 def test_tilt_and_height_within_the_limits_are_taken_away() -> None:
     said = Placement("top", 0, 0.03, -0.02, 0.5)
     flush = placed_pose(FACES, said, T_WORLD_TOP)
-    above = Pose((flush.position[0], flush.position[1], flush.position[2] + 0.9 * SNAP_HEIGHT), flush.quaternion)
+    above = Pose(
+        (flush.position[0], flush.position[1], flush.position[2] + 0.9 * SNAP_HEIGHT),
+        flush.quaternion,
+    )
     leaning = above @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (math.radians(5.0), 0.0, 0.0))
     read = snap_to_region(FACES, leaning, TOP, T_WORLD_TOP)
     assert isinstance(read, Placement)
@@ -64,10 +69,18 @@ def test_tilt_and_height_within_the_limits_are_taken_away() -> None:
 def test_what_does_not_rest_is_rejected_with_its_kind() -> None:
     flush = placed_pose(FACES, Placement("top", 0, 0.0, 0.0, 0.0), T_WORLD_TOP)
     x, y, z = flush.position
-    high, low = (Pose((x, y, z + side * 1.1 * SNAP_HEIGHT), flush.quaternion) for side in (1.0, -1.0))
+    high, low = (
+        Pose((x, y, z + side * 1.1 * SNAP_HEIGHT), flush.quaternion) for side in (1.0, -1.0)
+    )
     on_edge = flush @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (math.radians(45.0), 0.0, 0.0))
-    assert reason(snap_to_region(FACES, high, TOP, T_WORLD_TOP)) == ("too high", RejectionKind.UNSTABLE)
-    assert reason(snap_to_region(FACES, low, TOP, T_WORLD_TOP)) == ("too low", RejectionKind.UNSTABLE)
+    assert reason(snap_to_region(FACES, high, TOP, T_WORLD_TOP)) == (
+        "too high",
+        RejectionKind.UNSTABLE,
+    )
+    assert reason(snap_to_region(FACES, low, TOP, T_WORLD_TOP)) == (
+        "too low",
+        RejectionKind.UNSTABLE,
+    )
     assert reason(snap_to_region(FACES, on_edge, TOP, T_WORLD_TOP))[0] == "stands on no stable face"
 
     shallow = Surface("top", "table", Pose(), (0.4, 0.3), clearance=0.15)
@@ -106,7 +119,9 @@ def test_a_face_is_found_again_by_its_rotation() -> None:
     assert again.index_of(np.full((3, 3), 0.5)) is None
 
 
-CAN = stable_faces_of(Body("can", (Part(Cylinder(0.03, 0.2)),), Pose((0.0, 0.0, 1.0)), movable=True))
+CAN = stable_faces_of(
+    Body("can", (Part(Cylinder(0.03, 0.2)),), Pose((0.0, 0.0, 1.0)), movable=True)
+)
 LOW = Surface("board", "shelf", Pose(), (0.4, 0.3), clearance=0.15)
 
 
@@ -114,10 +129,14 @@ LOW = Surface("board", "shelf", Pose(), (0.4, 0.3), clearance=0.15)
 def test_what_can_only_lie_under_a_ceiling_is_laid_on_its_curved_side(face: int) -> None:
     pose = certified_pose(CAN, Placement("board", face, 0.03, -0.02, 2.5), LOW, T_WORLD_TOP)
     assert isinstance(pose, Pose)
-    assert abs(pose.rotation[2, 2]) < 1e-9 and pose.position[2] == pytest.approx(0.7 + 0.03 + CONTACT_GAP)
+    assert abs(pose.rotation[2, 2]) < 1e-9 and pose.position[2] == pytest.approx(
+        0.7 + 0.03 + CONTACT_GAP
+    )
     read = snap_to_region(CAN, pose, LOW, T_WORLD_TOP)
     assert isinstance(read, Placement)
-    assert read.face == face and (read.x, read.y, read.yaw) == pytest.approx((0.03, -0.02, 2.5), abs=1e-9)
+    assert read.face == face and (read.x, read.y, read.yaw) == pytest.approx(
+        (0.03, -0.02, 2.5), abs=1e-9
+    )
 
 
 def test_where_it_can_stand_it_is_not_laid_down() -> None:

@@ -80,7 +80,9 @@ def test_many_lines_through_a_hull_against_a_look_at_points_along_them() -> None
         points = origins[k] + steps[:, None] * ways[k]
         inside = (np.abs(points) <= [0.2, 0.3, 0.4]).all(axis=1)
         if inside.any():
-            assert (starts[k, 0], ends[k, 0]) == pytest.approx((steps[inside][0], steps[inside][-1]), abs=2e-3)
+            assert (starts[k, 0], ends[k, 0]) == pytest.approx(
+                (steps[inside][0], steps[inside][-1]), abs=2e-3
+            )
             assert made.normals(first)[k, 0] @ ways[k] < 0 < made.normals(last)[k, 0] @ ways[k]
         else:
             assert ends[k, 0] - starts[k, 0] < 2e-3
@@ -91,7 +93,9 @@ def test_the_extent_of_a_box_along_a_slant_is_its_support_function() -> None:
     assert boxes(0.5).extent(direction) == pytest.approx((0.6 * 0.4 - 0.08, 0.6 * 0.6 + 0.08))
 
 
-def test_surface_points_are_on_the_faces_and_as_many_as_their_areas_ask(rng: np.random.Generator) -> None:
+def test_surface_points_are_on_the_faces_and_as_many_as_their_areas_ask(
+    rng: np.random.Generator,
+) -> None:
     points, normals = solid(Part(Box((0.1, 0.2, 0.4)))).surface_points(rng, 6000)
     half = np.array([0.05, 0.1, 0.2])
     axis = np.abs(normals).argmax(axis=1)

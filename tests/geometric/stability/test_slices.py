@@ -18,7 +18,9 @@ SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
 
 def pyramid() -> tuple[np.ndarray, np.ndarray]:
     """A square of 2 m on the floor and an apex 1 m above its middle."""
-    vertices, faces = hull_of(np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [0, 0, 1]], dtype=float))
+    vertices, faces = hull_of(
+        np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [0, 0, 1]], dtype=float)
+    )
     return vertices, faces.astype(np.int64)
 
 
@@ -62,7 +64,9 @@ def test_distances_are_those_to_the_nearest_of_many_points_of_the_polygon(seed: 
     corners = np.array([[0.0, 0.0], [1.0, 0.2], [1.3, 1.0], [0.4, 1.5], [-0.3, 0.8]])
     points = rng.uniform(-2.0, 3.0, (20, 2))
     share = np.linspace(0.0, 1.0, 200)[:, None]
-    rim = np.concatenate([a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)])
+    rim = np.concatenate(
+        [a + share * (b - a) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    )
     nearest = np.linalg.norm(points[:, None] - rim[None], axis=2).min(axis=1)
 
     found = distances(points, corners)

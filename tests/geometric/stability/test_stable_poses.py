@@ -34,20 +34,32 @@ def test_a_box_rests_on_six_faces() -> None:
     for face in found:
         axis = int(np.argmax(np.abs(face.rotation[2])))
         others = [size[i] for i in range(3) if i != axis]
-        assert face.height == pytest.approx(size[axis] / 2) and face.extent == pytest.approx(size[axis])
+        assert face.height == pytest.approx(size[axis] / 2) and face.extent == pytest.approx(
+            size[axis]
+        )
         assert face.angle == pytest.approx(math.atan2(min(others) / 2, size[axis] / 2))
-        assert np.allclose(face.rotation @ face.rotation.T, np.eye(3)) and np.linalg.det(face.rotation) > 0
+        assert (
+            np.allclose(face.rotation @ face.rotation.T, np.eye(3))
+            and np.linalg.det(face.rotation) > 0
+        )
 
 
 def test_the_present_face_comes_first() -> None:
-    lying = Body("thing", (Part(Box((0.05, 0.05, 0.3))),), Pose.from_xyz_rpy((0, 0, 1), (math.pi / 2, 0, 0)), True)
+    lying = Body(
+        "thing",
+        (Part(Box((0.05, 0.05, 0.3))),),
+        Pose.from_xyz_rpy((0, 0, 1), (math.pi / 2, 0, 0)),
+        True,
+    )
     first = stable_faces_of(lying).faces[0]
     assert first.extent == pytest.approx(0.05)
     assert -first.rotation[2] @ -lying.pose.rotation[2] > 0.99
 
 
 def test_a_tower_does_not_stand_on_its_edge() -> None:
-    assert all(face.extent < 0.2 for face in faces(Box((0.02, 0.3, 0.02))))  # 0.3 m on 2 cm tips at 4 degrees
+    assert all(
+        face.extent < 0.2 for face in faces(Box((0.02, 0.3, 0.02)))
+    )  # 0.3 m on 2 cm tips at 4 degrees
 
 
 def test_a_can_stands_and_a_ball_does_not() -> None:
@@ -60,11 +72,14 @@ def test_a_can_stands_and_a_ball_does_not() -> None:
 def test_a_part_at_a_side_moves_the_centre_and_the_tipping_edge() -> None:
     """An L: a foot 0.2 m long and a tower at its end."""
     shape = body(
-        Part(Box((0.2, 0.06, 0.02)), Pose((0.0, 0.0, 0.01))), Part(Box((0.04, 0.06, 0.2)), Pose((0.08, 0.0, 0.12)))
+        Part(Box((0.2, 0.06, 0.02)), Pose((0.0, 0.0, 0.01))),
+        Part(Box((0.04, 0.06, 0.2)), Pose((0.08, 0.0, 0.12))),
     )
     centre = centre_of_mass(shape)
     foot, tower = 0.2 * 0.06 * 0.02, 0.04 * 0.06 * 0.2
-    assert centre == pytest.approx([0.08 * tower / (foot + tower), 0.0, (0.01 * foot + 0.12 * tower) / (foot + tower)])
+    assert centre == pytest.approx(
+        [0.08 * tower / (foot + tower), 0.0, (0.01 * foot + 0.12 * tower) / (foot + tower)]
+    )
     standing = stable_faces_of(shape).faces[0]
     assert standing.height == pytest.approx(0.0, abs=1e-9)
     assert standing.angle == pytest.approx(math.atan2(min(0.03, 0.1 - centre[0]), centre[2]))

@@ -46,7 +46,9 @@ def start(problem: Problem) -> Pose:
 
 
 def test_nothing_is_in_the_way_from_above(problem: Problem) -> None:
-    assert approach.test_approach(problem.context, "box", start(problem), from_above(), call()) is True
+    assert (
+        approach.test_approach(problem.context, "box", start(problem), from_above(), call()) is True
+    )
     assert approach_hits(problem.context, start(problem), from_above(), []) is None
 
 
@@ -58,7 +60,9 @@ def test_from_below_the_table_is(problem: Problem) -> None:
 
 
 @pytest.mark.parametrize(("above", "hits"), [(0.25, True), (0.5, True), (0.65, False)])
-def test_a_body_above_is_in_the_way_as_far_as_the_hand_draws_back(problem: Problem, above: float, hits: bool) -> None:
+def test_a_body_above_is_in_the_way_as_far_as_the_hand_draws_back(
+    problem: Problem, above: float, hits: bool
+) -> None:
     other = shifted(start(problem), z=above)
     found = approach_hits(problem.context, start(problem), from_above(), [("lamp", other)])
     # The lamp is 0.4 m high: its foot is 0.2 m lower. The hand is about 0.17 m long above the tool, which is at 0.04.
@@ -71,11 +75,19 @@ def test_a_movable_body_in_the_way_is_named_as_a_blocker(problem: Problem) -> No
     found = approach.test_approach_clear(context, "box", pose, from_above(), "lamp", there, call())
     assert isinstance(found, Rejection) and (found.blockers, found.bodies) == (("lamp",), ("lamp",))
     away = shifted(pose, x=5.0)
-    assert approach.test_approach_clear(context, "box", pose, from_above(), "lamp", away, call()) is True
-    assert approach.test_approach_clear(context, "box", pose, from_above(), "box", there, call()) is True  # itself
+    assert (
+        approach.test_approach_clear(context, "box", pose, from_above(), "lamp", away, call())
+        is True
+    )
+    assert (
+        approach.test_approach_clear(context, "box", pose, from_above(), "box", there, call())
+        is True
+    )  # itself
 
 
-@pytest.mark.parametrize(("gap", "clear"), [(2 * NEIGHBOUR, True), (0.5 * NEIGHBOUR, False), (-0.01, False)])
+@pytest.mark.parametrize(
+    ("gap", "clear"), [(2 * NEIGHBOUR, True), (0.5 * NEIGHBOUR, False), (-0.01, False)]
+)
 def test_placed_bodies_keep_some_air(problem: Problem, gap: float, clear: bool) -> None:
     upright = Pose((0.0, 0.0, 2.0))
     lamp = problem.scene.bodies["lamp"].parts[0].shape
@@ -83,7 +95,9 @@ def test_placed_bodies_keep_some_air(problem: Problem, gap: float, clear: bool) 
     found = collisions.test_pose_clear(problem.context, "box", upright, "lamp", beside, call())
     assert (found is True) == clear
     assert found is True or (isinstance(found, Rejection) and found.blockers == ("lamp",))
-    assert collisions.test_pose_clear(problem.context, "box", upright, "box", upright, call()) is True
+    assert (
+        collisions.test_pose_clear(problem.context, "box", upright, "box", upright, call()) is True
+    )
 
 
 def test_a_wider_opening_needs_more_room(problem: Problem) -> None:
@@ -94,4 +108,9 @@ def test_a_wider_opening_needs_more_room(problem: Problem) -> None:
     x, y, z = frame.apply(np.array([[0.0, 0.05 + lamp, 0.0]]))[0]
     beside = Pose((float(x), float(y), float(z)))
     assert approach_hits(problem.context, pose, from_above(), [("lamp", beside)]) == "lamp"
-    assert approach_hits(problem.context, pose, replace(from_above(), opening=0.08), [("lamp", beside)]) == "lamp"
+    assert (
+        approach_hits(
+            problem.context, pose, replace(from_above(), opening=0.08), [("lamp", beside)]
+        )
+        == "lamp"
+    )

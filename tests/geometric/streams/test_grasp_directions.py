@@ -28,9 +28,13 @@ UP = np.array([0.0, 0.0, 1.0])
 _NUMBER = st.floats(-10, 10)
 
 
-def axes(shape: Shape, widest: float = 0.08, up: np.ndarray = UP, pose: Pose = Pose()) -> np.ndarray:
+def axes(
+    shape: Shape, widest: float = 0.08, up: np.ndarray = UP, pose: Pose = Pose()
+) -> np.ndarray:
     body = Body("thing", (Part(shape, pose),), Pose(), True)
-    return np.array(closing_axes(body, Solid(body), up, widest, np.random.default_rng(0))).reshape(-1, 3)
+    return np.array(closing_axes(body, Solid(body), up, widest, np.random.default_rng(0))).reshape(
+        -1, 3
+    )
 
 
 def has(found: np.ndarray, direction: list[float]) -> bool:
@@ -50,7 +54,9 @@ def test_a_turned_boxs_edges_are_its_own() -> None:
     assert len(found) == 2 and has(found, [math.cos(0.5), math.sin(0.5), 0.0])
 
 
-@pytest.mark.parametrize("shape", [Cylinder(0.03, 0.1), Sphere(0.03), hull(cuboid((0.05, 0.06, 0.1)))], ids=type)
+@pytest.mark.parametrize(
+    "shape", [Cylinder(0.03, 0.1), Sphere(0.03), hull(cuboid((0.05, 0.06, 0.1)))], ids=type
+)
 def test_round_and_other_bodies_are_grasped_all_around(shape: Shape) -> None:
     found = axes(shape)
     assert np.linalg.norm(found, axis=1) == pytest.approx(np.ones(len(found)))
@@ -62,7 +68,9 @@ def test_round_and_other_bodies_are_grasped_all_around(shape: Shape) -> None:
 
 
 def test_the_narrowest_directions_of_a_hull_are_among_them() -> None:
-    found = axes(hull(cuboid((0.04, 0.3, 0.1)) @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])))
+    found = axes(
+        hull(cuboid((0.04, 0.3, 0.1)) @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]]))
+    )
     nearest = np.degrees(np.arccos((found @ [0.8, 0.6, 0.0]).max()))
     assert nearest <= 1.0  # of the 180 that are looked at
 
@@ -101,7 +109,13 @@ def test_slanted_approaches_are_between_down_and_level() -> None:
     assert tilts == [30, 45, 60]
 
 
-@pytest.mark.parametrize(("step", "count"), [(math.pi / 2, 4), (math.radians(15), 24), (2 * math.pi, 1)])
+@pytest.mark.parametrize(
+    ("step", "count"), [(math.pi / 2, 4), (math.radians(15), 24), (2 * math.pi, 1)]
+)
 def test_angles_go_once_around(step: float, count: int) -> None:
     found = angles(step)
-    assert len(found) == count and found[0] == 0.0 and (np.diff(found) == pytest.approx(step) or count == 1)
+    assert (
+        len(found) == count
+        and found[0] == 0.0
+        and (np.diff(found) == pytest.approx(step) or count == 1)
+    )

@@ -46,9 +46,12 @@ BODIES = {
     "ball": body(Sphere(0.035)),
     "cube": body(Box((0.05, 0.05, 0.05))),
     "thin plate": body(Box((0.15, 0.15, 0.012))),
-    "lying can": body(Cylinder(0.033, 0.102), pose=Pose.from_xyz_rpy((0.0, 0.0, 0.8), (math.pi / 2, 0.0, 0.3))),
+    "lying can": body(
+        Cylinder(0.033, 0.102), pose=Pose.from_xyz_rpy((0.0, 0.0, 0.8), (math.pi / 2, 0.0, 0.3))
+    ),
     "hammer": body(
-        Part(wedge_block((0.03, 0.03, 0.15))), Part(wedge_block((0.12, 0.03, 0.03)), Pose((0.0, 0.0, 0.09)))
+        Part(wedge_block((0.03, 0.03, 0.15))),
+        Part(wedge_block((0.12, 0.03, 0.03)), Pose((0.0, 0.0, 0.09))),
     ),
 }
 
@@ -59,11 +62,17 @@ def robot() -> Robot:
 
 
 def first(robot: Robot, thing: Body, count: int, seed: int = 0) -> list[Grasp]:
-    grasps = (one for one in sample_grasps(thing, robot, np.random.default_rng(seed)) if isinstance(one, Grasp))
+    grasps = (
+        one
+        for one in sample_grasps(thing, robot, np.random.default_rng(seed))
+        if isinstance(one, Grasp)
+    )
     return list(itertools.islice(grasps, count))
 
 
-def hand_hits(robot: Robot, thing: Body, T_body_tool: np.ndarray, opening: float, links: slice) -> bool:
+def hand_hits(
+    robot: Robot, thing: Body, T_body_tool: np.ndarray, opening: float, links: slice
+) -> bool:
     """Whether links of the hand touch the body, by their own forward kinematics."""
     T_body_hand = T_body_tool @ robot.T_hand_tool.inverse().matrix
     poses = [T_body_hand]
@@ -91,10 +100,16 @@ def test_grasps_hold(robot: Robot, name: str) -> None:
         for back in (0.0, 0.01, 0.03, 0.07, 0.1):
             moved = T.copy()
             moved[:3, 3] -= back * T[:3, 2]
-            assert not hand_hits(robot, thing, moved, robot.opening, slice(0, 3))  # open, here and on its way
-        assert not hand_hits(robot, thing, T, grasp.opening, slice(0, 3))  # holding does not penetrate
+            assert not hand_hits(
+                robot, thing, moved, robot.opening, slice(0, 3)
+            )  # open, here and on its way
+        assert not hand_hits(
+            robot, thing, T, grasp.opening, slice(0, 3)
+        )  # holding does not penetrate
         for finger in (slice(1, 2), slice(2, 3)):
-            assert hand_hits(robot, thing, T, grasp.opening - 0.002, finger)  # and both fingers do touch
+            assert hand_hits(
+                robot, thing, T, grasp.opening - 0.002, finger
+            )  # and both fingers do touch
 
 
 @pytest.mark.parametrize("name", sorted(BODIES))
@@ -108,26 +123,34 @@ def test_contacts_oppose_each_other(robot: Robot, name: str) -> None:
             contact = solid.solid_at(T[:3, 3] + T[:3, :3] @ (x, 0.0, z), T[:3, 1])
             if contact is not None and contact.end - contact.start > grasp.opening - 0.004:
                 assert abs(contact.start + contact.end) < 0.004
-                opposed += contact.end_normal @ T[:3, 1] > math.cos(CONE) and -contact.start_normal @ T[
-                    :3, 1
-                ] > math.cos(CONE)
+                opposed += contact.end_normal @ T[:3, 1] > math.cos(
+                    CONE
+                ) and -contact.start_normal @ T[:3, 1] > math.cos(CONE)
     assert opposed >= 25
 
 
 def test_a_box_is_grasped_from_above_and_from_the_sides(robot: Robot) -> None:
     thing = BODIES["cube"]
-    directions = [thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2] for grasp in first(robot, thing, 12)]
+    directions = [
+        thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2]
+        for grasp in first(robot, thing, 12)
+    ]
     heights = np.array(directions)[:, 2]
     assert np.any(heights < -0.99) and np.sum(np.abs(heights) < 0.01) >= 4
     assert np.all(heights < 0.1)  # none of the canonical ones from below
-    sides = {(round(x), round(y)) for x, y, z in np.array(directions) @ thing.pose.rotation if abs(z) < 0.01}
+    sides = {
+        (round(x), round(y))
+        for x, y, z in np.array(directions) @ thing.pose.rotation
+        if abs(z) < 0.01
+    }
     assert sides == {(1, 0), (-1, 0), (0, 1), (0, -1)}
 
 
 def test_up_is_the_bodys_present_up(robot: Robot) -> None:
     lying = BODIES["lying can"]
     heights = [
-        (lying.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2] for grasp in first(robot, lying, 12)
+        (lying.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2]
+        for grasp in first(robot, lying, 12)
     ]
     assert min(heights) < -0.99 and max(heights) < 0.1
 
@@ -135,7 +158,8 @@ def test_up_is_the_bodys_present_up(robot: Robot) -> None:
 def test_slanted_grasps_come_too(robot: Robot) -> None:
     thing = BODIES["cube"]
     heights = [
-        (thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2] for grasp in first(robot, thing, 60)
+        (thing.pose.rotation @ grasp.T_tool_body.inverse().rotation[:, 2])[2]
+        for grasp in first(robot, thing, 60)
     ]
     for angle in (30, 45, 60):
         assert any(abs(height + math.cos(math.radians(angle))) < 0.01 for height in heights)
@@ -143,7 +167,11 @@ def test_slanted_grasps_come_too(robot: Robot) -> None:
 
 def test_the_stream_goes_on_and_differs_by_seed_only(robot: Robot) -> None:
     thing = BODIES["soup can"]
-    once, again, other = first(robot, thing, 80), first(robot, thing, 80), first(robot, thing, 80, seed=1)
+    once, again, other = (
+        first(robot, thing, 80),
+        first(robot, thing, 80),
+        first(robot, thing, 80, seed=1),
+    )
     assert once == again and once != other
     assert len(once) == 80 and len(set(once)) == 80
 
@@ -166,9 +194,12 @@ def test_a_thin_body_on_its_support_is_not_grasped_through_it(robot: Robot) -> N
 
 
 @pytest.mark.parametrize(
-    ("width", "fits"), [(0.074, True), (0.076, True), (0.0785, True), (0.0795, False), (0.09, False)]
+    ("width", "fits"),
+    [(0.074, True), (0.076, True), (0.0785, True), (0.0795, False), (0.09, False)],
 )
-def test_the_hand_grasps_up_to_its_opening_less_the_clearance(robot: Robot, width: float, fits: bool) -> None:
+def test_the_hand_grasps_up_to_its_opening_less_the_clearance(
+    robot: Robot, width: float, fits: bool
+) -> None:
     grasps = first(robot, body(Box((width, width, 0.12))), 3)
     assert bool(grasps) is fits
     for grasp in grasps:
@@ -189,10 +220,21 @@ def test_a_grasp_is_strained_by_weight_times_lever() -> None:
     levers = [much(x) for x in (0.0, 0.03, 0.06, 0.12)]
     assert levers == sorted(levers) and levers[0] < 0.2
     # By hand: 2 pads x 25 N x the mean distance on the patch against 1.3 x 0.5 kg x 9.81 m/s2 x 12 cm.
-    arm = 1.3 * 0.5 * GRAVITY * 0.12 / (2 * 25.0 * (0.001 + float(np.linalg.norm(patch, axis=1).mean())))
+    arm = (
+        1.3
+        * 0.5
+        * GRAVITY
+        * 0.12
+        / (2 * 25.0 * (0.001 + float(np.linalg.norm(patch, axis=1).mean())))
+    )
     assert much(0.12) == pytest.approx(arm, rel=0.15)
     assert much(0.12) == much(-0.12)
-    assert much(0.06, mass=1.0) > much(0.06) > much(0.06, friction=1.0) > much(0.06, friction=1.0, force=100.0)
+    assert (
+        much(0.06, mass=1.0)
+        > much(0.06)
+        > much(0.06, friction=1.0)
+        > much(0.06, friction=1.0, force=100.0)
+    )
 
 
 def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
@@ -201,7 +243,10 @@ def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:
     assert max(aside[:8]) < 0.03
     assert max(aside) > 0.06  # none is lost
     uneven = replace(long, center_of_mass=(0.1, 0.0, 0.0))
-    assert all(abs(grasp.T_tool_body.inverse().position[0] - 0.1) < 0.03 for grasp in first(robot, uneven, 8))
+    assert all(
+        abs(grasp.T_tool_body.inverse().position[0] - 0.1) < 0.03
+        for grasp in first(robot, uneven, 8)
+    )
 
 
 def test_a_tall_panel_is_grasped_aslant_over_its_centre(robot: Robot) -> None:
@@ -231,14 +276,21 @@ def load(folder: Path, thing: str) -> list[object]:
 
 def test_what_is_too_heavy_is_refused_in_words(tmp_path: Path) -> None:
     (said,) = load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 3.5")
-    assert isinstance(said, Rejection) and said.reason == "thing weighs 3.5 kg, the robot lifts 3 kg"
+    assert (
+        isinstance(said, Rejection) and said.reason == "thing weighs 3.5 kg, the robot lifts 3 kg"
+    )
     (said,) = load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0, friction: 0.1")
     assert isinstance(said, Rejection) and said.given_up
     assert "would slip: with its friction of 0.1 the fingers, at 50 N, hold 1 kg" in said.reason
-    assert all(isinstance(one, Grasp) for one in load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0"))
+    assert all(
+        isinstance(one, Grasp)
+        for one in load(tmp_path, "box: [0.05, 0.05, 0.1], on: table, mass: 2.0")
+    )
 
 
-def test_a_fair_grasp_does_not_wait_for_random_ones(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fair_grasp_does_not_wait_for_random_ones(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Neither do firm random ones wait for each other."""
     closed: list[bool] = []
     close = HandFit.close
@@ -253,7 +305,13 @@ def test_a_fair_grasp_does_not_wait_for_random_ones(robot: Robot, monkeypatch: p
     assert len(first(robot, heavy, 3)) == 3
     assert sum(closed) < 20
     closed.clear()
-    ring = [Pose.from_xyz_yaw(0.08 * math.cos(a), 0.08 * math.sin(a), 0.0, a) for a in np.arange(8) * math.pi / 4]
-    hollow = replace(body(Box((0.01, 0.07, 0.06))), parts=tuple(Part(Box((0.01, 0.07, 0.06)), pose) for pose in ring))
+    ring = [
+        Pose.from_xyz_yaw(0.08 * math.cos(a), 0.08 * math.sin(a), 0.0, a)
+        for a in np.arange(8) * math.pi / 4
+    ]
+    hollow = replace(
+        body(Box((0.01, 0.07, 0.06))),
+        parts=tuple(Part(Box((0.01, 0.07, 0.06)), pose) for pose in ring),
+    )
     assert len(first(robot, hollow, 1)) == 1
     assert sum(closed) == 1

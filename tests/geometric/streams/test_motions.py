@@ -30,7 +30,9 @@ def test_segments_follow_each_other_and_are_free(seed: int) -> None:
                     grasped = (tool @ held.T_tool_body).matrix
                     assert np.abs(grasped - poses.pop(held.body).matrix).max() < 1e-4
                 elif held is not None:
-                    poses[held.body] = Pose.from_matrix(context.kinematics.tool(conf)) @ held.T_tool_body
+                    poses[held.body] = (
+                        Pose.from_matrix(context.kinematics.tool(conf)) @ held.T_tool_body
+                    )
                     held = None
                 continue
             joints = slice(0, 3) if segment.part == "base" else slice(3, 10)

@@ -12,7 +12,12 @@ import pytest
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.streams.collisions import near
 from tamp.geometric.streams.loads import TILT, Level
-from tamp.geometric.streams.movable_supports import inside, sample_inside_movable, sample_on_movable, shift
+from tamp.geometric.streams.movable_supports import (
+    inside,
+    sample_inside_movable,
+    sample_on_movable,
+    shift,
+)
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import Problem, load_problem
 from tamp.simulation.engines import open_world
@@ -59,7 +64,9 @@ def drawn(poses: Iterable[Pose | Rejection], count: int) -> list[Pose]:
 def test_what_is_on_a_plate_is_over_the_post_under_it(problem: Problem) -> None:
     context = problem.context
     plate = context.scene.bodies["plate"].pose
-    poses = drawn(sample_on_movable(context, "cube", "plate", "plate", plate, call(plate=plate)), 20)
+    poses = drawn(
+        sample_on_movable(context, "cube", "plate", "plate", plate, call(plate=plate)), 20
+    )
     assert len(poses) == 20
     post = np.array(context.scene.bodies["post"].pose.position[:2])
     assert max(np.abs(np.array(pose.position[:2]) - post).max() for pose in poses) < 0.025
@@ -78,7 +85,10 @@ def test_a_cavity_is_where_its_body_is(problem: Problem) -> None:
     for pose in poses:
         x, y, _ = (turned.inverse() @ pose).position
         assert abs(x) < 0.14 and abs(y) < 0.09
-        assert not near(context, "cube", pose, "crate", turned) or min(0.14 - abs(x), 0.09 - abs(y)) < 0.032
+        assert (
+            not near(context, "cube", pose, "crate", turned)
+            or min(0.14 - abs(x), 0.09 - abs(y)) < 0.032
+        )
 
 
 def test_a_place_on_its_side_carries_nothing(problem: Problem) -> None:

@@ -34,7 +34,9 @@ def test_random_grasps_in_a_deep_compartment_reach_into_it(tmp_path: Path) -> No
     thing = context.scene.bodies["thing"]
 
     def share(grasps: list[Grasp]) -> float:
-        return sum(approach_test(context, "thing", thing.pose, one, call()) is True for one in grasps) / len(grasps)
+        return sum(
+            approach_test(context, "thing", thing.pose, one, call()) is True for one in grasps
+        ) / len(grasps)
 
     advised = values(sample_grasp(context, "thing", call()), 300)[150:]
     plain = values(sample_grasps(thing, context.robot, np.random.default_rng(0)), 300)[150:]

@@ -25,7 +25,9 @@ goal: (on can table)
 """
 
 
-def walled(folder: Path, door: float, middle: float = 0.3, height: float = 2.0, *, x: float = 0.8) -> Problem:
+def walled(
+    folder: Path, door: float, middle: float = 0.3, height: float = 2.0, *, x: float = 0.8
+) -> Problem:
     """A wall across the room with a door, the robot on one side and a can on the other."""
     walls = ""
     for i, (low, high) in enumerate(((-3.0, middle - door / 2), (middle + door / 2, 3.0))):
@@ -51,7 +53,9 @@ def test_a_narrow_door_is_named_with_its_width(door: float, middle: float, tmp_p
 
 @pytest.mark.parametrize("door", [0.70, 0.74, 0.9, 2.0])
 @pytest.mark.parametrize("middle", [-1.0, 0.3, 1.27])
-def test_a_door_that_the_base_fits_through_proves_nothing(door: float, middle: float, tmp_path: Path) -> None:
+def test_a_door_that_the_base_fits_through_proves_nothing(
+    door: float, middle: float, tmp_path: Path
+) -> None:
     assert reached(walled(tmp_path, door, middle)) is None
 
 
@@ -70,13 +74,16 @@ def test_what_the_arm_reaches_over_a_low_wall_is_in_reach(tmp_path: Path) -> Non
 def test_what_may_be_taken_away_is_no_wall(tmp_path: Path) -> None:
     path = tmp_path / "boxes.yaml"
     walls = "".join(
-        f"  box_{i}: {{box: [0.3, 0.3, 0.5], on: floor, at: [-0.7, {-2.7 + 0.31 * i:.2f}]}}\n" for i in range(18)
+        f"  box_{i}: {{box: [0.3, 0.3, 0.5], on: floor, at: [-0.7, {-2.7 + 0.31 * i:.2f}]}}\n"
+        for i in range(18)
     )
     path.write_text(ROOM.format(x=0.8, y=0.0, yaw=0.0, walls=walls), encoding="utf-8")
     assert reached(load_problem(path)) is None
 
 
-def test_the_base_stands_nowhere_beyond_what_is_called_closed(tmp_path: Path, rng: np.random.Generator) -> None:
+def test_the_base_stands_nowhere_beyond_what_is_called_closed(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
     """Where the base can be driven by any chain of free places, nothing near is called out of reach."""
     context = walled(tmp_path, 0.8).context
     passage = context.passage

@@ -40,7 +40,9 @@ def test_what_is_out_of_the_room_is_out_of_reach(tmp_path: Path) -> None:
         assert test_reachable(context, "can", Pose(position), call()) is not True
 
 
-def test_the_hand_and_wrist_hit_only_what_the_robot_hits(tmp_path: Path, rng: np.random.Generator) -> None:
+def test_the_hand_and_wrist_hit_only_what_the_robot_hits(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
     """HandCollisions places hand and wrist by the tool alone; the whole robot at that pose must agree."""
     context = problem_with("can", tmp_path).context
     hand: HandCollisions = context.hand
@@ -49,7 +51,9 @@ def test_the_hand_and_wrist_hit_only_what_the_robot_hits(tmp_path: Path, rng: np
     hits = 0
     for _ in range(1500):
         x, y = (-1.0, 0.3) if rng.random() < 0.5 else (1.0, 0.0)
-        base = np.array([x + rng.uniform(-0.3, 0.3), y + rng.uniform(-0.4, 0.4), rng.uniform(-3, 3)])
+        base = np.array(
+            [x + rng.uniform(-0.3, 0.3), y + rng.uniform(-0.4, 0.4), rng.uniform(-3, 3)]
+        )
         conf = context.conf(base, rng.uniform(lower, upper))
         said = hand.hits([context.kinematics.tool(conf)], context.robot.opening, None, fixed)
         if said is not None:
@@ -105,7 +109,10 @@ def test_inverse_kinematics_yields_straight_certified_reaches(name: str, tmp_pat
             found = values(inverse_kinematics(context, name, pose, grasp, call(2)), 1, most=6)
             for base, reach in found:
                 checked += 1
-                conf = [np.array([context.conf(base.array, q) for q in path]) for path in (reach.approach, reach.lift)]
+                conf = [
+                    np.array([context.conf(base.array, q) for q in path])
+                    for path in (reach.approach, reach.lift)
+                ]
                 wanted = pose.matrix @ grasp.T_tool_body.inverse().matrix
                 for at in (conf[0][-1], conf[1][0]):
                     assert np.abs(context.kinematics.tool(at) - wanted).max() < 1e-5
@@ -118,7 +125,10 @@ def test_inverse_kinematics_yields_straight_certified_reaches(name: str, tmp_pat
                     for i, c in enumerate(conf[1])
                     if abs(c[3:] - conf[1][0][3:]).max() > 0 and on(context, c, wanted[:3, 3] + up)
                 )
-                assert straight(context, conf[1][: rows + 1], wanted[:3, 3], wanted[:3, 3] + up) < 0.002
+                assert (
+                    straight(context, conf[1][: rows + 1], wanted[:3, 3], wanted[:3, 3] + up)
+                    < 0.002
+                )
                 assert straight(context, conf[1][rows:], wanted[:3, 3] + up, begin + up) < 0.002
                 assert context.fixed_only(None).path_hits(conf[0]) is None
                 assert context.fixed_only(grasp).path_hits(conf[1]) is None

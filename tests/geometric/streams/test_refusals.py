@@ -32,8 +32,12 @@ from tests.geometric.streams.scenes import call, problem_with, values
 OPENING = 0.08
 
 
-def body(shape: Shape, rpy: tuple[float, float, float] = (0.0, 0.0, 0.0), support: str | None = "table") -> Body:
-    return Body("thing", (Part(shape),), Pose.from_xyz_rpy((0.0, 0.0, 1.0), rpy), True, support=support)
+def body(
+    shape: Shape, rpy: tuple[float, float, float] = (0.0, 0.0, 0.0), support: str | None = "table"
+) -> Body:
+    return Body(
+        "thing", (Part(shape),), Pose.from_xyz_rpy((0.0, 0.0, 1.0), rpy), True, support=support
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,7 +59,11 @@ def test_only_widths_that_no_hand_takes_are_a_proof(shape: Shape, proven: bool) 
 def test_a_mesh_proves_nothing_and_its_width_is_named() -> None:
     corners, triangles = body_hull(body(Box((0.2, 0.2, 0.2))))
     said = no_grasp(body(Hull(corners, triangles)), OPENING)
-    assert said.given_up and "20.0 cm" in said.reason and narrowest(body(Hull(corners, triangles))) is None
+    assert (
+        said.given_up
+        and "20.0 cm" in said.reason
+        and narrowest(body(Hull(corners, triangles))) is None
+    )
 
 
 def test_a_can_that_lies_may_lie_elsewhere_and_a_ball_may_not() -> None:
@@ -65,10 +73,19 @@ def test_a_can_that_lies_may_lie_elsewhere_and_a_ball_may_not() -> None:
     nearest = lying.nearest(lying.body.pose.rotation)
     assert nearest is not None and lying.ways[nearest] is lying.lying
     standing = stable_faces_of(body(Cylinder(0.03, 0.2)))
-    assert standing.lying is None and standing.under(0.25) == (0, 1) and not stable_faces_of(body(Sphere(0.03))).curved
-    assert [standing.face(n).extent for n in standing.under(0.1)] == pytest.approx([0.06] * len(standing.curved))
+    assert (
+        standing.lying is None
+        and standing.under(0.25) == (0, 1)
+        and not stable_faces_of(body(Sphere(0.03))).curved
+    )
+    assert [standing.face(n).extent for n in standing.under(0.1)] == pytest.approx(
+        [0.06] * len(standing.curved)
+    )
     assert stable_faces_of(body(Sphere(0.03))).lying is None
-    assert stable_faces_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.0), support=None)).lying is None
+    assert (
+        stable_faces_of(body(Cylinder(0.03, 0.2), (math.pi / 2, 0.0, 0.0), support=None)).lying
+        is None
+    )
 
 
 def test_a_body_that_leans_does_not_rest_so() -> None:
@@ -92,7 +109,9 @@ def test_a_box_that_fits_no_way_up_is_a_proof(tmp_path: Path) -> None:
 def test_a_box_that_fits_on_an_unsteady_side_proves_nothing(tmp_path: Path) -> None:
     context = problem_with("thing", tmp_path, "box: [0.03, 0.36, 0.3]").context
     slot = replace(context.scene.cavities["cupboard_1"], size=(0.4, 0.06, 0.33))
-    refused = no_room(context, "thing", slot)  # on 3 cm by 36 cm it tips at 6 degrees; on 3 cm by 30 cm it is too tall
+    refused = no_room(
+        context, "thing", slot
+    )  # on 3 cm by 36 cm it tips at 6 degrees; on 3 cm by 30 cm it is too tall
     assert refused is None or refused.given_up
     narrower = no_room(context, "thing", replace(slot, size=(0.2, 0.2, 0.2)))
     assert narrower is not None and not narrower.given_up and "protrudes" in narrower.reason
@@ -100,7 +119,10 @@ def test_a_box_that_fits_on_an_unsteady_side_proves_nothing(tmp_path: Path) -> N
 
 def test_a_lying_can_fits_under_a_ceiling_that_it_cannot_stand_under(tmp_path: Path) -> None:
     context = problem_with("thing", tmp_path, "cylinder: {radius: 0.03, height: 0.25}").context
-    thing, low = context.scene.bodies["thing"], replace(context.scene.cavities["cupboard_1"], size=(0.4, 0.3, 0.2))
+    thing, low = (
+        context.scene.bodies["thing"],
+        replace(context.scene.cavities["cupboard_1"], size=(0.4, 0.3, 0.2)),
+    )
     assert no_room(context, "thing", low) is None  # though it stands now
     lower = no_room(context, "thing", replace(low, size=(0.4, 0.3, 0.05)))
     assert lower is not None and not lower.given_up and "thing is 0.06 m tall" in lower.reason
@@ -163,7 +185,9 @@ def test_too_high_says_to_where_the_hand_reaches(height: float, tmp_path: Path) 
 def test_too_flat_is_said_of_a_wide_plate(tmp_path: Path) -> None:
     thing = "cup: {box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.0]}"
     outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 2.0)
-    assert outcome is Outcome.INFEASIBLE and "too flat to be grasped (6 mm tall, 15 cm wide)" in said
+    assert (
+        outcome is Outcome.INFEASIBLE and "too flat to be grasped (6 mm tall, 15 cm wide)" in said
+    )
 
 
 @pytest.mark.parametrize(
@@ -174,12 +198,19 @@ def test_too_flat_is_said_of_a_wide_plate(tmp_path: Path) -> None:
         ("cylinder: {radius: 0.1, height: 0.01}, on: table, at: [0.0, 0.0]", True),
         ("cylinder: {radius: 0.042, height: 0.01}, on: table, at: [0.0, 0.0]", False),
         ("box: [0.15, 0.078, 0.006], on: table, at: [0.0, 0.0]", False),
-        ("box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.3]", False),  # it stands out over the edge
+        (
+            "box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.3]",
+            False,
+        ),  # it stands out over the edge
     ],
 )
-def test_flat_is_proven_only_where_no_finger_gets_under_it(thing: str, flat: bool, tmp_path: Path) -> None:
+def test_flat_is_proven_only_where_no_finger_gets_under_it(
+    thing: str, flat: bool, tmp_path: Path
+) -> None:
     path = tmp_path / "scene.yaml"
-    path.write_text(HIGH.format(height=1.0, thing=f"cup: {{{thing}}}", goal="board"), encoding="utf-8")
+    path.write_text(
+        HIGH.format(height=1.0, thing=f"cup: {{{thing}}}", goal="board"), encoding="utf-8"
+    )
     problem = load_problem(path)
     assert (too_flat(problem.context, "cup", problem.scene.bodies["cup"].pose) is not None) is flat
     if flat:  # the same by brute force: the hand hits the table with every grasp that there is
@@ -191,7 +222,9 @@ def test_flat_is_proven_only_where_no_finger_gets_under_it(thing: str, flat: boo
 
 
 @pytest.mark.parametrize("others", [0, 12])
-def test_what_stands_on_it_for_good_is_named_whatever_else_is_there(others: int, tmp_path: Path) -> None:
+def test_what_stands_on_it_for_good_is_named_whatever_else_is_there(
+    others: int, tmp_path: Path
+) -> None:
     thing = "cup: {box: [0.07, 0.07, 0.1], on: table, at: [0.0, 0.0]}\n  slab: {box: [0.12, 0.12, 0.12], on: cup}"
     for i in range(others):
         x, y = -0.5 + 0.18 * (i % 6), 0.5 * (i // 6) - 0.25
@@ -202,7 +235,9 @@ def test_what_stands_on_it_for_good_is_named_whatever_else_is_there(others: int,
 
 
 def test_a_ball_on_it_that_can_be_put_nowhere_is_named_without_a_proof(tmp_path: Path) -> None:
-    thing = "cup: {box: [0.06, 0.06, 0.1], on: table, at: [0.0, 0.0]}\n  ball: {sphere: 0.03, on: cup}"
+    thing = (
+        "cup: {box: [0.06, 0.06, 0.1], on: table, at: [0.0, 0.0]}\n  ball: {sphere: 0.03, on: cup}"
+    )
     outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 8.0)
     assert outcome is Outcome.EXHAUSTED and "cup is loaded with ball" in said.splitlines()[0]
     assert "a sphere rests on no stable face" in said
@@ -236,7 +271,9 @@ goal: (on cup stand)
 """
 
 
-def test_no_place_is_free_where_all_are_called_taken(tmp_path: Path, rng: np.random.Generator) -> None:
+def test_no_place_is_free_where_all_are_called_taken(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
     """Against brute force: 400 random placements each."""
     proven = free = 0
     for number in range(40):
@@ -244,10 +281,14 @@ def test_no_place_is_free_where_all_are_called_taken(tmp_path: Path, rng: np.ran
         size = rng.uniform(least, (0.4, 0.3, 0.3))
         x, y = rng.uniform(-0.01, 0.01, 2)
         box = ", ".join(f"{side:.3f}" for side in size)
-        things = f"  t: {{box: [{box}], on: stand, at: [{x:.3f}, {y:.3f}], fixed: true, surfaces: {{}}}}"
+        things = (
+            f"  t: {{box: [{box}], on: stand, at: [{x:.3f}, {y:.3f}], fixed: true, surfaces: {{}}}}"
+        )
         cup = ("box: [0.05, 0.06, 0.1]", "cylinder: {radius: 0.03, height: 0.09}")[number % 4 // 2]
         path = tmp_path / "stand.yaml"
-        path.write_text(STAND.format(yaw=rng.uniform(0, 3), things=things, cup=cup), encoding="utf-8")
+        path.write_text(
+            STAND.format(yaw=rng.uniform(0, 3), things=things, cup=cup), encoding="utf-8"
+        )
         context = load_problem(path).context
         stand = context.scene.surfaces["stand"]
         found = False
@@ -268,6 +309,11 @@ def test_no_place_is_free_where_all_are_called_taken(tmp_path: Path, rng: np.ran
 def test_a_covered_place_is_proven_so(tmp_path: Path) -> None:
     path = tmp_path / "stand.yaml"
     things = "  monitor: {box: [0.39, 0.29, 0.3], on: stand, fixed: true, surfaces: {}}"
-    path.write_text(STAND.format(yaw=0.4, things=things, cup="box: [0.05, 0.06, 0.1]"), encoding="utf-8")
+    path.write_text(
+        STAND.format(yaw=0.4, things=things, cup="box: [0.05, 0.06, 0.1]"), encoding="utf-8"
+    )
     solution = solve(load_problem(path), max_time=20.0)
-    assert solution.outcome is Outcome.INFEASIBLE and "every place there hits monitor" in solution.explanation[0]
+    assert (
+        solution.outcome is Outcome.INFEASIBLE
+        and "every place there hits monitor" in solution.explanation[0]
+    )

@@ -24,7 +24,9 @@ def test_on_a_surface(name: str, tmp_path: Path) -> None:
     poses = values(sample_on(context, name, "table", call()), 20)
     assert len(poses) == 20
     for pose in poses:
-        points = (scene.world_pose(surface).inverse() @ pose).apply(body_points(scene.bodies[name].parts))
+        points = (scene.world_pose(surface).inverse() @ pose).apply(
+            body_points(scene.bodies[name].parts)
+        )
         assert points[:, 2].min() == pytest.approx(CONTACT_GAP, abs=2e-4)
         assert (np.abs(points[:, :2]) <= np.array(surface.size) / 2 + 1e-6).all()
         assert context.collisions.between(name, pose, {}) is None
@@ -40,7 +42,9 @@ def test_inside_a_cavity(name: str, tmp_path: Path) -> None:
     low = np.array([-cavity.size[0] / 2, -cavity.size[1] / 2, 0.0])
     high = np.array([cavity.size[0] / 2, cavity.size[1] / 2, cavity.size[2]])
     for pose in poses:
-        points = (scene.world_pose(cavity).inverse() @ pose).apply(body_points(scene.bodies[name].parts))
+        points = (scene.world_pose(cavity).inverse() @ pose).apply(
+            body_points(scene.bodies[name].parts)
+        )
         assert (points >= low - 1e-6).all() and (points <= high + 1e-6).all()
         assert points[:, 2].min() == pytest.approx(CONTACT_GAP, abs=2e-4)
 
@@ -63,7 +67,9 @@ def test_the_uniform_sampler_is_put_to_rest_too(tmp_path: Path) -> None:
     poses = values(sample_on(problem.context, "box", "table", call()), 5, most=50_000)
     assert len(poses) == 5
     for pose in poses:
-        points = (scene.world_pose(surface).inverse() @ pose).apply(body_points(scene.bodies["box"].parts))
+        points = (scene.world_pose(surface).inverse() @ pose).apply(
+            body_points(scene.bodies["box"].parts)
+        )
         assert points[:, 2].min() == pytest.approx(CONTACT_GAP, abs=2e-4)
 
 

@@ -27,7 +27,9 @@ class Watching:
         self.shown: list[tuple[str, Scene, int]] = []
         self.proposed: list[list[Placement]] = []
 
-    def propose(self, scene: Scene, arguments: Sequence[str], count: int, rng: Random) -> list[Placement]:
+    def propose(
+        self, scene: Scene, arguments: Sequence[str], count: int, rng: Random
+    ) -> list[Placement]:
         self.shown.append((arguments[0], scene, count))
         self.proposed.append(SurfacePlacements().propose(scene, arguments, count, rng))
         return self.proposed[-1]
@@ -45,19 +47,29 @@ def test_bodies_stand_where_the_plan_has_put_them(name: str, seed: int) -> None:
     goals = [body for body in placed if body in {shown for shown, _, _ in watching.shown}]
     assert len(goals) == (2 if name == "two_objects" else 4)
     final = {
-        body: next(value for word in action.arguments if isinstance(value := solution.values.get(word), Pose))
+        body: next(
+            value
+            for word in action.arguments
+            if isinstance(value := solution.values.get(word), Pose)
+        )
         for body, action in placed.items()
     }
     for number, body in enumerate(goals):
         expected = start | {earlier: final[earlier] for earlier in goals[:number]}
         scenes = [scene for shown, scene, _ in watching.shown if shown == body]
-        assert any({other: scene.bodies[other].pose for other in start} == expected for scene in scenes)
+        assert any(
+            {other: scene.bodies[other].pose for other in start} == expected for scene in scenes
+        )
     assert {count for _, _, count in watching.shown} == {16}
 
 
 def test_what_is_held_is_absent() -> None:
     context = load_problem("four_objects").context
-    poses = {name: context.scene.bodies[name].pose for name in context.scene.movable if name not in ("mug", "bowl")}
+    poses = {
+        name: context.scene.bodies[name].pose
+        for name in context.scene.movable
+        if name not in ("mug", "bowl")
+    }
     poses["mustard"] = Pose((0.0, 0.0, 1.0))
     scene = context.scene_at(poses, proposed="mug")
     assert "bowl" not in scene.bodies and "table" in scene.bodies
@@ -66,7 +78,9 @@ def test_what_is_held_is_absent() -> None:
 
 
 @pytest.mark.parametrize(("sample", "place"), [(sample_on, "table"), (sample_inside, "cupboard_1")])
-def test_a_batch_is_drawn_at_once_and_used_in_its_order(sample: object, place: str, tmp_path: Path) -> None:
+def test_a_batch_is_drawn_at_once_and_used_in_its_order(
+    sample: object, place: str, tmp_path: Path
+) -> None:
     problem_with("box", tmp_path)
     watching = Watching()
     given = {relation: "given:alone" for relation in ("on", "inside")}
@@ -77,9 +91,14 @@ def test_a_batch_is_drawn_at_once_and_used_in_its_order(sample: object, place: s
     assert len(watching.proposed) == 2 or len(poses) < 17
     scene, faces = problem.scene, problem.context.stable_faces("box")
     T_world_region = scene.world_pose(scene.region(place))
-    proposed = [placed_pose(faces, one, T_world_region).position[:2] for batch in watching.proposed for one in batch]
+    proposed = [
+        placed_pose(faces, one, T_world_region).position[:2]
+        for batch in watching.proposed
+        for one in batch
+    ]
     order = [
-        min(range(len(proposed)), key=lambda i: np.hypot(*np.subtract(proposed[i], p.position[:2]))) for p in poses
+        min(range(len(proposed)), key=lambda i: np.hypot(*np.subtract(proposed[i], p.position[:2])))
+        for p in poses
     ]
     assert order == sorted(order) and len(set(order)) == len(order) >= 10
 
@@ -88,19 +107,37 @@ def test_poses_clear_of_the_others_come_first() -> None:
     """Of a batch; the one that hits something comes last, since its test tells the search what is in the way."""
     problem = load_problem("cluttered")
     context = problem.context
-    poses = {name: problem.scene.bodies[name].pose for name in problem.scene.movable if name != "soup_can"}
+    poses = {
+        name: problem.scene.bodies[name].pose
+        for name in problem.scene.movable
+        if name != "soup_can"
+    }
     fluents = [("at-pose", name, pose) for name, pose in poses.items()]
-    drawn = sample_on(context, "soup_can", "cupboard_top", Call(np.random.default_rng(0), Deadline(), fluents))
+    drawn = sample_on(
+        context, "soup_can", "cupboard_top", Call(np.random.default_rng(0), Deadline(), fluents)
+    )
     hits = []
     for _ in range(60):
         pose = next(drawn)
         assert isinstance(pose, Pose)
-        hits.append(any(context.collisions.pair("soup_can", pose, name, at, 0.003) for name, at in poses.items()))
+        hits.append(
+            any(
+                context.collisions.pair("soup_can", pose, name, at, 0.003)
+                for name, at in poses.items()
+            )
+        )
     assert 0.0 < np.mean(hits) < 0.35 and not hits[0]  # blindly, most of them hit something
-    blind = SurfacePlacements().propose(problem.scene, ("soup_can", "cupboard_top"), 200, np.random.default_rng(0))
+    blind = SurfacePlacements().propose(
+        problem.scene, ("soup_can", "cupboard_top"), 200, np.random.default_rng(0)
+    )
     faces, T_world_region = (
         context.stable_faces("soup_can"),
         problem.scene.world_pose(problem.scene.region("cupboard_top")),
     )
     placed = [placed_pose(faces, one, T_world_region) for one in blind]
-    assert np.mean([context.collisions.between("soup_can", pose, poses) is not None for pose in placed]) > 0.5
+    assert (
+        np.mean(
+            [context.collisions.between("soup_can", pose, poses) is not None for pose in placed]
+        )
+        > 0.5
+    )

@@ -54,7 +54,12 @@ def cube(name: str, x: float, y: float = 0.0, z: float = 1.0) -> Body:
 
 def touching(*bodies: Body) -> Touching:
     return Touching(
-        Scene("s", {body.name: body for body in bodies}, RobotStart("panda_mobile", (0, 0, 0)), Room((-2, 2), (-2, 2)))
+        Scene(
+            "s",
+            {body.name: body for body in bodies},
+            RobotStart("panda_mobile", (0, 0, 0)),
+            Room((-2, 2), (-2, 2)),
+        )
     )
 
 
@@ -77,7 +82,9 @@ def test_apart_but_not_deeper_nor_back_again() -> None:
     a, b = cube("a", 0.0), cube("b", 0.0995)
     pairs = touching(a, b)
     assert pairs.separates("a", moves(a, (0, 0, 0), (-0.0002, 0, 0), (-0.01, 0, 0.01)), "b")
-    assert pairs.separates("a", moves(a, (0, 0, 0), (0, 0, 0.05), (0, 0, 0.11)), "b")  # slides along it
+    assert pairs.separates(
+        "a", moves(a, (0, 0, 0), (0, 0, 0.05), (0, 0, 0.11)), "b"
+    )  # slides along it
     assert not pairs.separates("a", moves(a, (0, 0, 0), (0.001, 0, 0.01)), "b")
     assert not pairs.separates("a", moves(a, (-0.01, 0, 0), (0, 0, 0)), "b")
 

@@ -55,21 +55,33 @@ def test_bad_input_is_one_line_and_exit_code_two(
         taken.listen()
         port = str(taken.getsockname()[1])
         cases = [
-            (["stack(a, b)", "--no-open", "--port", port], f"cannot listen on port {port}: Address already in use"),
+            (
+                ["stack(a, b)", "--no-open", "--port", port],
+                f"cannot listen on port {port}: Address already in use",
+            ),
             (["stack(a, b)", "--no-open", "--port", "70000"], "cannot listen on port 70000"),
             (["stack(a, b)"], "no browser was found to open. Serve with tamp-demo --no-open"),
             (["stack"], "'stack' is no relation with its arguments. Such as stack(a, b)"),
             (["stack(a, b: bax)"], "unknown kind 'bax'. Choices: object, box"),
-            (["stack(a, b)", "--out", "file", "--no-open"], "file: demonstrations go into a folder, and this is none"),
+            (
+                ["stack(a, b)", "--out", "file", "--no-open"],
+                "file: demonstrations go into a folder, and this is none",
+            ),
             (["stack(a, b)", "--scene", "none.yaml", "--no-open"], "none.yaml"),
-            (["near(a, b, c)", "--scene", "one_object", "--no-open"], "too few bodies or places for near(a, b, c)"),
+            (
+                ["near(a, b, c)", "--scene", "one_object", "--no-open"],
+                "too few bodies or places for near(a, b, c)",
+            ),
             (["stack(a, b)", "--seed", "-1", "--no-open"], "--seed must be between"),
             (["stack(a, b)", "--wrong"], "--wrong"),
         ]
         for words, says in cases:
             assert main(words) == 2, words
             error = capsys.readouterr().err
-            assert error.startswith("error: ") and says in error and error.count("\n") == 1, (words, error)
+            assert error.startswith("error: ") and says in error and error.count("\n") == 1, (
+                words,
+                error,
+            )
     assert sorted(file.name for file in tmp_path.iterdir()) == ["file"]
 
 
@@ -77,14 +89,25 @@ def test_help(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="0"):
         main(["--help"])
     said = capsys.readouterr().out
-    for word in ("--out", "--scene", "--port", "--no-open", "--seed", "demonstrating.md", "inside(a, b"):
+    for word in (
+        "--out",
+        "--scene",
+        "--port",
+        "--no-open",
+        "--seed",
+        "demonstrating.md",
+        "inside(a, b",
+    ):
         assert word in said
 
 
 @contextlib.contextmanager
 def served(folder: Path, *words: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process = subprocess.Popen(
-        [PROGRAM, *words, "--no-open", "--out", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [PROGRAM, *words, "--no-open", "--out", str(folder)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout is not None
     address = re.match(r"(http://\S+/) shows", process.stdout.readline())
@@ -105,7 +128,9 @@ def post(address: str, action: str, **message: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_ending_it_loses_nothing_and_it_goes_on_there(number: int, code: int, tmp_path: Path) -> None:
+def test_ending_it_loses_nothing_and_it_goes_on_there(
+    number: int, code: int, tmp_path: Path
+) -> None:
     folder = tmp_path / "shown"
     with served(folder, "stack(a, b)") as (process, address):
         for holds in (True, False):
@@ -117,6 +142,12 @@ def test_ending_it_loses_nothing_and_it_goes_on_there(number: int, code: int, tm
     assert sorted(file.name for file in folder.iterdir()) == ["stack_001.yaml", "stack_002.yaml"]
     assert [one.holds for one in demonstrations_of("stack", [folder])] == [True, False]
 
-    with served(folder) as (process, address), urllib.request.urlopen(address + "state", timeout=60) as answer:
+    with (
+        served(folder) as (process, address),
+        urllib.request.urlopen(address + "state", timeout=60) as answer,
+    ):
         state = json.load(answer)  # the relation is the folder's
-        assert state["relation"]["text"] == "stack(a, b)" and (state["holding"], state["other"]) == (1, 1)
+        assert state["relation"]["text"] == "stack(a, b)" and (
+            state["holding"],
+            state["other"],
+        ) == (1, 1)

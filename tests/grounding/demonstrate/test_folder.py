@@ -93,7 +93,9 @@ def test_files_of_others_count(stage: Stage, tmp_path: Path) -> None:
         folder.flip("by_hand.yaml")
 
 
-@pytest.mark.parametrize("name", ["../other.yaml", "/etc/passwd", "", "stack_009.yaml", "stack_001.yaml/../../x"])
+@pytest.mark.parametrize(
+    "name", ["../other.yaml", "/etc/passwd", "", "stack_009.yaml", "stack_001.yaml/../../x"]
+)
 def test_only_files_of_the_folder_are_touched(name: str, stage: Stage, tmp_path: Path) -> None:
     outside = tmp_path / "other.yaml"
     outside.write_text(OTHERS)

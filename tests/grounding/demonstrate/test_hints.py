@@ -39,9 +39,13 @@ def shown(
     for name, edge, turn in zip(("b", "a"), edges, yaws, strict=True):
         shape = Cylinder(edge[0], edge[2]) if round_ else Box(tuple(edge))
         z += edge[2] / 2
-        bodies[name] = Body(name, (Part(shape),), Pose.from_xyz_yaw(x, y, z, turn), True, support="table")
+        bodies[name] = Body(
+            name, (Part(shape),), Pose.from_xyz_yaw(x, y, z, turn), True, support="table"
+        )
         z += edge[2] / 2 + 0.001
-    scene = Scene("s", bodies, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), Room((-9.0, 9.0), (-9.0, 9.0)))
+    scene = Scene(
+        "s", bodies, RobotStart("panda_mobile", (0.0, 0.0, 0.0)), Room((-9.0, 9.0), (-9.0, 9.0))
+    )
     return Demonstration(scene, ("a", "b"), holds, f"s_{number}.yaml:9")
 
 
@@ -64,18 +68,25 @@ def test_what_is_varied_is_not_complained_of() -> None:
     ],
 )
 def test_what_is_the_same_is_named(lazy: dict[str, float], says: str) -> None:
-    found = texts([*(shown(n, **lazy) for n in range(4)), *(shown(n, holds=False) for n in range(9, 12))])
+    found = texts(
+        [*(shown(n, **lazy) for n in range(4)), *(shown(n, holds=False) for n in range(9, 12))]
+    )
     assert any(says in text for text in found), found
     assert len(found) <= 2  # a and b have one yaw, one size
 
 
 def test_what_is_round_need_not_be_turned() -> None:
-    assert not any(": turn it" in text for text in texts([shown(n, yaw=0.2, round_=True) for n in range(4)]))
+    assert not any(
+        ": turn it" in text for text in texts([shown(n, yaw=0.2, round_=True) for n in range(4)])
+    )
 
 
 def test_a_label_that_is_missing() -> None:
     assert any("does not hold" in text for text in texts([shown(n) for n in range(3)]))
-    assert any("says where stack holds" in text for text in texts([shown(n, holds=False) for n in range(3)]))
+    assert any(
+        "says where stack holds" in text
+        for text in texts([shown(n, holds=False) for n in range(3)])
+    )
 
 
 def test_the_same_labelled_both_ways() -> None:

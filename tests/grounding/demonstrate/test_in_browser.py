@@ -19,7 +19,15 @@ from tamp.geometric.scene.bounds import bounds
 from tests.view.browser import Browser
 from tests.view.images import pixels
 
-CODES = {" ": 32, "Tab": 9, "Escape": 27, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+CODES = {
+    " ": 32,
+    "Tab": 9,
+    "Escape": 27,
+    "ArrowLeft": 37,
+    "ArrowUp": 38,
+    "ArrowRight": 39,
+    "ArrowDown": 40,
+}
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +88,9 @@ class Person:
         )
         self.ready()
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float], button: str = "left") -> None:
+    def drag(
+        self, start: tuple[float, float], end: tuple[float, float], button: str = "left"
+    ) -> None:
         self.actions += 1
         buttons = {"left": 1, "right": 2}[button]
         self.browser.mouse("mouseMoved", *start)
@@ -116,7 +126,9 @@ class Person:
 
 
 @pytest.fixture
-def person_at(browser: Browser, studio_of: Callable[..., Studio]) -> Iterator[Callable[..., tuple[Person, Studio]]]:
+def person_at(
+    browser: Browser, studio_of: Callable[..., Studio]
+) -> Iterator[Callable[..., tuple[Person, Studio]]]:
     servers: list[DemonstrationServer] = []
 
     def sit(text: str, **more: Any) -> tuple[Person, Studio]:
@@ -138,7 +150,9 @@ def person_at(browser: Browser, studio_of: Callable[..., Studio]) -> Iterator[Ca
         server.server_close()
 
 
-def test_it_loads_without_complaint_and_is_not_blank(person_at: Callable[..., Any], tmp_path: Path) -> None:
+def test_it_loads_without_complaint_and_is_not_blank(
+    person_at: Callable[..., Any], tmp_path: Path
+) -> None:
     person, studio = person_at("stack(a, b)")
     person.browser.frames()
     person.browser.screenshot(tmp_path / "shot.png")
@@ -146,14 +160,18 @@ def test_it_loads_without_complaint_and_is_not_blank(person_at: Callable[..., An
     colours, counts = np.unique(seen.reshape(-1, 3) // 16, axis=0, return_counts=True)
     assert len(colours) > 50 and counts.max() < 0.7 * counts.sum()
     assert person.browser.logged == []
-    assert all(asked.startswith(("http://127.0.0.1:", "data:")) for asked in person.browser.requests)
+    assert all(
+        asked.startswith(("http://127.0.0.1:", "data:")) for asked in person.browser.requests
+    )
     assert person.text("#fact").startswith("stack (") and "press H" in person.text("#todo")
     assert person.run("[...document.querySelectorAll('#fact select')].map((s) => s.value)") == list(
         studio.stage.arguments
     )
 
 
-def test_a_body_is_dragged_turned_lifted_dropped_and_all_is_taken_back(person_at: Callable[..., Any]) -> None:
+def test_a_body_is_dragged_turned_lifted_dropped_and_all_is_taken_back(
+    person_at: Callable[..., Any],
+) -> None:
     person, studio = person_at("upright(o)", seed=2)
     name, table = person.argument(0), studio.stage.scene.bodies
     level = person.box(name)["low"][2]
@@ -166,17 +184,26 @@ def test_a_body_is_dragged_turned_lifted_dropped_and_all_is_taken_back(person_at
     middle = next(body for body in table.values() if body.surfaces).pose.position
     person.drag_body(name, [(start[0] + middle[0]) / 2, (start[1] + middle[1]) / 2, start[2]])
     moved = person.centre(name)
-    assert np.hypot(moved[0] - (start[0] + middle[0]) / 2, moved[1] - (start[1] + middle[1]) / 2) < 0.02
+    assert (
+        np.hypot(moved[0] - (start[0] + middle[0]) / 2, moved[1] - (start[1] + middle[1]) / 2)
+        < 0.02
+    )
     assert person.box(name)["low"][2] == pytest.approx(level, abs=0.0015)
     kept.append(person.run("tamp.poses()"))
 
     before = pose()
     ring = person.run(f"tamp.state.bodies.find((body) => body.name === '{name}').ring") + 0.007
     low = person.box(name)["low"][2]
-    spot = [person.pixel([moved[0] + ring * np.cos(a), moved[1] + ring * np.sin(a), low]) for a in (-1.0, 0.0)]
-    yaw = person.run("tamp.camera.yaw")  # the side of the ring that is near the viewer is not hidden
     spot = [
-        person.pixel([moved[0] + ring * np.cos(yaw + a), moved[1] + ring * np.sin(yaw + a), low]) for a in (-0.5, 0.5)
+        person.pixel([moved[0] + ring * np.cos(a), moved[1] + ring * np.sin(a), low])
+        for a in (-1.0, 0.0)
+    ]
+    yaw = person.run(
+        "tamp.camera.yaw"
+    )  # the side of the ring that is near the viewer is not hidden
+    spot = [
+        person.pixel([moved[0] + ring * np.cos(yaw + a), moved[1] + ring * np.sin(yaw + a), low])
+        for a in (-0.5, 0.5)
     ]
     person.drag(*spot)
     turned = before[:3, :3].T @ pose()[:3, :3]
@@ -215,16 +242,22 @@ def test_a_body_is_dragged_turned_lifted_dropped_and_all_is_taken_back(person_at
 
 def test_looking_around_moves_no_body(person_at: Callable[..., Any]) -> None:
     person, _ = person_at("stack(a, b)")
-    before, yaw, distance = (person.run(what) for what in ("tamp.poses()", "tamp.camera.yaw", "tamp.camera.distance"))
+    before, yaw, distance = (
+        person.run(what) for what in ("tamp.poses()", "tamp.camera.yaw", "tamp.camera.distance")
+    )
     person.drag((700, 130), (640, 150))
     assert person.run("tamp.camera.yaw") == pytest.approx(yaw + 60 * 0.007)
     person.drag((700, 130), (640, 150), button="right")
-    person.browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=700, y=130, deltaX=0, deltaY=-200)
+    person.browser.call(
+        "Input.dispatchMouseEvent", type="mouseWheel", x=700, y=130, deltaX=0, deltaY=-200
+    )
     person.browser.wait(f"tamp.camera.distance < {distance - 0.05}")
     assert person.run("tamp.poses()") == before
 
 
-def test_labels_cards_and_what_is_asked_first(person_at: Callable[..., Any], tmp_path: Path) -> None:
+def test_labels_cards_and_what_is_asked_first(
+    person_at: Callable[..., Any], tmp_path: Path
+) -> None:
     person, studio = person_at("stack(a, b)", seed=3)
     a, b = person.argument(0), person.argument(1)
     person.key("r")
@@ -235,9 +268,15 @@ def test_labels_cards_and_what_is_asked_first(person_at: Callable[..., Any], tmp
     person.key("s")
     assert person.troubles() == ""
     person.key("n")
-    assert person.argument(0) != a or person.argument(1) != b or person.run("tamp.state.stage.number") == 1
+    assert (
+        person.argument(0) != a
+        or person.argument(1) != b
+        or person.run("tamp.state.stage.number") == 1
+    )
     assert person.text("#count-fails") == "1 / 10" and "saved" in person.text("#toast")
-    person.browser.wait("[...document.querySelectorAll('.card img')].every((i) => i.complete && i.naturalWidth > 0)")
+    person.browser.wait(
+        "[...document.querySelectorAll('.card img')].every((i) => i.complete && i.naturalWidth > 0)"
+    )
     (card,) = studio.folder.cards()
     person.click(".card .flip")
     assert person.text("#count-holds") == "1 / 10"
@@ -257,7 +296,10 @@ def test_labels_cards_and_what_is_asked_first(person_at: Callable[..., Any], tmp
 def test_another_relation_by_the_form(person_at: Callable[..., Any]) -> None:
     person, studio = person_at("stack(a, b)")
     person.choose("#presets", "within(a, b: container)")
-    assert person.text("#fact").startswith("within (") and str(studio.relation) == "within(a, b: container)"
+    assert (
+        person.text("#fact").startswith("within (")
+        and str(studio.relation) == "within(a, b: container)"
+    )
     a, b = person.argument(0), person.argument(1)
     cavity = studio.stage.scene.world_pose(studio.stage.scene.cavities[b]).position
     person.drag_body(a, list(cavity))
@@ -292,7 +334,10 @@ def beside(person: Person, rng: np.random.Generator) -> None:
     a, b = person.argument(0), person.argument(1)
     box, own = person.box(b), person.box(a)
     angle = person.run("tamp.camera.yaw") + rng.uniform(-1.2, 1.2)
-    far = sum(float(np.hypot(*np.subtract(one["high"], one["low"])[:2])) / 2 for one in (box, own)) + 0.01
+    far = (
+        sum(float(np.hypot(*np.subtract(one["high"], one["low"])[:2])) / 2 for one in (box, own))
+        + 0.01
+    )
     x, y, _ = person.centre(b)
     person.drag_body(a, [x + far * np.cos(angle), y + far * np.sin(angle), person.centre(a)[2]])
 
@@ -327,7 +372,9 @@ def near_or_far(person: Person, rng: np.random.Generator, near: bool) -> None:
     """Drags a to stand at b's left or right hand, or away from it."""
     a, b = person.argument(0), person.argument(1)
     (x, y, _), box, own = person.centre(b), person.box(b), person.box(a)
-    reach = sum(float(np.hypot(*np.subtract(one["high"], one["low"])[:2])) / 2 for one in (box, own))
+    reach = sum(
+        float(np.hypot(*np.subtract(one["high"], one["low"])[:2])) / 2 for one in (box, own)
+    )
     far = reach + (rng.uniform(0.0, 0.02) if near else rng.uniform(0.12, 0.2))
     angle = person.run("tamp.camera.yaw") + rng.uniform(-2.5, 2.5)
     person.drag_body(a, [x + far * np.cos(angle), y + far * np.sin(angle), person.centre(a)[2]])
@@ -352,7 +399,9 @@ def test_from_the_first_click_to_a_solved_plan(person_at: Callable[..., Any]) ->
             person.key(" ")
             continue
         person.key("h" if near else "n")
-        labels = int(person.text("#count-holds").split()[0]) + int(person.text("#count-fails").split()[0])
+        labels = int(person.text("#count-holds").split()[0]) + int(
+            person.text("#count-fails").split()[0]
+        )
 
     person.click("#learn")
     wait_for(person, "document.getElementById('learned').dataset.code")
@@ -368,7 +417,9 @@ def test_from_the_first_click_to_a_solved_plan(person_at: Callable[..., Any]) ->
         person.key(" ")  # the hand may be too small for these two
 
     said = person.text("#planned")
-    assert person.run("document.getElementById('planned').dataset.code") == "0" and "place" in said, said
+    assert (
+        person.run("document.getElementById('planned').dataset.code") == "0" and "place" in said
+    ), said
     print(f"{labels} labels, {person.actions} actions from the first click to the plan")
     assert person.actions <= 200
     assert person.run("document.getElementById('watch').hidden") is False

@@ -39,7 +39,9 @@ names = st.from_regex(r"[a-z][a-z0-9_]{0,8}", fullmatch=True).filter(lambda name
 
 
 @given(names, st.lists(names, min_size=1, max_size=4, unique=True), st.data())
-def test_what_is_written_is_read_again(name: str, arguments: list[str], data: st.DataObject) -> None:
+def test_what_is_written_is_read_again(
+    name: str, arguments: list[str], data: st.DataObject
+) -> None:
     kinds = [data.draw(st.sampled_from(KINDS[:-1])) for _ in arguments]
     relation = Relation(name, tuple(map(Argument, arguments, kinds)))
     assert parse_relation(str(relation)) == relation

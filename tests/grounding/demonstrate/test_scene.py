@@ -18,7 +18,9 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 
 
-@pytest.mark.parametrize("text", [*PRESETS, "set_table(cup, plate, fork)", "pack(box: container, a, b, c)"])
+@pytest.mark.parametrize(
+    "text", [*PRESETS, "set_table(cup, plate, fork)", "pack(box: container, a, b, c)"]
+)
 def test_generated_scenes_are_sound(text: str, workbench: Workbench) -> None:
     relation = parse_relation(text)
     for seed in range(4):
@@ -38,9 +40,14 @@ def test_generated_scenes_are_sound(text: str, workbench: Workbench) -> None:
 def test_scenes_vary_in_all_that_may_matter() -> None:
     relation, rng = parse_relation("stack(a, b)"), np.random.default_rng(5)
     stages = [sample_stage(relation, rng) for _ in range(12)]
-    heights = [bounds(s.scene.bodies[s.arguments[1]].parts, s.scene.bodies[s.arguments[1]].pose)[0][2] for s in stages]
+    heights = [
+        bounds(s.scene.bodies[s.arguments[1]].parts, s.scene.bodies[s.arguments[1]].pose)[0][2]
+        for s in stages
+    ]
     yaws = [viewer_yaw(s.scene, s.arguments) for s in stages]
-    sizes = [np.ptp(bounds(s.scene.bodies[s.arguments[0]].parts, Pose()), axis=0).max() for s in stages]
+    sizes = [
+        np.ptp(bounds(s.scene.bodies[s.arguments[0]].parts, Pose()), axis=0).max() for s in stages
+    ]
     assert np.ptp(heights) > 0.4 and np.ptp(yaws) > 3.0 and np.ptp(sizes) > 0.05
     assert len({next(iter(stage.scene.bodies)) for stage in stages}) > 1
 
@@ -58,7 +65,9 @@ def test_what_is_saved_is_what_was_shown(tmp_path: Path) -> None:
     write_demonstration(tmp_path / "one.yaml", moved.file(Label("within", stage.arguments, False)))
     (found,) = demonstrations_of("within", [tmp_path])
     assert found.arguments == stage.arguments and not found.holds
-    assert found.scene.bodies[first].pose.matrix == pytest.approx(moved.scene.bodies[first].pose.matrix, abs=1e-6)
+    assert found.scene.bodies[first].pose.matrix == pytest.approx(
+        moved.scene.bodies[first].pose.matrix, abs=1e-6
+    )
     for name, body in stage.scene.bodies.items():
         if name != first:
             assert found.scene.bodies[name].pose.matrix == pytest.approx(body.pose.matrix, abs=2e-6)
@@ -73,7 +82,11 @@ def test_a_problem_file_is_a_scene(root: Path, workbench: Workbench) -> None:
     assert list(find_overlaps(other.scene)) == []
     assert list(workbench.troubles(other.posed({}), other.movable)) == []
     gone = [
-        np.linalg.norm(np.subtract(other.scene.bodies[name].pose.position, stage.scene.bodies[name].pose.position))
+        np.linalg.norm(
+            np.subtract(
+                other.scene.bodies[name].pose.position, stage.scene.bodies[name].pose.position
+            )
+        )
         for name in stage.scene.movable
     ]
     assert np.median(gone) > 0.05
@@ -95,7 +108,9 @@ def test_places_of_a_problem_file_are_arguments(root: Path) -> None:
         ("in(a, c: container)", {"c": "table"}, "cannot be the argument c"),
     ],
 )
-def test_a_problem_file_without_what_is_needed(text: str, chosen: dict[str, str], says: str, root: Path) -> None:
+def test_a_problem_file_without_what_is_needed(
+    text: str, chosen: dict[str, str], says: str, root: Path
+) -> None:
     with pytest.raises(InputError, match=says):
         open_stage(root / "problems/one_object.yaml", parse_relation(text), chosen)
 

@@ -30,11 +30,16 @@ def server(studio_of: Callable[..., Studio]) -> Iterator[DemonstrationServer]:
 
 
 def ask(
-    server: DemonstrationServer, path: str, content: bytes | None = None, headers: dict[str, str] | None = None
+    server: DemonstrationServer,
+    path: str,
+    content: bytes | None = None,
+    headers: dict[str, str] | None = None,
 ) -> tuple[int, bytes, http.client.HTTPMessage]:
     connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=30)
     kind = "GET" if content is None else "POST"
-    connection.request(kind, path, content, {**(JSON if content is not None else {}), **(headers or {})})
+    connection.request(
+        kind, path, content, {**(JSON if content is not None else {}), **(headers or {})}
+    )
     answer = connection.getresponse()
     result = answer.status, answer.read(), answer.headers
     connection.close()
@@ -49,7 +54,11 @@ def test_the_page_asks_nobody_else_for_anything() -> None:
 
 def test_page_state_and_pictures(server: DemonstrationServer) -> None:
     status, content, headers = ask(server, "/")
-    assert status == 200 and content.startswith(b"<!DOCTYPE html>") and headers["Cache-Control"] == "no-store"
+    assert (
+        status == 200
+        and content.startswith(b"<!DOCTYPE html>")
+        and headers["Cache-Control"] == "no-store"
+    )
     status, content, headers = ask(server, "/state")
     assert status == 200 and headers["Content-Type"] == "application/json"
     number = json.loads(content)["stage"]["number"]
@@ -57,12 +66,16 @@ def test_page_state_and_pictures(server: DemonstrationServer) -> None:
     status, content, _ = ask(server, "/label", json.dumps(message).encode())
     assert status == 200 and json.loads(content)["saved"] == "stack_001.yaml"
     status, content, headers = ask(server, "/thumbnails/stack_001.yaml?1")
-    assert status == 200 and headers["Content-Type"] == "image/png" and content.startswith(b"\x89PNG")
+    assert (
+        status == 200 and headers["Content-Type"] == "image/png" and content.startswith(b"\x89PNG")
+    )
     for path in ("/thumbnails/stack_002.yaml", "/thumbnails/", "/etc/passwd", "/label"):
         assert ask(server, path)[0] == 404
 
 
-@pytest.mark.parametrize("host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"])
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"]
+)
 def test_by_another_name_nothing_is_told_or_done(host: str, server: DemonstrationServer) -> None:
     named = {"Host": host.format(port=server.server_address[1])}
     assert ask(server, "/state", headers=named)[0] == 421
@@ -78,10 +91,18 @@ def test_by_another_name_nothing_is_told_or_done(host: str, server: Demonstratio
         ({"Content-Type": "text/plain"}, 415),
         ({"Content-Type": "application/x-www-form-urlencoded"}, 415),
         ({"Origin": "http://127.0.0.1:{port}"}, 200),
-        ({"Origin": "http://localhost:{port}", "Content-Type": "application/json; charset=utf-8"}, 200),
+        (
+            {
+                "Origin": "http://localhost:{port}",
+                "Content-Type": "application/json; charset=utf-8",
+            },
+            200,
+        ),
     ],
 )
-def test_pages_from_elsewhere_do_nothing(headers: dict[str, str], status: int, server: DemonstrationServer) -> None:
+def test_pages_from_elsewhere_do_nothing(
+    headers: dict[str, str], status: int, server: DemonstrationServer
+) -> None:
     port = server.server_address[1]
     headers = {name: value.format(port=port) for name, value in headers.items()}
     before = json.loads(ask(server, "/state")[1])["stage"]["number"]
@@ -91,9 +112,21 @@ def test_pages_from_elsewhere_do_nothing(headers: dict[str, str], status: int, s
 
 @pytest.mark.parametrize(
     "content",
-    [b"", b"{", b"[]", b"7", b"nan", b"\xff\xfe", b'{"a": 1' + b"0" * 5000 + b"}", b"[" * 50_000, b'{"text": 1e999}'],
+    [
+        b"",
+        b"{",
+        b"[]",
+        b"7",
+        b"nan",
+        b"\xff\xfe",
+        b'{"a": 1' + b"0" * 5000 + b"}",
+        b"[" * 50_000,
+        b'{"text": 1e999}',
+    ],
 )
-def test_what_is_no_message_is_an_error_in_words(content: bytes, server: DemonstrationServer) -> None:
+def test_what_is_no_message_is_an_error_in_words(
+    content: bytes, server: DemonstrationServer
+) -> None:
     status, answer, _ = ask(server, "/relation", content)
     assert status == 400 and json.loads(answer)["error"]
 

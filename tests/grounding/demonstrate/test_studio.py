@@ -59,12 +59,17 @@ def test_what_is_odd_is_asked_about_first(studio_of: Maker) -> None:
     poses = on_top(studio)
     said = studio.act("label", about(studio, poses, holds=True))
     assert " hangs " in said["odd"][0] and studio.folder.cards() == []
-    assert "saved" in studio.act("label", about(studio, poses, holds=False))  # what hangs may well be none
+    assert "saved" in studio.act(
+        "label", about(studio, poses, holds=False)
+    )  # what hangs may well be none
     said = studio.act("label", about(studio, poses, holds=True, anyway=True))
     assert [hint["kind"] for hint in said["hints"]] == ["contradiction"]
     said = studio.act("label", about(studio, {}, holds=True))
     assert "saved" in said
-    assert "shows the same and says the opposite" in studio.act("label", about(studio, {}, holds=False))["odd"][0]
+    assert (
+        "shows the same and says the opposite"
+        in studio.act("label", about(studio, {}, holds=False))["odd"][0]
+    )
 
 
 def test_the_state_is_json_and_whole(studio_of: Maker) -> None:
@@ -73,11 +78,15 @@ def test_the_state_is_json_and_whole(studio_of: Maker) -> None:
     assert state["commands"]["learn"].startswith("tamp-learn new within --demos ")
     assert state["stage"]["arguments"] == list(studio.stage.arguments)
     bodies = {body["name"]: body for body in state["stage"]["bodies"]}
-    assert bodies[studio.stage.arguments[1]]["movable"] and bodies[studio.stage.arguments[0]]["faces"]
+    assert (
+        bodies[studio.stage.arguments[1]]["movable"] and bodies[studio.stage.arguments[0]]["faces"]
+    )
     assert all(mesh["faces"] for body in bodies.values() for mesh in body["meshes"])
 
 
-def test_another_relation_has_a_folder_of_its_own(tmp_path: Path, workbench, runner, monkeypatch) -> None:
+def test_another_relation_has_a_folder_of_its_own(
+    tmp_path: Path, workbench, runner, monkeypatch
+) -> None:
     from grounding.demonstrate.relation import parse_relation
     from grounding.demonstrate.studio import Source
 
@@ -85,7 +94,11 @@ def test_another_relation_has_a_folder_of_its_own(tmp_path: Path, workbench, run
     studio = Studio(parse_relation("stack(a, b)"), Source(), workbench, runner)
     studio.act("label", about(studio, holds=False, anyway=True))
     said = studio.act("relation", {"text": "between(a, b, c)"})
-    assert said["folder"] == "demos/between" and len(said["stage"]["arguments"]) == 3 and said["cards"] == []
+    assert (
+        said["folder"] == "demos/between"
+        and len(said["stage"]["arguments"]) == 3
+        and said["cards"] == []
+    )
     assert studio.act("relation", {"text": "stack(a, b)"})["other"] == 1
     with pytest.raises(InputError, match="has 2 arguments here"):
         studio.act("relation", {"text": "stack(a, b, c)"})
@@ -122,7 +135,9 @@ def test_a_demonstration_is_taken_up_again(studio_of: Maker) -> None:
     name = said["stage"]["arguments"][0]
     (body,) = [one for one in said["stage"]["bodies"] if one["name"] == name]
     assert body["T"] == pytest.approx(numbers(poses[name]), abs=1e-5)
-    said = studio.act("label", about(studio, {name: Pose((0.0, 0.0, 1.0))}, holds=False, anyway=True))
+    said = studio.act(
+        "label", about(studio, {name: Pose((0.0, 0.0, 1.0))}, holds=False, anyway=True)
+    )
     assert said["saved"] == "stack_002.yaml" and said["other"] == 2
 
 
@@ -154,7 +169,9 @@ def test_pictures(studio_of: Maker) -> None:
         ("relation", {"text": 7}, "'text' is missing"),
     ],
 )
-def test_what_cannot_be_done_is_said(action: str, message: dict[str, Any], says: str, studio_of: Maker) -> None:
+def test_what_cannot_be_done_is_said(
+    action: str, message: dict[str, Any], says: str, studio_of: Maker
+) -> None:
     with pytest.raises(InputError, match=says):
         studio_of("stack(a, b)").act(action, message)
 
@@ -181,14 +198,31 @@ values = st.recursive(
 )  # fmt: skip
 messages = st.fixed_dictionaries(
     {},
-    optional={key: values for key in ("stage", "poses", "body", "holds", "name", "text", "argument", "anyway", "next")},
+    optional={
+        key: values
+        for key in ("stage", "poses", "body", "holds", "name", "text", "argument", "anyway", "next")
+    },
 )
-ACTIONS = ("relation", "assign", "next", "open", "put_down", "drop", "check", "label", "delete", "restore", "flip")
+ACTIONS = (
+    "relation",
+    "assign",
+    "next",
+    "open",
+    "put_down",
+    "drop",
+    "check",
+    "label",
+    "delete",
+    "restore",
+    "flip",
+)
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(action=st.sampled_from(ACTIONS), message=messages)
-def test_anything_else_is_an_error_in_words(action: str, message: dict[str, Any], studio_of: Maker) -> None:
+def test_anything_else_is_an_error_in_words(
+    action: str, message: dict[str, Any], studio_of: Maker
+) -> None:
     studio = _kept.setdefault("studio", studio_of("stack(a, b)"))
     try:
         answer = studio.act(action, message)

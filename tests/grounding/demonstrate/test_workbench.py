@@ -30,7 +30,9 @@ def low(where: dict[str, Body], pose: Pose) -> float:
 @pytest.mark.parametrize("height", [0.75, 0.9, 1.4, 0.3])
 @pytest.mark.parametrize(("x", "top"), [(0.02, 0.801), (0.3, 0.7)])
 @pytest.mark.parametrize("yaw", [0.0, 0.7])
-def test_put_down_ends_just_above_what_is_below(height: float, x: float, top: float, yaw: float, workbench) -> None:
+def test_put_down_ends_just_above_what_is_below(
+    height: float, x: float, top: float, yaw: float, workbench
+) -> None:
     """Also from inside of it: a hand is careless."""
     where = bodies(Pose.from_xyz_yaw(x, 0.05, height, yaw))
     pose = workbench.put_down("one", where)
@@ -63,7 +65,9 @@ def test_what_leans_falls_and_what_stands_stays(workbench) -> None:
     assert abs(abs(rest.rotation[2]).max() - 1.0) < 1e-3  # on a face
     assert low(where, rest) == pytest.approx(0.7 + CONTACT_GAP, abs=0.002)
     standing = workbench.put_down("one", bodies(Pose((0.3, 0.0, 1.0))))
-    assert workbench.drop("one", bodies(standing)).position == pytest.approx(standing.position, abs=0.002)
+    assert workbench.drop("one", bodies(standing)).position == pytest.approx(
+        standing.position, abs=0.002
+    )
 
 
 @pytest.mark.parametrize(
@@ -88,8 +92,17 @@ def test_troubles(pose: Pose, kind: str | None, says: str, workbench: Workbench)
 def test_sixty_things_put_down_never_overlap(workbench: Workbench) -> None:
     rng = np.random.default_rng(3)
     for _ in range(60):
-        shape = Cylinder(*rng.uniform(0.02, 0.06, 2)) if rng.random() < 0.5 else Box(tuple(rng.uniform(0.02, 0.12, 3)))
+        shape = (
+            Cylinder(*rng.uniform(0.02, 0.06, 2))
+            if rng.random() < 0.5
+            else Box(tuple(rng.uniform(0.02, 0.12, 3)))
+        )
         turn = rng.normal(size=4)
-        pose = Pose(tuple(rng.uniform((-0.3, -0.3, 0.6), (0.3, 0.3, 1.1))), tuple(turn / np.linalg.norm(turn)))
+        pose = Pose(
+            tuple(rng.uniform((-0.3, -0.3, 0.6), (0.3, 0.3, 1.1))),
+            tuple(turn / np.linalg.norm(turn)),
+        )
         where = bodies(workbench.put_down("one", bodies(pose, shape)), shape)
-        assert [one.kind for one in workbench.troubles(where, ("one",)) if one.kind != "falls"] == []
+        assert [
+            one.kind for one in workbench.troubles(where, ("one",)) if one.kind != "falls"
+        ] == []

@@ -30,7 +30,9 @@ def boxes_on_a_table(count: int, seed: int = 0) -> Dataset:
     height = np.array([size[2] for size in TEMPLATES.values()])[body[:, 1]] * scale[:, 1] / 2
     wrong = np.where(rng.random(count) < 0.5, -1, 1) * rng.uniform(0.08, 0.3, count)
     top = pose[:, 0, :3, 3] + [0, 0, 0.2]
-    pose[:, 1, :3, 3] = top + np.column_stack([rng.uniform(-0.2, 0.2, (count, 2)), height + np.where(holds, 0, wrong)])
+    pose[:, 1, :3, 3] = top + np.column_stack(
+        [rng.uniform(-0.2, 0.2, (count, 2)), height + np.where(holds, 0, wrong)]
+    )
     pose[:, 2:, :3, 3] = top[:, None] + rng.uniform(-0.3, 0.3, (count, 3, 3))
     region = np.tile(np.eye(4), (count, 1, 1))
     region[:, 2, 3] = 0.2

@@ -53,7 +53,9 @@ def test_same_draws_same_poses(data):
         first, again = (model.propose(situation, 3, np.random.default_rng(5)) for _ in range(2))
         assert first.shape == (3, 4, 4)
         assert np.array_equal(first, again)
-        np.testing.assert_allclose(first[:, :3, :3] @ first[:, :3, :3].transpose(0, 2, 1), [np.eye(3)] * 3, atol=1e-9)
+        np.testing.assert_allclose(
+            first[:, :3, :3] @ first[:, :3, :3].transpose(0, 2, 1), [np.eye(3)] * 3, atol=1e-9
+        )
         assert model.propose(situation, 0, np.random.default_rng(5)).shape == (0, 4, 4)
         assert model.classify(situation, first).shape == (3,)
 
@@ -78,7 +80,9 @@ def test_what_the_classifier_accepts_is_taken(data, scene):
     likely = np.quantile(UniformModel(random_classifier(BB, scene)).classify(situation, drawn), 0.9)
     model = UniformModel(random_classifier(BB, scene, bias=-np.log(likely / (1 - likely))))
     assert (model.classify(situation, drawn) > 0.5).mean() == pytest.approx(0.1, abs=0.01)
-    assert (model.classify(situation, model.propose(situation, 20, np.random.default_rng(0))) > 0.5).all()
+    assert (
+        model.classify(situation, model.propose(situation, 20, np.random.default_rng(0))) > 0.5
+    ).all()
 
 
 def test_at_most_500_tries(data, monkeypatch):
@@ -97,7 +101,10 @@ def test_at_most_500_tries(data, monkeypatch):
 
 def test_a_classifier_of_clouds_is_refused(data, encoder):
     weights = random_classifier(135, False)
-    arrays = {**weights.arrays, **{f"encoder.{name}": array for name, array in encoder.arrays.items()}}
+    arrays = {
+        **weights.arrays,
+        **{f"encoder.{name}": array for name, array in encoder.arrays.items()},
+    }
     with pytest.raises(InputError, match="needs a classifier of boxes"):
         UniformModel(Weights(arrays, {}))
     with pytest.raises(InputError, match="have no classifier"):
@@ -107,7 +114,10 @@ def test_a_classifier_of_clouds_is_refused(data, encoder):
 def test_a_tree_knows_what_it_was_trained_on(data, tree):
     model = TreeModel(tree)
     for example in data.take(range(60)):
-        assert model.classify(example.situation, example.situation.body.matrix[None])[0] == example.holds
+        assert (
+            model.classify(example.situation, example.situation.body.matrix[None])[0]
+            == example.holds
+        )
 
 
 def test_a_tree_is_scikit_learns(data):
@@ -115,10 +125,14 @@ def test_a_tree_is_scikit_learns(data):
     table = replace(table, holds=np.random.default_rng(0).random(240) < 0.5)  # a deep tree
     theirs = DecisionTreeClassifier(random_state=3).fit(table.arguments[:200], table.holds[:200])
     mine = Tree(grown(table, 200, 3), BB)
-    noisy = table.arguments + np.random.default_rng(0).normal(scale=0.05, size=table.arguments.shape)
+    noisy = table.arguments + np.random.default_rng(0).normal(
+        scale=0.05, size=table.arguments.shape
+    )
     assert theirs.get_depth() > 5
     assert np.array_equal(mine.leaf(noisy), theirs.apply(noisy))
-    np.testing.assert_allclose(mine.positive[mine.leaf(noisy)], theirs.predict_proba(noisy)[:, 1], atol=1e-7)
+    np.testing.assert_allclose(
+        mine.positive[mine.leaf(noisy)], theirs.predict_proba(noisy)[:, 1], atol=1e-7
+    )
 
 
 def test_the_boxes_of_a_trees_leaves_contain_the_training_sets_positives(data, tree):
@@ -151,7 +165,10 @@ def test_a_tree_of_clouds(data, encoder):
     weights = train_tree(some, "tree-pc", samples=24, seed=0, encoder=encoder)
     model = TreeModel(weights)
     for example in some:
-        assert model.classify(example.situation, example.situation.body.matrix[None])[0] == example.holds
+        assert (
+            model.classify(example.situation, example.situation.body.matrix[None])[0]
+            == example.holds
+        )
     assert model.propose(some[0].situation, 4, np.random.default_rng(0)).shape == (4, 4, 4)
 
 
@@ -194,7 +211,9 @@ def test_arrays_of_no_tree_are_refused(tree, change, message):
     if array is None:
         del arrays[name]
     elif isinstance(array, str):
-        arrays[name] = np.where(arrays["tree.feature"] < 0, arrays[name], 0 if array == "zero" else 38)
+        arrays[name] = np.where(
+            arrays["tree.feature"] < 0, arrays[name], 0 if array == "zero" else 38
+        )
     else:
         arrays[name] = array
     with pytest.raises(InputError, match=message):
@@ -209,15 +228,21 @@ def test_the_surface_sampler_stands_bodies_on_the_region(data):
         alone = type(situation)(situation.support, situation.region, situation.body, ())
         assert paper_oracle(alone, poses).all()
         assert model.classify(alone, poses).all()
-        bottom = [(situation.body.form.vertices @ p[:3, :3].T + p[:3, 3])[:, 2].min() for p in poses]
+        bottom = [
+            (situation.body.form.vertices @ p[:3, :3].T + p[:3, 3])[:, 2].min() for p in poses
+        ]
         np.testing.assert_allclose(bottom, situation.T_world_region[2, 3], atol=0.002)
         good.append(model.classify(situation, situation.body.matrix[None])[0] <= example.holds)
-    assert all(good)  # what floats or is sunken is said to; a body among others may be said to collide
+    assert all(
+        good
+    )  # what floats or is sunken is said to; a body among others may be said to collide
 
 
 def test_the_surface_sampler_has_nothing_under_a_low_ceiling(data):
     situation = data[0].situation
-    low = type(situation.region)(False, situation.region.matrix, np.array([0.8, 0.6, 0.01]), situation.region.box)
+    low = type(situation.region)(
+        False, situation.region.matrix, np.array([0.8, 0.6, 0.01]), situation.region.box
+    )
     under = type(situation)(situation.support, low, situation.body, situation.others)
     assert SurfaceModel().propose(under, 3, np.random.default_rng(0)).shape == (0, 4, 4)
 

@@ -7,7 +7,9 @@ MODELS, SCENES, FEATURES, PENALTY = 3, 16, 19, 10.0
 
 
 def test_the_gradient_by_hand_is_that_of_automatic_differentiation():
-    critic = Ensemble(critic_shapes(FEATURES), [torch.Generator().manual_seed(seed) for seed in range(MODELS)])
+    critic = Ensemble(
+        critic_shapes(FEATURES), [torch.Generator().manual_seed(seed) for seed in range(MODELS)]
+    )
     random = torch.Generator().manual_seed(9)
     for name, tensor in critic.fixed.items():
         if name.endswith("bias"):
@@ -21,14 +23,18 @@ def test_the_gradient_by_hand_is_that_of_automatic_differentiation():
     between = (mix * real + (1 - mix) * fake).requires_grad_()
     (slope,) = torch.autograd.grad(scores(between).sum(), between, create_graph=True)
     loss = scores(fake) - scores(real) + PENALTY * (slope.norm(dim=2) - 1) ** 2
-    expected = torch.autograd.grad(loss.mean(dim=1).sum(), list(critic.weights.values()), allow_unused=True)
+    expected = torch.autograd.grad(
+        loss.mean(dim=1).sum(), list(critic.weights.values()), allow_unused=True
+    )
 
     critic.gradient.zero_()
     critic_gradient(critic, real, fake, mix, PENALTY)
     found = critic.parts(critic.gradient)
     assert len(found) == 8
     for one, other in zip(expected, found, strict=True):
-        torch.testing.assert_close(other, torch.zeros_like(other) if one is None else one, atol=1e-4, rtol=1e-4)
+        torch.testing.assert_close(
+            other, torch.zeros_like(other) if one is None else one, atol=1e-4, rtol=1e-4
+        )
 
 
 def test_a_step_of_the_optimiser_is_torchs_rmsprop():

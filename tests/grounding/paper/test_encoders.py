@@ -10,7 +10,15 @@ import torch
 
 from grounding.dataset import Dataset
 from grounding.paper.cloud_embeddings import embedding_table
-from grounding.paper.encoders import ENCODERS, SCALINGS, Args, PosedClouds, chamfer, scaled, train_encoder
+from grounding.paper.encoders import (
+    ENCODERS,
+    SCALINGS,
+    Args,
+    PosedClouds,
+    chamfer,
+    scaled,
+    train_encoder,
+)
 from grounding.paper.feature_table import table_of
 from grounding.paper.features import CloudFeatures
 from grounding.paper.runtime import NumpyEncoder
@@ -30,7 +38,10 @@ def test_same_seed_same_encoder(data: Dataset, kind: str, scaling: str) -> None:
 
 def test_it_learns(data: Dataset) -> None:
     longer = replace(FEW, iterations=150, validate_every=50, batch=8)
-    assert train_encoder(data, "conv", "each", longer)[1] < 0.5 * train_encoder(data, "conv", "each", FEW)[1]
+    assert (
+        train_encoder(data, "conv", "each", longer)[1]
+        < 0.5 * train_encoder(data, "conv", "each", FEW)[1]
+    )
 
 
 @pytest.mark.parametrize("scaling", SCALINGS)
@@ -44,7 +55,10 @@ def test_codes_of_a_data_set_are_the_runtimes(data: Dataset, scaling: str) -> No
 
 def test_codes_of_few_scenes_without_their_surroundings(data: Dataset) -> None:
     encoder = NumpyEncoder(train_encoder(data, "conv", "one", FEW)[0])
-    whole, part = embedding_table(data, encoder), embedding_table(data, encoder, count=8, surroundings=False)
+    whole, part = (
+        embedding_table(data, encoder),
+        embedding_table(data, encoder, count=8, surroundings=False),
+    )
     assert len(part.holds) == len(part.others) == 8
     assert not part.others.any() and not part.share.any()
     assert part.arguments == pytest.approx(whole.arguments[:8], abs=1e-5)

@@ -38,7 +38,9 @@ def test_labels_are_what_physics_says_and_kinds_have_their_shares(data: Dataset)
 
 
 def test_bodies_stand_upright_on_the_papers_supports(data: Dataset) -> None:
-    upright = [abs(example.situation.body.matrix[2, 2]) > 0.999 for example in data if example.holds]
+    upright = [
+        abs(example.situation.body.matrix[2, 2]) > 0.999 for example in data if example.holds
+    ]
     assert np.mean(upright) >= (0.8 if data.relation == "on" else 0.4)
     names = {"table", "chest"} if data.relation == "on" else {"square_box", "long_box"}
     assert set(data.card["supports"]) == names
@@ -96,7 +98,9 @@ def test_an_ideal_generator_fails_by_the_surroundings_alone(data: Dataset) -> No
 
 
 @pytest.mark.parametrize("features", [BoxFeatures(), BoxFeatures(residual=True)])
-def test_completed_features_are_those_of_the_pose_that_comes_out(data: Dataset, features: BoxFeatures) -> None:
+def test_completed_features_are_those_of_the_pose_that_comes_out(
+    data: Dataset, features: BoxFeatures
+) -> None:
     rng = np.random.default_rng(1)
     for example in list(data)[:5]:
         seen = features.observe(example.situation)

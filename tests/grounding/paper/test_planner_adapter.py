@@ -35,7 +35,9 @@ def test_a_laid_body_stands_on_a_face_where_it_was(name: str) -> None:
         assert nearest.rotation[2] @ found[2, :3] == pytest.approx(1.0)
         low, lower = ((form.vertices @ one[2, :3] + one[2, 3]).min() for one in (pose, found))
         assert lower == pytest.approx(low)
-        assert (found[:3, :3] @ middle + found[:3, 3])[:2] == pytest.approx((pose[:3, :3] @ middle + pose[:3, 3])[:2])
+        assert (found[:3, :3] @ middle + found[:3, 3])[:2] == pytest.approx(
+            (pose[:3, :3] @ middle + pose[:3, 3])[:2]
+        )
         assert snapped(form, face, found) == pytest.approx(found)
 
 
@@ -46,7 +48,11 @@ def test_a_body_from_across_the_room_finds_many_places() -> None:
     T_world_region = SCENE.world_pose(surface)
     poses = grounding.propose(SCENE, ("mug", "cupboard_top"), 60, np.random.default_rng(0))
     faces = stable_faces_of(SCENE.bodies["mug"])
-    rested = [certified_pose(faces, one, surface, T_world_region) for one in poses if isinstance(one, Placement)]
+    rested = [
+        certified_pose(faces, one, surface, T_world_region)
+        for one in poses
+        if isinstance(one, Placement)
+    ]
     places = np.array([pose.position[:2] for pose in rested if isinstance(pose, Pose)])
     assert len(poses) == 60
     assert len(places) >= 15

@@ -40,7 +40,9 @@ def test_half_turns_are_no_exception(axis: int, angle: float) -> None:
 def test_the_quadratic_form_is_the_rotation() -> None:
     for turn in Rotation.random(10, rng=np.random.default_rng(0)).as_quat():
         matrix = np.eye(3).ravel() + np.outer(turn, turn).ravel() @ QUADRATIC
-        assert matrix.reshape(3, 3) == pytest.approx(Rotation.from_quat(turn).as_matrix(), abs=1e-12)
+        assert matrix.reshape(3, 3) == pytest.approx(
+            Rotation.from_quat(turn).as_matrix(), abs=1e-12
+        )
 
 
 def test_points_are_moved_one_each_or_one_for_all(rng: np.random.Generator) -> None:
@@ -50,7 +52,10 @@ def test_points_are_moved_one_each_or_one_for_all(rng: np.random.Generator) -> N
     for points in (rng.normal(size=(3, 3)), rng.normal(size=(1, 3))):
         moved = np.empty((3, 3))
         move(matrices, points, moved)
-        expected = np.einsum("nij,nj->ni", matrices[:, :3, :3], np.broadcast_to(points, (3, 3))) + matrices[:, :3, 3]
+        expected = (
+            np.einsum("nij,nj->ni", matrices[:, :3, :3], np.broadcast_to(points, (3, 3)))
+            + matrices[:, :3, 3]
+        )
         assert moved == pytest.approx(expected)
 
 
@@ -68,8 +73,12 @@ def test_a_turned_boxs_bounds_are_those_of_its_corners(rng: np.random.Generator)
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * corners[0, 1]
     points = signs @ rotations(turns)[0].T + [1.0, 2.0, 3.0]
     assert features[0, :3].tolist() == [1.0, 2.0, 3.0]
-    assert features[0, 3:9] == pytest.approx(np.concatenate([points.min(axis=0), points.max(axis=0)]))
-    assert features[0, 9:13] == pytest.approx(turns[0]) and features[0, 13:] == pytest.approx(corners.ravel())
+    assert features[0, 3:9] == pytest.approx(
+        np.concatenate([points.min(axis=0), points.max(axis=0)])
+    )
+    assert features[0, 9:13] == pytest.approx(turns[0]) and features[0, 13:] == pytest.approx(
+        corners.ravel()
+    )
 
 
 def test_a_cloud_lies_on_the_surface_evenly_by_area() -> None:

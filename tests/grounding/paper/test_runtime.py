@@ -26,7 +26,11 @@ def untrained(size, scene):
         for name, tensor in part.fixed.items():
             if name.endswith("bias"):
                 tensor.uniform_(-0.1, 0.1, generator=randoms[0])
-    arrays = {f"{name}.{key}": array for name, part in parts.items() for key, array in part.model(1).items()}
+    arrays = {
+        f"{name}.{key}": array
+        for name, part in parts.items()
+        for key, array in part.model(1).items()
+    }
     return parts, arrays
 
 
@@ -43,15 +47,22 @@ def as_tensors(seen, size, rng):
     arguments = np.stack([o.arguments.reshape(-1) for o in seen])
     others, share = np.zeros((3, 4, size)), np.zeros((3, 4))
     for row, o in enumerate(seen):
-        others[row, : len(o.others)], share[row, : len(o.others)] = o.others, 1 / max(1, len(o.others))
-    return Batch(*(torch.tensor(np.stack([a, a]), dtype=torch.float32) for a in (arguments, others, share)))
+        others[row, : len(o.others)], share[row, : len(o.others)] = (
+            o.others,
+            1 / max(1, len(o.others)),
+        )
+    return Batch(
+        *(torch.tensor(np.stack([a, a]), dtype=torch.float32) for a in (arguments, others, share))
+    )
 
 
 def widened(o, rng):
     """Its pose with the code of a cloud."""
 
     def wide(features):
-        return np.concatenate([features[:, :3], features[:, 9:13], rng.normal(size=(len(features), 128))], axis=1)
+        return np.concatenate(
+            [features[:, :3], features[:, 9:13], rng.normal(size=(len(features), 128))], axis=1
+        )
 
     return type(o)(wide(o.arguments), wide(o.others), o.origin, o.centre, o.extents)
 
@@ -66,7 +77,9 @@ def test_classifier_and_generator_agree_with_torch(size, scene, seen):
     with torch.no_grad():
         logits = score(parts["classifier"].weights, batch)[1]
         moved = generate(parts["generator"].weights, batch, torch.tensor(np.stack([noise, noise])))
-        judgement = torch.sigmoid(score(parts["classifier"].weights, Batch(moved, batch.others, batch.share))[1])
+        judgement = torch.sigmoid(
+            score(parts["classifier"].weights, Batch(moved, batch.others, batch.share))[1]
+        )
     classifier, generator = Network(arrays, "classifier"), Network(arrays, "generator")
     for row, o in enumerate(seen):
         positions, turns = generated(generator, o, noise[row : row + 1])
@@ -87,10 +100,14 @@ def test_a_proposal_is_the_pose_of_the_generated_features(data):
     positions, turns = generated(model.generator, o, noise)
     np.testing.assert_allclose(poses[:, :3, :3], rotations(unit(turns.astype(float))), atol=1e-6)
     box = situation.body.form.corners.mean(axis=0)
-    np.testing.assert_allclose(poses[:, :3, :3] @ box + poses[:, :3, 3], o.origin + positions, atol=1e-6)
+    np.testing.assert_allclose(
+        poses[:, :3, :3] @ box + poses[:, :3, 3], o.origin + positions, atol=1e-6
+    )
     argument = BoxFeatures().at(o, situation, poses)
     expected = completed(o, positions.astype(float), unit(turns.astype(float)))
-    same = np.sign((argument[:, 9:13] * expected[:, 9:13]).sum(axis=1))  # q and -q are the same turn
+    same = np.sign(
+        (argument[:, 9:13] * expected[:, 9:13]).sum(axis=1)
+    )  # q and -q are the same turn
     expected[:, 9:13] *= same[:, None]
     np.testing.assert_allclose(argument, expected, atol=1e-6)
 
@@ -106,11 +123,20 @@ def test_the_same_seed_proposes_the_same(data):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"classifier.main.0.weight": np.zeros((40, 64))}, "a classifier of 40 features; known: 38"),
-        ({"classifier.main.1.weight": np.zeros((63, 32))}, "layer 'classifier.main.1' does not fit"),
+        (
+            {"classifier.main.0.weight": np.zeros((40, 64))},
+            "a classifier of 40 features; known: 38",
+        ),
+        (
+            {"classifier.main.1.weight": np.zeros((63, 32))},
+            "layer 'classifier.main.1' does not fit",
+        ),
         ({"generator.main.0.weight": np.zeros((7,))}, "layer 'generator.main.0' does not fit"),
         ({"generator.main.0.weight": np.zeros((41, 12))}, "the generator is given 41"),
-        ({"generator.main.2.weight": np.zeros((12, 6)), "generator.main.2.bias": np.zeros(6)}, "returns 6"),
+        (
+            {"generator.main.2.weight": np.zeros((12, 6)), "generator.main.2.bias": np.zeros(6)},
+            "returns 6",
+        ),
     ],
 )
 def test_arrays_of_something_else_are_refused(change, message):

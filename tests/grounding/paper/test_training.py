@@ -17,7 +17,8 @@ def test_a_classifier_learns_the_height(model, data):
     assert weights[0].card["samples"] == 240
     trained = PaperModel(weights[0])
     right = [
-        (trained.classify(example.situation, example.situation.body.matrix[None])[0] > 0.5) == example.holds
+        (trained.classify(example.situation, example.situation.body.matrix[None])[0] > 0.5)
+        == example.holds
         for example in data.take(range(100))
     ]
     assert np.mean(right) > 0.9
@@ -40,13 +41,17 @@ def test_a_model_is_what_it_would_be_if_trained_alone(table):
     assert len(together[1]) == 24
     for name, array in together[1].items():
         np.testing.assert_allclose(array, alone[0][name], atol=1e-4)
-    assert not np.array_equal(together[0]["generator.main.0.weight"], together[1]["generator.main.0.weight"])
+    assert not np.array_equal(
+        together[0]["generator.main.0.weight"], together[1]["generator.main.0.weight"]
+    )
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_the_same_seed_gives_the_same_weights(table, scheme):
     once, again = (trained(table, [240, 20], [0, 3], scheme, iterations=3) for _ in range(2))
-    assert all(np.array_equal(a[name], b[name]) for a, b in zip(once, again, strict=True) for name in a)
+    assert all(
+        np.array_equal(a[name], b[name]) for a, b in zip(once, again, strict=True) for name in a
+    )
 
 
 def test_a_run_goes_on_from_its_state(table, tmp_path):

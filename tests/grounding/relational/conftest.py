@@ -16,7 +16,10 @@ SCENES = 120
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Dataset]:
     """Both relations' training scenes."""
     folder = tmp_path_factory.mktemp("scenes")
-    return {name: generate(Job(name, "train", SCENES), folder / f"{name}.npz", workers=1) for name in ("on", "inside")}
+    return {
+        name: generate(Job(name, "train", SCENES), folder / f"{name}.npz", workers=1)
+        for name in ("on", "inside")
+    }
 
 
 @pytest.fixture(scope="session")

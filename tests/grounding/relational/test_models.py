@@ -41,7 +41,9 @@ def test_a_chart_finds_poses_again(scenes: dict[str, Dataset], relation: str) ->
         turn = again.poses[0, :3, :3].T @ one.poses[0, :3, :3]
         moved = np.abs(again.poses[0, :3, 3] - one.poses[0, :3, 3]).max()
         found.append(moved < 0.01 and np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1)) < 0.06)
-    assert np.mean(found) > 0.85  # what leans on a wall, or stands on an edge of many, is proposed upright
+    assert (
+        np.mean(found) > 0.85
+    )  # what leans on a wall, or stands on an edge of many, is proposed upright
     assert chart.contained is (relation == "inside")
 
 
@@ -50,19 +52,27 @@ def test_a_chart_finds_poses_again(scenes: dict[str, Dataset], relation: str) ->
 def test_what_is_proposed_holds_in_physics(
     scenes: dict[str, Dataset], trained: Trained, relation: str, model: str
 ) -> None:
-    grounding, rng, held, items = RelationalModel(trained[relation, model]), np.random.default_rng(0), [], ItemOf()
+    grounding, rng, held, items = (
+        RelationalModel(trained[relation, model]),
+        np.random.default_rng(0),
+        [],
+        ItemOf(),
+    )
     with open_drops() as drops:
         for index in range(40):  # scenes that it was trained on: does it work at all?
             situation = scenes[relation][index].situation
             poses = grounding.propose(situation, 1, rng)
-            held.append(len(poses) == 1 and settled(situation, poses, drops, items)[0] is Verdict.HOLDS)
+            held.append(
+                len(poses) == 1 and settled(situation, poses, drops, items)[0] is Verdict.HOLDS
+            )
     assert np.mean(held) > 0.6
 
 
 def test_the_ranker_classifies(scenes: dict[str, Dataset], trained: Trained) -> None:
     grounding = RelationalModel(trained["on", "transfer"])
     right = [
-        (grounding.classify(example.situation, example.situation.body.matrix[None])[0] > 0.5) == example.holds
+        (grounding.classify(example.situation, example.situation.body.matrix[None])[0] > 0.5)
+        == example.holds
         for example in scenes["on"]
     ]
     assert np.mean(right) > 0.9
@@ -101,13 +111,18 @@ def test_numpy_ranks_as_torch_does(scenes: dict[str, Dataset]) -> None:
 
 def test_numpy_flows_as_torch_does(scenes: dict[str, Dataset]) -> None:
     net, rng = FlowNet(32), np.random.default_rng(0)
-    chart = RelationalCoordinates.fit([measure(example) for example in scenes["on"] if example.holds])
+    chart = RelationalCoordinates.fit(
+        [measure(example) for example in scenes["on"] if example.holds]
+    )
     flow = Flow(chart, {**net.arrays(), "scale": np.ones(COORDINATES, np.float32)})
     for example in scenes["on"].take(range(20)):
         view = RegionFrame(example.situation)
         known = np.repeat(condition(view)[:1], 3, axis=0)
         around, half = surroundings(view), np.asarray(view.region.size[:2] / 2, np.float32)
-        x, time = rng.normal(size=(3, COORDINATES)).astype(np.float32), np.full((3, 1), 0.5, np.float32)
+        x, time = (
+            rng.normal(size=(3, COORDINATES)).astype(np.float32),
+            np.full((3, 1), 0.5, np.float32),
+        )
         padded = np.zeros((1, len(around) + 1, 6), np.float32)
         padded[0, : len(around)] = around
         missing = np.arange(len(around) + 1) == len(around)
@@ -148,7 +163,10 @@ def test_weights_that_are_no_such_grounding(tmp_path: Path, trained: Trained) ->
         Weights({"sizes": weights.arrays["sizes"]}, card),
         Weights({**weights.arrays, "faces": np.zeros((3, 2))}, card),
         Weights(weights.arrays, {**card, "chart": {"level": 1}}),
-        Weights({**trained["on", "flow"].arrays, "flow.face.0.weight": np.zeros((2, 2), np.float32)}, card),
+        Weights(
+            {**trained["on", "flow"].arrays, "flow.face.0.weight": np.zeros((2, 2), np.float32)},
+            card,
+        ),
     ):
         write_weights(path, wrong)
         with pytest.raises(InputError, match="no weights of 'transfer'"):

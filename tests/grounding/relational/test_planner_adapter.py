@@ -39,4 +39,6 @@ def test_a_pose_far_from_the_region_stays_a_pose() -> None:
     lifted = pose.matrix.copy()
     lifted[2, 3] += 0.1
     assert isinstance(laid(SCENE, arguments, rotation, lifted), Pose)
-    assert isinstance(laid(SCENE, arguments, np.eye(3)[::-1], pose.matrix), Pose)  # no face of the body
+    assert isinstance(
+        laid(SCENE, arguments, np.eye(3)[::-1], pose.matrix), Pose
+    )  # no face of the body

@@ -21,14 +21,19 @@ def left(rng: Random) -> tuple[float, float, bool]:
 
 def elsewhere(rng: Random) -> tuple[float, float, bool]:
     gap, side = float(rng.uniform(0.01, 0.1)), float(rng.uniform(0.16, 0.25))
-    return [(gap, 0.0, False), (0.1, side, False), (0.1, -side, False), (-0.25, 0.0, False)][int(rng.integers(4))]
+    return [(gap, 0.0, False), (0.1, side, False), (0.1, -side, False), (-0.25, 0.0, False)][
+        int(rng.integers(4))
+    ]
 
 
 def write_one(path: Path, rng: Random, way: Way, name: str = "left_of", **fixed: float) -> None:
     """One scene: a cup beside a plate, as `way` has its gap to the right and how far it is behind."""
     height, yaw = fixed.get("height", rng.uniform(0.4, 0.9)), fixed.get("yaw", rng.uniform(-3, 3))
     front = Pose.from_xyz_yaw(rng.uniform(1, 2), rng.uniform(-1, 1), 0, yaw)
-    plate, radius = fixed.get("plate", rng.uniform(0.07, 0.1)), fixed.get("cup", rng.uniform(0.03, 0.045))
+    plate, radius = (
+        fixed.get("plate", rng.uniform(0.07, 0.1)),
+        fixed.get("cup", rng.uniform(0.03, 0.045)),
+    )
     tall = 2 * radius if "cup" in fixed else rng.uniform(0.08, 0.14)
     gap, behind, holds = way(rng)
     middle = rng.uniform(-0.1, 0.2)
@@ -53,5 +58,10 @@ def write_demos(folder: Path, seed: int = 0, good: int = 10, bad: int = 10, **fi
     """A folder of demonstrations of `left_of`."""
     rng = np.random.default_rng(seed)
     for number in range(good + bad):
-        write_one(folder / f"left_of_{number:03d}.yaml", rng, left if number < good else elsewhere, **fixed)
+        write_one(
+            folder / f"left_of_{number:03d}.yaml",
+            rng,
+            left if number < good else elsewhere,
+            **fixed,
+        )
     return folder

@@ -48,9 +48,18 @@ def problem(folder: Path, goal: str, on: str = "sideboard, at: [0.2, -0.1]") -> 
     return tamp.load_problem(path, registry=GROUNDINGS)
 
 
-def test_a_relation_is_learned_shown_as_a_diff_and_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_relation_is_learned_shown_as_a_diff_and_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_demos(tmp_path / "demos", good=6, bad=6, height=0.72)
-    words = ["new", "left_of", "--demos", str(tmp_path / "demos"), "--out", str(tmp_path / "w.safetensors")]
+    words = [
+        "new",
+        "left_of",
+        "--demos",
+        str(tmp_path / "demos"),
+        "--out",
+        str(tmp_path / "w.safetensors"),
+    ]
     assert run([*words, "--add-to", str(tmp_path / "mine.pddl"), "--dry-run"]) == DONE
     said = capsys.readouterr().out
     assert "12 demonstrations of left_of: it holds in 6, and does not in 6" in said
@@ -71,7 +80,9 @@ def test_a_relation_is_learned_shown_as_a_diff_and_written(tmp_path: Path, capsy
         ("(exists (?b - movable) (left_of ?b plate))", "sideboard, at: [0.2, -0.1]", 4),
     ],
 )
-def test_a_plan_makes_it_true_and_the_judge_agrees(folder: Path, goal: str, on: str, actions: int) -> None:
+def test_a_plan_makes_it_true_and_the_judge_agrees(
+    folder: Path, goal: str, on: str, actions: int
+) -> None:
     solution = tamp.solve(problem(folder, goal, on), max_time=60.0, seed=0)
     assert solution.solved and len(solution.plan) == actions
     relation = file_grounding("left_of", folder / "left_of.safetensors")
@@ -81,9 +92,18 @@ def test_a_plan_makes_it_true_and_the_judge_agrees(folder: Path, goal: str, on: 
         assert "place  cup  left_of plate" in summary(solution)
 
 
-def test_evaluation_judges_labels_and_drops_proposals(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_evaluation_judges_labels_and_drops_proposals(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_demos(folder / "others", seed=9, good=4, bad=4)
-    words = ["--scenes", "6", "--demos", str(folder / "others"), "--pictures", str(folder / "pictures")]
+    words = [
+        "--scenes",
+        "6",
+        "--demos",
+        str(folder / "others"),
+        "--pictures",
+        str(folder / "pictures"),
+    ]
     assert run(["evaluate", str(folder / "left_of.safetensors"), *words]) == DONE
     said = capsys.readouterr().out
     assert "of 4 demonstrations of what holds" in said and "of 6 proposals" in said
@@ -108,9 +128,20 @@ def test_answers_become_demonstrations(
     assert "'perhaps' is no answer" in capsys.readouterr().err
 
 
-def test_what_was_explored_is_written_to_be_labelled(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_was_explored_is_written_to_be_labelled(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_demos(tmp_path / "demos", good=5, bad=5)
-    words = ["explore", "left_of", "--demos", str(tmp_path / "demos"), "--count", "4", "--out", str(tmp_path / "new")]
+    words = [
+        "explore",
+        "left_of",
+        "--demos",
+        str(tmp_path / "demos"),
+        "--count",
+        "4",
+        "--out",
+        str(tmp_path / "new"),
+    ]
     assert run(words) == DONE
     assert "4 scenes that came to rest" in capsys.readouterr().out
     assert len(list(demonstrations_of("left_of", [tmp_path / "new"]))) == 4
@@ -126,6 +157,8 @@ def test_what_was_explored_is_written_to_be_labelled(tmp_path: Path, capsys: pyt
         (["ask", "left_of", "--demos", "nowhere"], "no demonstrations there"),
     ],
 )
-def test_bad_words_are_one_error(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bad_words_are_one_error(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(words) == BAD_INPUT
     assert message in capsys.readouterr().err

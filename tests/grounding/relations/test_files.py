@@ -31,7 +31,9 @@ def learned(demos: list[Demonstration]) -> Learned:
     return learn("left_of", demos, np.random.default_rng(0))
 
 
-def test_weights_say_the_same_when_they_are_read(learned: Learned, demos: list[Demonstration], tmp_path: Path) -> None:
+def test_weights_say_the_same_when_they_are_read(
+    learned: Learned, demos: list[Demonstration], tmp_path: Path
+) -> None:
     path = tmp_path / "left_of.safetensors"
     write_weights(path, weights_of(learned, {"seed": 0}))
     again, first = file_grounding("left_of", path), LearnedRelation(weights_of(learned, {}))
@@ -41,7 +43,10 @@ def test_weights_say_the_same_when_they_are_read(learned: Learned, demos: list[D
         answer = again.classify(one.scene, one.arguments)
         assert answer == first.classify(one.scene, one.arguments)
         right += (answer >= 0.5) == one.holds
-        poses = [relation.propose(one.scene, one.arguments, 4, np.random.default_rng(1)) for relation in (again, first)]
+        poses = [
+            relation.propose(one.scene, one.arguments, 4, np.random.default_rng(1))
+            for relation in (again, first)
+        ]
         assert poses[0] == poses[1] and 1 <= len(poses[0]) <= 4
     assert right >= 19
     with pytest.raises(InputError, match="weights for 'left_of', not 'right_of'"):
@@ -68,7 +73,9 @@ def test_a_classifier_that_cannot_tell_is_none(learned: Learned, tmp_path: Path)
         ("shown_R", np.zeros((2, 2)), "do not fit together"),
     ],
 )
-def test_damaged_weights_are_refused(learned: Learned, array: str, value: np.ndarray | None, message: str) -> None:
+def test_damaged_weights_are_refused(
+    learned: Learned, array: str, value: np.ndarray | None, message: str
+) -> None:
     whole = weights_of(learned, {})
     arrays = {name: one for name, one in whole.arrays.items() if name != array}
     if value is not None:
@@ -91,7 +98,11 @@ def test_the_card_says_how_well_it_did(learned: Learned, tmp_path: Path) -> None
     write_weights(tmp_path / "x.safetensors", weights_of(learned, {"seed": 3}))
     card = read_weights(tmp_path / "x.safetensors").card
     assert card["model"] == "conjunctions" and card["positive"] == 10 and card["samples"] == 20
-    assert card["kinds"] == ["movable", "movable"] and card["held out"][0] > 0.7 and card["classifies"] is True
+    assert (
+        card["kinds"] == ["movable", "movable"]
+        and card["held out"][0] > 0.7
+        and card["classifies"] is True
+    )
 
 
 KINDS = [
@@ -126,9 +137,13 @@ def test_a_domain_gets_a_relation_once_and_keeps_its_text(tmp_path: Path) -> Non
     lines = [line for line in diff(texts).splitlines() if line.startswith(("+", "-"))]
     removed = [line for line in lines if line.startswith("-") and not line.startswith("---")]
     assert len(removed) == 2 and all("second" not in line for line in removed)
-    assert all(line[1:].rstrip(")") in "".join(new for _, new in texts.values()) for line in removed)
+    assert all(
+        line[1:].rstrip(")") in "".join(new for _, new in texts.values()) for line in removed
+    )
     assert any("(second ?o - movable ?o2 - movable)" in line for line in lines)
-    assert all(new.startswith("; my own comment (with a parenthesis\n") for _, new in texts.values())
+    assert all(
+        new.startswith("; my own comment (with a parenthesis\n") for _, new in texts.values()
+    )
     for file, (_, text) in texts.items():
         file.write_text(text)
     assert diff(added(path, Words("second", ("movable", "movable")), "other note")) == ""

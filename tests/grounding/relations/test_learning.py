@@ -53,7 +53,10 @@ def test_several_proposals_differ_and_hold() -> None:
         R, p = generator.propose(situations(one), 16, rng, steady(one, 0))
         many = pick(s, [row] * len(R))
         many["R"][:, 0], many["p"][:, 0] = R, p
-        assert len(R) == 16 and (RELATIONS["next_to"].holds(many) & (trouble(many) < 0.002)).mean() > 0.8
+        assert (
+            len(R) == 16
+            and (RELATIONS["next_to"].holds(many) & (trouble(many) < 0.002)).mean() > 0.8
+        )
         apart = np.abs(p[:, None] - p).max(axis=2) + 10 * np.abs(R[:, None] - R).max(axis=(2, 3))
         assert (apart + np.eye(16)).min() > 1e-3
         faces |= {*np.abs(R[:, 2]).argmax(axis=1).tolist()}
@@ -82,7 +85,9 @@ def test_a_situation_with_both_labels_is_refused_with_both_places(tmp_path: Path
         .replace("goal: (left_of cup plate)", "goal: (not (left_of cup plate))")
     )
     (folder / "left_of_900.yaml").write_text(text)
-    with pytest.raises(InputError, match=r"same situation: .*left_of_000.yaml.* and .*left_of_900.yaml"):
+    with pytest.raises(
+        InputError, match=r"same situation: .*left_of_000.yaml.* and .*left_of_900.yaml"
+    ):
         learn("left_of", list(demonstrations_of("left_of", [folder])), np.random.default_rng(0))
 
 
@@ -118,7 +123,9 @@ def test_one_label_alone_only_proposes(demos: list[Demonstration]) -> None:
         ({"cup": 0.04}, "size of 0", "cup was always 8 x 8 x 8 cm large"),
     ],
 )
-def test_what_is_not_varied_is_warned_of(fixed: dict[str, float], key: str, words: str, tmp_path: Path) -> None:
+def test_what_is_not_varied_is_warned_of(
+    fixed: dict[str, float], key: str, words: str, tmp_path: Path
+) -> None:
     found = list(demonstrations_of("left_of", [write_demos(tmp_path, good=6, bad=6, **fixed)]))
     every = joined([situation_of(one.scene, one.arguments) for one in found])
     holds = np.array([one.holds for one in found])
@@ -141,7 +148,10 @@ def test_lazy_heights_cost_nothing_and_one_yaw_is_warned_of() -> None:
 
 def test_questions_are_about_what_is_disputed() -> None:
     rng = np.random.default_rng(0)
-    good, bad = (situations(shown("left_of_front", count, holds, rng)) for count, holds in ((4, True), (3, False)))
+    good, bad = (
+        situations(shown("left_of_front", count, holds, rng))
+        for count, holds in ((4, True), (3, False))
+    )
     evidence = gather(good, bad, rng)
     committee = fit(evidence)
     sure = situations(shown("left_of_front", 30, False, rng, test=True))

@@ -57,7 +57,12 @@ def test_measures_say_what_their_names_say(tmp_path) -> None:
 
 def test_a_line_is_measured_between_the_other_two(tmp_path) -> None:
     found = seen(tmp_path, "plate", "cup", "spoon")
-    expected = {"line: share": 0.5, "line: beside": 0.0, "line: angle": math.pi, "line: beyond 2": -0.3}
+    expected = {
+        "line: share": 0.5,
+        "line: beside": 0.0,
+        "line: angle": math.pi,
+        "line: beyond 2": -0.3,
+    }
     assert {key: found[key] for key in expected} == pytest.approx(expected, abs=2e-3)
 
 
@@ -75,7 +80,9 @@ def test_measures_do_not_depend_on_where_in_the_world_it_is(name: str) -> None:
     world = np.array(["world" in one.key for one in listed])
     off = measure(moved) - measure(s)
     period = np.array([one.period for one in listed])
-    off = np.where(period > 0, (off + period / 2) % np.where(period > 0, period, 1) - period / 2, off)
+    off = np.where(
+        period > 0, (off + period / 2) % np.where(period > 0, period, 1) - period / 2, off
+    )
     assert np.abs(off[:, ~world]).max() < 1e-6
     assert (np.abs(off[:, world]).max(axis=0) > 0.01).all()
 
@@ -93,7 +100,12 @@ def test_the_catalogue_and_the_kernel_agree(arguments: int) -> None:
     rng = np.random.default_rng(arguments)
     s = situations(shown("between", 5, True, rng))
     rows = np.resize(np.arange(3), arguments)
-    s = replace(s, shape=s.shape[:, rows], R=s.R[:, rows], p=s.p[:, rows] + rng.uniform(0, 1, (5, arguments, 3)))
+    s = replace(
+        s,
+        shape=s.shape[:, rows],
+        R=s.R[:, rows],
+        p=s.p[:, rows] + rng.uniform(0, 1, (5, arguments, 3)),
+    )
     keys = [one.key for one in catalogue(arguments)]
     assert len({*keys}) == len(keys)
     values = measure(s)

@@ -54,7 +54,9 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_an_optimal_plan_is_found_shown_written_and_judged(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_optimal_plan_is_found_shown_written_and_judged(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["d.pddl", "p.pddl", "--search", "astar", "--verify"]) == SOLVED
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "round: 2 goals, 5 objects, domain errands"
@@ -71,7 +73,10 @@ def test_an_optimal_plan_is_found_shown_written_and_judged(files: Path, capsys: 
 
 @pytest.mark.parametrize("search", ["greedy", "eager", "wastar", "astar"])
 def test_every_search_is_a_choice(search: str, files: Path) -> None:
-    assert run(["d.pddl", "p.pddl", "--search", search, "--heuristic", "landmarks", "--quiet"]) == SOLVED
+    assert (
+        run(["d.pddl", "p.pddl", "--search", search, "--heuristic", "landmarks", "--quiet"])
+        == SOLVED
+    )
     assert verify("plan.json").holds
 
 
@@ -94,12 +99,20 @@ def test_json(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ("old", "new", "words"),
     [
         ("(served ?p)", "(unused van)", "(unused van): no action"),  # nothing makes it true
-        ("(:goal (and", "(:goal (and (at van a) (broken van)", "(broken van) and (not (broken van)) cannot both"),
+        (
+            "(:goal (and",
+            "(:goal (and (at van a) (broken van)",
+            "(broken van) and (not (broken van)) cannot both",
+        ),
     ],
 )
-def test_no_plan_is_proven(old: str, new: str, words: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_plan_is_proven(
+    old: str, new: str, words: str, files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     goal = PROBLEM.index("(:goal")
-    (files / "p.pddl").write_text(PROBLEM[:goal] + PROBLEM[goal:].replace(old, new), encoding="utf-8")
+    (files / "p.pddl").write_text(
+        PROBLEM[:goal] + PROBLEM[goal:].replace(old, new), encoding="utf-8"
+    )
     assert run(["d.pddl", "p.pddl"]) == NO_PLAN
     shown = capsys.readouterr().out
     assert "No plan: infeasible" in shown
@@ -111,10 +124,15 @@ def test_time_is_kept(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Forty places in a grid and blind search: more states than half a second has room for."""
     cars = " ".join(f"car{i}" for i in range(9))
     text = PROBLEM.replace("van - truck", f"van - truck {cars} - car")
-    text = text.replace("(at van home)", "(at van home)" + "".join(f" (at car{i} home)" for i in range(9)))
+    text = text.replace(
+        "(at van home)", "(at van home)" + "".join(f" (at car{i} home)" for i in range(9))
+    )
     text = text.replace("(not (broken van))", "(at car0 c) (at car8 c) (at car5 c) (at car4 c)")
     (files / "p.pddl").write_text(text, encoding="utf-8")
-    assert run(["d.pddl", "p.pddl", "--search", "astar", "--heuristic", "blind", "--time", "0.5"]) == NO_PLAN
+    assert (
+        run(["d.pddl", "p.pddl", "--search", "astar", "--heuristic", "blind", "--time", "0.5"])
+        == NO_PLAN
+    )
     assert "No plan in 0." in capsys.readouterr().out
 
 
@@ -129,7 +147,9 @@ def test_time_is_kept(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (["one_object", "--search", "astar"], "are for problems in PDDL"),
     ],
 )
-def test_wrong_commands(arguments: list[str], words: str, files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_commands(
+    arguments: list[str], words: str, files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(arguments) == BAD_INPUT
     assert words in capsys.readouterr().err
 
@@ -155,7 +175,9 @@ def test_the_judge_finds_what_is_wrong(files: Path) -> None:
     plan = plan_of(files)
     del plan["actions"][-1]
     plan["cost"] = 5
-    assert [str(v) for v in verify(plan).violations] == ["goal         (not (broken van)) does not hold"]
+    assert [str(v) for v in verify(plan).violations] == [
+        "goal         (not (broken van)) does not hold"
+    ]
     plan = plan_of(files)
     plan["actions"][0]["cost"] = 2
     assert [(v.kind, v.message) for v in verify(plan).violations] == [("cost", "it costs 3, not 2")]
@@ -182,19 +204,35 @@ def test_the_judge_refuses_what_it_cannot_read(files: Path) -> None:
     assert verify(plan, problem="elsewhere.pddl").holds
 
 
-def test_several_searches_at_a_time_give_the_plan_of_one(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_several_searches_at_a_time_give_the_plan_of_one(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["d.pddl", "p.pddl", "--jobs", "3", "--json", "--verify"]) == SOLVED
     document = json.loads(capsys.readouterr().out)
     named = document["statistics"]
     assert (named["search"], named["heuristic"]) in portfolio(None, None, 3)
-    again = ["d.pddl", "p.pddl", "--search", named["search"], "--heuristic", named["heuristic"], "--json"]
+    again = [
+        "d.pddl",
+        "p.pddl",
+        "--search",
+        named["search"],
+        "--heuristic",
+        named["heuristic"],
+        "--json",
+    ]
     assert run(again) == SOLVED
     assert json.loads(capsys.readouterr().out)["actions"] == document["actions"]
 
 
-def test_searches_beside_an_optimal_one_are_optimal(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_searches_beside_an_optimal_one_are_optimal(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     pairs = portfolio("astar", None, 9)
-    assert pairs[0] == ("astar", "lmcut") and len(pairs) > 2 and all(search == "astar" for search, _ in pairs)
+    assert (
+        pairs[0] == ("astar", "lmcut")
+        and len(pairs) > 2
+        and all(search == "astar" for search, _ in pairs)
+    )
     assert run(["d.pddl", "p.pddl", "--jobs", "2", "--search", "astar"]) == SOLVED
     assert "(optimal)" in capsys.readouterr().out
 

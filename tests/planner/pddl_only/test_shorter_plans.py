@@ -69,6 +69,8 @@ def test_the_first_plan_stands_where_there_is_no_time_for_another(
     assert len(solve.solve_symbolic(four_discs).plan) > 60
 
 
-def test_a_large_task_is_left_as_it_is(four_discs: solve.SymbolicProblem, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_large_task_is_left_as_it_is(
+    four_discs: solve.SymbolicProblem, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(solve, "SHORTENING", 1000)
     assert len(solve.solve_symbolic(four_discs).plan) > 60

@@ -39,7 +39,9 @@ def written(kind: str, folder: Path, seed: int = 0) -> Path:
         ("loaded", "without slab"),
     ],
 )
-def test_the_smallest_change(kind: str, change: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_smallest_change(
+    kind: str, change: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "plan.json"
     assert run([str(written(kind, tmp_path)), "--why", "--json", "--out", str(out)]) == NO_PLAN
     document = json.loads(capsys.readouterr().out)
@@ -49,12 +51,17 @@ def test_the_smallest_change(kind: str, change: str, tmp_path: Path, capsys: pyt
 
 
 def test_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run([str(written("loaded", tmp_path)), "--why", "--out", str(tmp_path / "plan.json")]) == NO_PLAN
+    assert (
+        run([str(written("loaded", tmp_path)), "--why", "--out", str(tmp_path / "plan.json")])
+        == NO_PLAN
+    )
     text = capsys.readouterr().out
     assert "It would be solvable without slab" in text and text.count("No plan") == 1
 
 
-def test_nothing_is_asked_when_there_is_a_plan(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nothing_is_asked_when_there_is_a_plan(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["one_object", "--why", "--json", "--out", str(tmp_path / "plan.json")]) == SOLVED
     assert "why" not in json.loads(capsys.readouterr().out)
 
@@ -67,7 +74,9 @@ def test_every_change_makes_one_thing_different(kind: str, tmp_path: Path) -> No
         assert change.about and change.text
         if change.scene is not None:
             ours, theirs = problem.scene.bodies, change.scene.bodies
-            different = {name for name in ours if name not in theirs or theirs[name] is not ours[name]}
+            different = {
+                name for name in ours if name not in theirs or theirs[name] is not ours[name]
+            }
             assert different & set(change.about) and theirs.keys() <= ours.keys()
 
 
@@ -80,15 +89,21 @@ def test_the_benchmark_names_causes_that_are_there(kind: str, seed: int) -> None
     assert named(case, (" ".join(group[0] for group in case.cause),))
 
 
-def outcomes(monkeypatch: pytest.MonkeyPatch, chance: dict[str, set[int]], spent: list[float]) -> None:
+def outcomes(
+    monkeypatch: pytest.MonkeyPatch, chance: dict[str, set[int]], spent: list[float]
+) -> None:
     """Let planning succeed for the seeds that are given for a scene's lack of a body, or for the whole scene."""
 
-    def solved(problem: Problem, *, max_time: float, seed: int, progress: object = None) -> Solution:
+    def solved(
+        problem: Problem, *, max_time: float, seed: int, progress: object = None
+    ) -> Solution:
         gone = next((name for name in chance if name and name not in problem.scene.bodies), "")
         spent.append(max_time)
         if seed in chance.get(gone, set()):
             action = Action("pick", (), (), Trajectory(()), 0.0, 1.0)
-            return Solution(problem, Outcome.SOLVED, seed, "adaptive", plan=(action,), seconds={"total": 0.1})
+            return Solution(
+                problem, Outcome.SOLVED, seed, "adaptive", plan=(action,), seconds={"total": 0.1}
+            )
         return Solution(problem, Outcome.TIMEOUT, seed, "adaptive", seconds={"total": max_time})
 
     monkeypatch.setattr("tamp.planner.suggestions.why.solve", solved)
@@ -101,7 +116,9 @@ def asked(folder: Path, outcome: Outcome = Outcome.TIMEOUT) -> Suggestions:
     return suggest_changes(solution, lambda scene: load_problem(path, scene=scene), max_time=30.0)
 
 
-def test_a_body_is_named_only_where_three_seeds_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_body_is_named_only_where_three_seeds_agree(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     spent: list[float] = []
     outcomes(monkeypatch, {"monitor": {0, 1, 2}, "other_0": {0, 1}}, spent)
     found = asked(tmp_path)
@@ -109,17 +126,25 @@ def test_a_body_is_named_only_where_three_seeds_agree(tmp_path: Path, monkeypatc
     assert ("without other_0", 2) in found.failed and len(set(spent)) == 1
     text = found.text()
     assert "It would be solvable without monitor" in text
-    assert "tried as well, and did not help: " in text and "without other_0 (helps with 2 of 3 seeds)" in text
+    assert (
+        "tried as well, and did not help: " in text
+        and "without other_0 (helps with 2 of 3 seeds)" in text
+    )
 
 
 def test_luck_is_no_cause(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     outcomes(monkeypatch, {"monitor": {0, 1, 2}, "": {1}}, [])
     found = asked(tmp_path)
     assert found.suggestions == () and found.unchanged == (1,)
-    assert "With --seed 1 a plan is found as it is" in found.text() and "without monitor" not in found.text()
+    assert (
+        "With --seed 1 a plan is found as it is" in found.text()
+        and "without monitor" not in found.text()
+    )
 
 
-def test_what_is_proven_needs_no_second_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_proven_needs_no_second_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     spent: list[float] = []
     outcomes(monkeypatch, {"monitor": {0, 1, 2}}, spent)
     found = asked(tmp_path, Outcome.INFEASIBLE)

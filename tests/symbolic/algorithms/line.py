@@ -70,7 +70,9 @@ class Line:
     regions: Mapping[str, tuple[float, float]]
     reach: tuple[float, float] = (-1.0, 1000.0)
 
-    def problem(self, goal: str, *, domain: str = DOMAIN, facts: str = "", **functions: Any) -> StreamTask:
+    def problem(
+        self, goal: str, *, domain: str = DOMAIN, facts: str = "", **functions: Any
+    ) -> StreamTask:
         """The planning problem; `functions` stand in for those of this class, underscores for hyphens."""
         given = {name.replace("_", "-"): function for name, function in functions.items()}
         known = {
@@ -79,7 +81,9 @@ class Line:
             "inverse-kin": self.inverse_kin,
             "test-clear": clear,
         }
-        objects = {name: ("block",) for name in self.blocks} | {name: ("region",) for name in self.regions}
+        objects = {name: ("block",) for name in self.blocks} | {
+            name: ("region",) for name in self.regions
+        }
         objects |= {f"{name}_start": ("pose",) for name in self.blocks} | {"home": ("conf",)}
         values: dict[str, object] = {"home": 0.0}
         values |= {f"{name}_start": x for name, x in self.blocks.items()}
@@ -98,7 +102,9 @@ class Line:
         while True:
             yield call.rng.uniform(low + 0.5, high - 0.5)
 
-    def inverse_kin(self, block: str, pose: float, grasp: float, call: Call) -> Iterator[float | Rejection]:
+    def inverse_kin(
+        self, block: str, pose: float, grasp: float, call: Call
+    ) -> Iterator[float | Rejection]:
         conf = pose + grasp
         if self.reach[0] <= conf <= self.reach[1]:
             yield conf
@@ -118,14 +124,20 @@ class Line:
             if action.name not in ("pick", "place"):
                 continue
             block, pose, grasp, at = arguments
-            assert conf == at == pose + grasp and abs(grasp) <= 0.4 and self.reach[0] <= conf <= self.reach[1]
+            assert (
+                conf == at == pose + grasp
+                and abs(grasp) <= 0.4
+                and self.reach[0] <= conf <= self.reach[1]
+            )
             if action.name == "pick":
                 assert held is None and positions.pop(block) == pose
                 held = (block, grasp)
             else:
                 assert held == (block, grasp)
                 assert all(abs(other - pose) >= 1.0 for other in positions.values()), "collision"
-                assert any(low <= pose - 0.5 and pose + 0.5 <= high for low, high in self.regions.values())
+                assert any(
+                    low <= pose - 0.5 and pose + 0.5 <= high for low, high in self.regions.values()
+                )
                 positions[block] = pose
                 held = None
         for block, region in goal.items():

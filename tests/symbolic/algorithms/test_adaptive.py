@@ -56,7 +56,9 @@ def test_a_round_in_vain_is_counted_and_what_ended_is_left_out() -> None:
     before = run.optimistic
     learn(run, skeleton)
     assert skeleton.rounds == 1
-    assert run.effort.draws == run.binder.draws == 9, "four poses, their tests, and one try that finds no more"
+    assert run.effort.draws == run.binder.draws == 9, (
+        "four poses, their tests, and one try that finds no more"
+    )
     assert ("sample-pose", ("tea",)) in run.knowledge.enumerated_calls
     assert run.optimistic is not before
     assert all(one.call != ("sample-pose", ("tea",)) for one in run.optimistic.facts.instances)
@@ -72,7 +74,9 @@ def test_nothing_new_leaves_the_optimistic_task_alone() -> None:
 
 
 @pytest.mark.parametrize("rounds", range(1, ROUNDS_BEFORE_ALL_OBJECTS + 1))
-def test_excluded_objects_come_back_when_something_fails_at_them_or_after_some_rounds(rounds: int) -> None:
+def test_excluded_objects_come_back_when_something_fails_at_them_or_after_some_rounds(
+    rounds: int,
+) -> None:
     run, skeleton = planned("(put tea)")
     run.knowledge.excluded_objects = frozenset({"mug", "cup"})
     skeleton.rounds = rounds - 1
@@ -97,7 +101,9 @@ def test_a_skeleton_that_is_found_again_is_the_same_one() -> None:
     assert run.effort.skeletons == len(run.skeletons) == 1
 
 
-@pytest.mark.parametrize(("error", "outcome"), [(OutOfTime, Outcome.TIMEOUT), (KeyboardInterrupt, Outcome.INTERRUPTED)])
+@pytest.mark.parametrize(
+    ("error", "outcome"), [(OutOfTime, Outcome.TIMEOUT), (KeyboardInterrupt, Outcome.INTERRUPTED)]
+)
 def test_time_and_the_user_end_a_run_at_any_step(
     error: type[BaseException], outcome: Outcome, monkeypatch: pytest.MonkeyPatch
 ) -> None:

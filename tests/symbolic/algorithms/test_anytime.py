@@ -48,10 +48,14 @@ def detour(valid: int) -> StreamTask:
         return True if ticket == valid else Rejection("expired")
 
     functions = {"draw-way": draw_way, "draw-ticket": draw_ticket, "test-short": test_short}
-    return stream_task(DOMAIN, STREAMS, functions, {}, "(at-start)", "(exists (?w - way) (there ?w))")
+    return stream_task(
+        DOMAIN, STREAMS, functions, {}, "(at-start)", "(exists (?w - way) (there ?w))"
+    )
 
 
-def run(problem: StreamTask, seed: int = 0, most: int = 60) -> tuple[list[tuple[float, int]], list[float], Result]:
+def run(
+    problem: StreamTask, seed: int = 0, most: int = 60
+) -> tuple[list[tuple[float, int]], list[float], Result]:
     """The improvements as (cost, length of the way), the lower bounds that were told, and the best result."""
     steps: list[tuple[float, int]] = []
     bounds: list[float] = []
@@ -64,7 +68,11 @@ def run(problem: StreamTask, seed: int = 0, most: int = 60) -> tuple[list[tuple[
         if told > most:
             raise OutOfTime
         replay(problem, result)
-        value = next(result.objects.values[name] for name in result.actions[-1].arguments if name.startswith("w"))
+        value = next(
+            result.objects.values[name]
+            for name in result.actions[-1].arguments
+            if name.startswith("w")
+        )
         rank = sum(action.cost for action in result.actions), value
         if steps and rank >= steps[-1]:
             return False

@@ -83,7 +83,9 @@ def test_chained_stream_fails_for_the_first_poses(algorithm: str, k: int, line: 
 @pytest.mark.parametrize("k", K)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_inverse_kinematics_needs_k_tries_a_pose(algorithm: str, k: int, line: Line) -> None:
-    def inverse_kin(block: str, pose: float, grasp: float, call: Call) -> Iterator[float | Rejection]:
+    def inverse_kin(
+        block: str, pose: float, grasp: float, call: Call
+    ) -> Iterator[float | Rejection]:
         for i in itertools.count(1):
             yield pose + grasp if i >= k else Rejection("no solution")
 
@@ -117,7 +119,12 @@ def test_one_pair_of_many_fits(algorithm: str, left: int, right: int, length: in
         return (x, y) == (left, right)
 
     problem = stream_task(
-        PAIRS, PAIR_STREAMS, {"draw-left": draw, "draw-right": draw, "test-fits": fits}, {}, "", "(done)"
+        PAIRS,
+        PAIR_STREAMS,
+        {"draw-left": draw, "draw-right": draw, "test-fits": fits},
+        {},
+        "",
+        "(done)",
     )
     result = solve(algorithm, problem)
     replay(problem, result)

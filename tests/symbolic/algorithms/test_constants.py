@@ -36,7 +36,12 @@ def test_constant_is_an_input(algorithm: str, kind: str) -> None:
         yield (thing, site)
 
     problem = stream_task(
-        DOMAIN, STREAMS.format(kind=kind), {"sample-pose": sample_pose}, {"box": ("crate",)}, "", "(stored box)"
+        DOMAIN,
+        STREAMS.format(kind=kind),
+        {"sample-pose": sample_pose},
+        {"box": ("crate",)},
+        "",
+        "(stored box)",
     )
     result = solve(algorithm, problem, seconds=2.0)
     replay(problem, result)

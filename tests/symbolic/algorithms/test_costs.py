@@ -41,7 +41,10 @@ def test_what_the_problem_states_comes_first() -> None:
     found = costs(distance, {("distance", "a", "b"): 9.0, ("weight", "a"): 2.0})
     assert found["distance", "a", "b"] == 9.0 and found["weight", "a"] == 2.0
     assert found["distance", "b", "a"] == 4.0
-    assert set(found) == {("distance", "a", "b"), ("weight", "a"), ("distance", "b", "a")} and len(found) == 3
+    assert (
+        set(found) == {("distance", "a", "b"), ("weight", "a"), ("distance", "b", "a")}
+        and len(found) == 3
+    )
 
 
 def test_placeholders_cost_the_mean_of_what_was_computed() -> None:
@@ -56,7 +59,13 @@ def test_placeholders_cost_the_mean_of_what_was_computed() -> None:
 
 @pytest.mark.parametrize(
     ("fact", "there"),
-    [(("distance", "a", "b"), True), (("weight", "a"), False), ((), False), (None, False), (3, False)],
+    [
+        (("distance", "a", "b"), True),
+        (("weight", "a"), False),
+        ((), False),
+        (None, False),
+        (3, False),
+    ],
 )
 def test_what_has_a_cost(fact: object, there: bool) -> None:
     assert (fact in costs(distance)) == there

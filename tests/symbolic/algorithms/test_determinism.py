@@ -22,7 +22,9 @@ def plans(algorithm: str, seed: int) -> str:
         solve(algorithm, Corridor(2, goes_on=True).problem("(holding b)"), seed=seed),
     ]
     assert all(result.outcome is Outcome.SOLVED for result in results)
-    return "\n".join(f"{plan_text(r)} {r.outcome} {r.effort.draws} {r.effort.expanded}" for r in results)
+    return "\n".join(
+        f"{plan_text(r)} {r.outcome} {r.effort.draws} {r.effort.expanded}" for r in results
+    )
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
@@ -41,7 +43,12 @@ def test_same_seed_same_plan_in_two_processes(algorithm: str, root: Path) -> Non
     for hash_seed in ("1", "2"):
         environment = {**os.environ, "PYTHONHASHSEED": hash_seed, "PYTHONPATH": str(root)}
         run = subprocess.run(
-            [sys.executable, "-c", code], cwd=root, env=environment, capture_output=True, text=True, check=True
+            [sys.executable, "-c", code],
+            cwd=root,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
         )
         texts.append(run.stdout.strip())
     assert texts[0] == texts[1]

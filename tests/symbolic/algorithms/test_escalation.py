@@ -73,7 +73,9 @@ def test_dry_rounds_bring_excluded_objects_back_first() -> None:
 
 
 @pytest.mark.parametrize("searches", [ROUNDS_BEFORE_DEEPER - 1, ROUNDS_BEFORE_DEEPER])
-def test_shallow_instances_go_deeper_after_some_searches(searches: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shallow_instances_go_deeper_after_some_searches(
+    searches: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     run, _ = planned("(put tea)")
     deeper: list[object] = []
     monkeypatch.setattr(module, "instantiate_more", lambda run: bool(deeper.append(run) or True))
@@ -118,17 +120,29 @@ def test_only_what_the_latest_skeleton_rests_on_counts(asked: Asked) -> None:
     [
         (ROUNDS_BEFORE_SECOND_OPINION, 0, MANY_OPERATORS, True),
         (ROUNDS_BEFORE_SECOND_OPINION - 1, 0, MANY_OPERATORS, False),
-        (ROUNDS_BEFORE_SECOND_OPINION, FEW_DRAWS_PER_ROUND * ROUNDS_BEFORE_SECOND_OPINION, MANY_OPERATORS, False),
+        (
+            ROUNDS_BEFORE_SECOND_OPINION,
+            FEW_DRAWS_PER_ROUND * ROUNDS_BEFORE_SECOND_OPINION,
+            MANY_OPERATORS,
+            False,
+        ),
         (ROUNDS_BEFORE_SECOND_OPINION, 0, MANY_OPERATORS - 1, False),
     ],
 )
 def test_rounds_that_wander_in_a_large_task(
-    asked: Asked, monkeypatch: pytest.MonkeyPatch, searches: int, draws: int, operators: int, asks: bool
+    asked: Asked,
+    monkeypatch: pytest.MonkeyPatch,
+    searches: int,
+    draws: int,
+    operators: int,
+    asks: bool,
 ) -> None:
     run, _ = planned("(put tea)")
     run.effort.searches, run.binder.draws = searches, draws
     monkeypatch.setattr(
-        module, "MANY_OPERATORS", len(run.optimistic.instantiated.operators) + MANY_OPERATORS - operators
+        module,
+        "MANY_OPERATORS",
+        len(run.optimistic.instantiated.operators) + MANY_OPERATORS - operators,
     )
     state = Escalation()
     assert escalate(run, state, True) is None
@@ -136,7 +150,9 @@ def test_rounds_that_wander_in_a_large_task(
     assert state.wandering_rounds == ROUNDS_BEFORE_SECOND_OPINION * (2 if asks else 1)
 
 
-def test_a_round_that_drew_nothing_does_not_wander(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_round_that_drew_nothing_does_not_wander(
+    asked: Asked, monkeypatch: pytest.MonkeyPatch
+) -> None:
     run, _ = planned("(put tea)")
     run.effort.searches = ROUNDS_BEFORE_SECOND_OPINION
     monkeypatch.setattr(module, "MANY_OPERATORS", 0)
@@ -169,8 +185,12 @@ def test_instantiating_more_says_whether_there_was_more() -> None:
     assert instantiate_more(run) and run.optimistic is not before
 
 
-@pytest.mark.parametrize("draws", [module.DRAWS_BEFORE_INFEASIBLE - 1, module.DRAWS_BEFORE_INFEASIBLE])
-def test_real_values_that_are_all_there_are_prove_nothing(draws: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "draws", [module.DRAWS_BEFORE_INFEASIBLE - 1, module.DRAWS_BEFORE_INFEASIBLE]
+)
+def test_real_values_that_are_all_there_are_prove_nothing(
+    draws: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     run, _ = planned("(put tea)")
 
     def plan_incrementally(other: Run, most: int | None = None) -> Result:

@@ -56,13 +56,18 @@ class Corridor:
         self.shown: list[tuple[str, State]] = []
 
     def problem(self, goal: str) -> StreamTask:
-        objects = {name: ("block",) for name in self.start} | {f"{name}_start": ("pose",) for name in self.start}
+        objects = {name: ("block",) for name in self.start} | {
+            f"{name}_start": ("pose",) for name in self.start
+        }
         return stream_task(
             CORRIDOR,
             CORRIDOR_STREAMS,
             {"sample-aside": self.sample_aside, "plan-way": self.plan_way},
             objects,
-            "(hand-free)" + "".join(f"(at {name} {name}_start) (pose {name} {name}_start)" for name in self.start),
+            "(hand-free)"
+            + "".join(
+                f"(at {name} {name}_start) (pose {name} {name}_start)" for name in self.start
+            ),
             goal,
             {f"{name}_start": x for name, x in self.start.items()},
         )
@@ -107,14 +112,18 @@ def state_of(call: Call) -> dict[str, float]:
 @pytest.mark.parametrize("goes_on", [False, True])
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_blockers_are_moved_first(algorithm: str, count: int, goes_on: bool, names_all: bool) -> None:
+def test_blockers_are_moved_first(
+    algorithm: str, count: int, goes_on: bool, names_all: bool
+) -> None:
     corridor = Corridor(count, goes_on=goes_on, names_all=names_all)
     last = list(corridor.start)[-1]
     problem = corridor.problem(f"(holding {last})")
     result = solve(algorithm, problem)
     replay(problem, result)
     corridor.replay(result)
-    assert [action.arguments[0] for action in result.actions if action.name == "pick"] == list(corridor.start)
+    assert [action.arguments[0] for action in result.actions if action.name == "pick"] == list(
+        corridor.start
+    )
     assert result.effort.searches <= 20 * count
 
 
@@ -129,13 +138,18 @@ def test_motion_into_a_wall_is_given_up() -> None:
     problem = StreamTask(
         problem.task,
         tuple(
-            type(stream)(stream.declaration, plan_way, stream.output_types) if stream.name == "plan-way" else stream
+            type(stream)(stream.declaration, plan_way, stream.output_types)
+            if stream.name == "plan-way"
+            else stream
             for stream in problem.streams
         ),
         problem.values,
     )
     result = solve("adaptive", problem, seconds=4.0)
-    assert result.outcome in (Outcome.INFEASIBLE, Outcome.EXHAUSTED), (result.outcome, result.effort)
+    assert result.outcome in (Outcome.INFEASIBLE, Outcome.EXHAUSTED), (
+        result.outcome,
+        result.effort,
+    )
     text = " ".join(result.explanation)
     assert "hits the wall" in text and "pick a: plan-way" in text
 
@@ -147,7 +161,11 @@ def test_advice_shows_where_the_other_bodies_are() -> None:
     result = solve("adaptive", problem)
     replay(problem, result)
     final = corridor.replay(result)
-    asked = [(block, state) for block, state in corridor.shown if block == "b" and state.get("a") == final["a"]]
+    asked = [
+        (block, state)
+        for block, state in corridor.shown
+        if block == "b" and state.get("a") == final["a"]
+    ]
     assert asked, "nobody asked where to put b after a was put aside"
     assert all(state["c"] == 3.0 for _, state in asked)
 

@@ -21,7 +21,9 @@ def line() -> Line:
 
 @pytest.mark.parametrize("first", [0, 2])
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_function_that_raises_is_reported_and_others_go_on(algorithm: str, first: int, line: Line) -> None:
+def test_function_that_raises_is_reported_and_others_go_on(
+    algorithm: str, first: int, line: Line
+) -> None:
     def inverse_kin(block: str, pose: float, grasp: float, call: Call) -> Iterator[float]:
         if pose < 5.0:
             yield pose + grasp
@@ -91,7 +93,9 @@ def test_wrong_number_of_outputs_is_reported(algorithm: str, wrong: object) -> N
 
 @pytest.mark.parametrize("value", [None, 3.0, "text"], ids=repr)
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_function_that_is_no_generator_is_reported(algorithm: str, value: object, line: Line) -> None:
+def test_function_that_is_no_generator_is_reported(
+    algorithm: str, value: object, line: Line
+) -> None:
     problem = line.problem("(on a right)", sample_grasp=lambda block, call: value)
     result = solve(algorithm, problem, seconds=1.0)
     assert result.outcome is not Outcome.SOLVED or value == "text"
@@ -120,7 +124,9 @@ def stubborn(block: str, call: Call) -> Iterator[float]:
 
 @pytest.mark.parametrize("function", [spins, sleeps, stubborn])
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_function_without_end_is_interrupted(algorithm: str, function: Callable[..., object], line: Line) -> None:
+def test_function_without_end_is_interrupted(
+    algorithm: str, function: Callable[..., object], line: Line
+) -> None:
     started = unhindered()
     result = solve(algorithm, line.problem("(on a right)", sample_grasp=function), seconds=0.5)
     assert unhindered() - started <= 1.0

@@ -37,14 +37,21 @@ def picky(block: str, pose: float, grasp: float, call: Call) -> Iterator[float |
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
-def test_two_picks_of_one_object_take_different_grasps(algorithm: str, seed: int, line: Line) -> None:
+def test_two_picks_of_one_object_take_different_grasps(
+    algorithm: str, seed: int, line: Line
+) -> None:
     problem = line.problem(
-        "(and (cooked a) (on a table))", domain=KITCHEN, facts="(hot stove) (away home)", inverse_kin=picky
+        "(and (cooked a) (on a table))",
+        domain=KITCHEN,
+        facts="(hot stove) (away home)",
+        inverse_kin=picky,
     )
     result = solve(algorithm, problem, seed=seed)
     replay(problem, result)
     line.replay(result, {"a": "table"})
-    grasps = [result.objects.values[x.arguments[2]] for x in result.actions if x.name in ("pick", "place")]
+    grasps = [
+        result.objects.values[x.arguments[2]] for x in result.actions if x.name in ("pick", "place")
+    ]
     assert len(grasps) == 4
     assert grasps[0] == grasps[1] < -0.1 < 0.1 < grasps[2] == grasps[3]
 
@@ -56,4 +63,7 @@ def test_an_object_is_put_down_to_be_grasped_anew(algorithm: str, line: Line) ->
     result = solve(algorithm, problem)
     replay(problem, result)
     line.replay(result, {"a": "table"})
-    assert [action.name for action in result.actions if action.name != "move"] == ["pick", "place"] * 2
+    assert [action.name for action in result.actions if action.name != "move"] == [
+        "pick",
+        "place",
+    ] * 2

@@ -70,7 +70,9 @@ def test_no_grasp_exists(algorithm: str, rejects: bool, line: Line) -> None:
     def sample_pose(block: str, region: str, call: Call) -> Iterator[float]:
         yield 11.0
 
-    problem = line.problem("(and (on cube right) (on ball right))", sample_grasp=sample_grasp, sample_pose=sample_pose)
+    problem = line.problem(
+        "(and (on cube right) (on ball right))", sample_grasp=sample_grasp, sample_pose=sample_pose
+    )
     result = fails(algorithm, problem, Outcome.INFEASIBLE)
     text = " ".join(result.explanation)
     assert "ball" in text
@@ -85,7 +87,9 @@ def test_start_is_out_of_reach(algorithm: str) -> None:
     def sample_grasp(block: str, call: Call) -> Iterator[float]:
         yield 0.0
 
-    def inverse_kin(block: str, pose: float, grasp: float, call: Call) -> Iterator[float | Rejection]:
+    def inverse_kin(
+        block: str, pose: float, grasp: float, call: Call
+    ) -> Iterator[float | Rejection]:
         yield pose if pose < 100.0 else Rejection("out of reach")
 
     def sample_pose(block: str, region: str, call: Call) -> Iterator[float]:
@@ -170,14 +174,19 @@ def test_finite_streams_whose_values_do_not_go_together(algorithm: str, line: Li
     def sample_grasp(block: str, call: Call) -> Iterator[float]:
         yield from (-0.2, 0.0, 0.2)
 
-    def inverse_kin(block: str, pose: float, grasp: float, call: Call) -> Iterator[float | Rejection]:
+    def inverse_kin(
+        block: str, pose: float, grasp: float, call: Call
+    ) -> Iterator[float | Rejection]:
         if pose < 5.0:
             yield pose + grasp
         else:
             yield Rejection("elbow up")
 
     problem = line.problem(
-        "(on ball right)", sample_pose=sample_pose, sample_grasp=sample_grasp, inverse_kin=inverse_kin
+        "(on ball right)",
+        sample_pose=sample_pose,
+        sample_grasp=sample_grasp,
+        inverse_kin=inverse_kin,
     )
     result = fails(algorithm, problem, *NO_PLAN)
     assert "ball" in " ".join(result.explanation)

@@ -59,7 +59,9 @@ def test_tests_of_values_that_are_not_enumerated_are_no_news() -> None:
 
 
 @pytest.mark.parametrize("given_up", [False, True])
-def test_a_call_without_a_value_is_exhausted_and_proves_nothing_if_it_was_given_up(given_up: bool) -> None:
+def test_a_call_without_a_value_is_exhausted_and_proves_nothing_if_it_was_given_up(
+    given_up: bool,
+) -> None:
     run, skeleton = planned("(put tea)")
     instance = run.streams.instance("sample-pose", ("tea",))
     instance.exhausted, instance.last = True, Rejection("no room", given_up=given_up)
@@ -87,7 +89,9 @@ def test_many_values_do_not_replace_their_placeholder(count: int) -> None:
     instance.exhausted = True
     instance.results = [(f"p{number}",) for number in range(count)]
     knowledge = Knowledge()
-    assert record_exhausted_calls(knowledge, skeleton, run.streams, OBJECTS) == (count <= MAX_ENUMERATED_VALUES)
+    assert record_exhausted_calls(knowledge, skeleton, run.streams, OBJECTS) == (
+        count <= MAX_ENUMERATED_VALUES
+    )
     assert len(knowledge.certified_facts) == (count if count <= MAX_ENUMERATED_VALUES else 0)
     assert not knowledge.exhausted_calls
 

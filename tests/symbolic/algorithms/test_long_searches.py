@@ -21,11 +21,15 @@ def test_a_long_search_has_it_bound_until_nothing_is_left(monkeypatch: pytest.Mo
     monkeypatch.setattr(adaptive, "FIRST_TRIES", 2)
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == 4)
     values = bind_for_its_worth(run, skeleton, 1000)
-    assert values is not None and [run.streams.objects.values[name] for name in values.values()] == [4]
+    assert values is not None and [
+        run.streams.objects.values[name] for name in values.values()
+    ] == [4]
     assert skeleton.rounds == 1
 
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
-    assert bind_for_its_worth(run, skeleton, 1000) is None, "no round is without end where nothing is drawn"
+    assert bind_for_its_worth(run, skeleton, 1000) is None, (
+        "no round is without end where nothing is drawn"
+    )
 
 
 def test_what_ends_in_vain_is_skipped_more_and_more() -> None:

@@ -5,7 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tamp.stream import Rejection
-from tamp.symbolic.algorithms.outcomes import end_result, infeasible_result, interrupted_result, solved_result
+from tamp.symbolic.algorithms.outcomes import (
+    end_result,
+    infeasible_result,
+    interrupted_result,
+    solved_result,
+)
 from tamp.symbolic.algorithms.planning_run import bind_skeleton
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system.deadline import OutOfTime
@@ -49,9 +54,12 @@ def test_no_plan_is_a_proof_only_where_nothing_was_given_up(incomplete: bool) ->
 
 
 @pytest.mark.parametrize(
-    ("error", "outcome"), [(OutOfTime(), Outcome.TIMEOUT), (KeyboardInterrupt(), Outcome.INTERRUPTED)]
+    ("error", "outcome"),
+    [(OutOfTime(), Outcome.TIMEOUT), (KeyboardInterrupt(), Outcome.INTERRUPTED)],
 )
-def test_an_end_from_outside_says_what_was_tried(error: OutOfTime | KeyboardInterrupt, outcome: Outcome) -> None:
+def test_an_end_from_outside_says_what_was_tried(
+    error: OutOfTime | KeyboardInterrupt, outcome: Outcome
+) -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
     run.latest = skeleton
     assert bind_skeleton(run, skeleton, 4, 100) is None

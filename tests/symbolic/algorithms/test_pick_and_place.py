@@ -11,7 +11,9 @@ from tests.symbolic.algorithms.toys import ALGORITHMS, replay, solve
 
 def crowded(pairs: int, bystanders: int = 0) -> Line:
     """Each narrow slot is taken by a blocker; who belongs there waits on the bench, where others just stand."""
-    blocks = {f"a{i}": 100.0 + 2 * i for i in range(pairs)} | {f"b{i}": 10.0 * i + 5.8 for i in range(pairs)}
+    blocks = {f"a{i}": 100.0 + 2 * i for i in range(pairs)} | {
+        f"b{i}": 10.0 * i + 5.8 for i in range(pairs)
+    }
     blocks |= {f"c{i}": 110.0 + 2 * i for i in range(bystanders)}
     regions = {f"slot{i}": (10.0 * i + 5.0, 10.0 * i + 6.6) for i in range(pairs)}
     return Line(blocks, regions | {"bench": (99.0, 120.0)})
@@ -40,12 +42,17 @@ def test_free_goals_move_each_block_once(algorithm: str, seed: int) -> None:
     result = solve(algorithm, problem, seed=seed)
     replay(problem, result)
     line.replay(result, {"a": "right", "b": "right"})
-    assert sorted(action.arguments[0] for action in result.actions if action.name == "pick") == ["a", "b"]
+    assert sorted(action.arguments[0] for action in result.actions if action.name == "pick") == [
+        "a",
+        "b",
+    ]
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_two_blocks_exchange_their_slots(algorithm: str) -> None:
-    line = Line({"a": 0.7, "b": 10.7}, {"left": (0.0, 1.6), "right": (10.0, 11.6), "bench": (20.0, 25.0)})
+    line = Line(
+        {"a": 0.7, "b": 10.7}, {"left": (0.0, 1.6), "right": (10.0, 11.6), "bench": (20.0, 25.0)}
+    )
     problem = line.problem("(and (on a right) (on b left))")
     result = solve(algorithm, problem)
     replay(problem, result)

@@ -35,8 +35,12 @@ CUPS = {"mug": ("cup",), "glass": ("cup",)}
 
 
 def shop(goal: str = "(sold mug)") -> StreamTask:
-    functions: dict[str, Any] = dict.fromkeys(("sample-pose", "test-free", "test-dust"), lambda *values, call: iter(()))
-    return stream_task(DOMAIN, STREAMS, functions, CUPS, "(tall mug) (dusty mug) (at glass till)", goal)
+    functions: dict[str, Any] = dict.fromkeys(
+        ("sample-pose", "test-free", "test-dust"), lambda *values, call: iter(())
+    )
+    return stream_task(
+        DOMAIN, STREAMS, functions, CUPS, "(tall mug) (dusty mug) (at glass till)", goal
+    )
 
 
 def names(streams: Any) -> list[str]:
@@ -46,7 +50,9 @@ def names(streams: Any) -> list[str]:
 def test_streams_that_nothing_asks_for_are_left_out_and_lazy_tests_are_not_instantiated() -> None:
     task = prepare(shop())
     assert names(task.streams) == ["sample-pose"]
-    assert {name: stream.name for name, (stream, _) in task.lazily_tested.items()} == {"free": "test-free"}
+    assert {name: stream.name for name, (stream, _) in task.lazily_tested.items()} == {
+        "free": "test-free"
+    }
     assert task.lazily_tested["free"][1] == Atom("free", ("?c", "?p", "?d", "?q"))
 
 
@@ -98,7 +104,9 @@ def test_facts_of_lazy_tests_that_do_not_hold_forbid() -> None:
 
     def waived(false_facts: frozenset[Any]) -> set[Any]:
         made = task.instantiate([pose], lazy, false_facts)
-        (put,) = (one for one in made.operators if one.name == "put" and one.arguments == ("mug", "till"))
+        (put,) = (
+            one for one in made.operators if one.name == "put" and one.arguments == ("mug", "till")
+        )
         return {guard.waived_by for guard in put.guards}
 
     assert waived(frozenset()) == {against, ("free", "mug", "till", "mug", "till")}

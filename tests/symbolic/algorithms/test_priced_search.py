@@ -122,14 +122,20 @@ def counters(count: int) -> OptimisticTask:
     for number, switch in enumerate(switches):
         before = frozenset(switches[max(0, number - 1) : number])
         off = frozenset(switches[: max(0, number - 1)])
-        operators.append(Operator("up", switch[1:], before, frozenset({switch}) | off, frozenset({switch}), NONE))
-        operators.append(Operator("down", switch[1:], before | {switch}, off, NONE, frozenset({switch})))
+        operators.append(
+            Operator("up", switch[1:], before, frozenset({switch}) | off, frozenset({switch}), NONE)
+        )
+        operators.append(
+            Operator("down", switch[1:], before | {switch}, off, NONE, frozenset({switch}))
+        )
     goal = Goal(frozenset({switches[-1]}), frozenset(switches[:-1]))
     task = InstantiatedTask(NONE, goal, tuple(operators), (), frozenset(switches), {})
     return OptimisticTask(OptimisticFacts(), task)
 
 
-def test_a_long_search_for_a_cheap_plan_is_followed_by_one_for_any(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_search_for_a_cheap_plan_is_followed_by_one_for_any(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Chinese rings: the plan of eight rings goes through 256 states."""
     monkeypatch.setattr(module, "SEARCH_LIMIT", 100)
     effort = SearchStatistics()
@@ -165,13 +171,22 @@ def test_the_mean_cost_of_no_operators_is_one() -> None:
 def test_goals_that_exclude_each_other() -> None:
     left, right = ("at", "left"), ("at", "right")
     go = [
-        Operator("go", here[1:] + there[1:], frozenset({here}), NONE, frozenset({there}), frozenset({here}))
+        Operator(
+            "go",
+            here[1:] + there[1:],
+            frozenset({here}),
+            NONE,
+            frozenset({there}),
+            frozenset({here}),
+        )
         for here, there in ((left, right), (right, left))
     ]
     reachable = frozenset({left, right})
 
     def with_goal(*facts: Fact) -> InstantiatedTask:
-        return InstantiatedTask(frozenset({left}), Goal(frozenset(facts)), tuple(go), (), reachable, {})
+        return InstantiatedTask(
+            frozenset({left}), Goal(frozenset(facts)), tuple(go), (), reachable, {}
+        )
 
     assert exclude_each_other(with_goal(left, right), Deadline())
     assert not exclude_each_other(with_goal(right), Deadline())
@@ -186,4 +201,6 @@ def test_untried_tests_of_placeholders_have_a_price_in_a_run() -> None:
     again = searched(run.optimistic, run.knowledge.experience)
     assert again is not None and fact not in again.prices
     earlier = searched(run.optimistic, posteriors={"sample-pose": Posterior(0, 3)})
-    assert earlier is not None and earlier.prices[skeleton.nodes[0].fact] == pytest.approx(4 * SCALE)
+    assert earlier is not None and earlier.prices[skeleton.nodes[0].fact] == pytest.approx(
+        4 * SCALE
+    )

@@ -49,7 +49,9 @@ def test_every_plan_on_the_way_to_a_better_one_holds() -> None:
     assert min(seen[True], seen[False]) >= 15, seen
 
 
-@pytest.mark.parametrize("seed", [3047, 3089, 3966, 5424, 5458, 5734, 6042, 7376, 8034, 8960, 8970, 9933])
+@pytest.mark.parametrize(
+    "seed", [3047, 3089, 3966, 5424, 5458, 5734, 6042, 7376, 8034, 8960, 8970, 9933]
+)
 def test_problems_that_were_wrong_once(seed: int) -> None:
     """Two calls for one fact, two values of one call, types as facts, equal values, rules in circles."""
     pooled = random_problem(seed).pooled

@@ -29,7 +29,9 @@ DOOR_STREAMS = """
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("good", [1, 2, 3])
 @pytest.mark.parametrize("opened", [False, True])
-def test_a_call_that_fails_in_a_state_speaks_for_itself_alone(algorithm: str, good: int, opened: bool) -> None:
+def test_a_call_that_fails_in_a_state_speaks_for_itself_alone(
+    algorithm: str, good: int, opened: bool
+) -> None:
     """The thing is ready for one of its places, whichever that is, and where wanted with the door open alone."""
 
     def places(thing: str, call: Call) -> Iterator[int]:
@@ -90,7 +92,9 @@ def test_two_values_of_one_call(algorithm: str, count: int, turn: str) -> None:
         yield from range(count)
 
     text = PAIR.replace("{turn}", turn)
-    problem = stream_task(text, PAIR_STREAMS, {"sample-grip": grips}, {"cup": ("thing",)}, "", "(turned cup)")
+    problem = stream_task(
+        text, PAIR_STREAMS, {"sample-grip": grips}, {"cup": ("thing",)}, "", "(turned cup)"
+    )
     result = solve(algorithm, problem)
     if count == 2:
         replay(problem, result)
@@ -113,14 +117,18 @@ ANYTHING = """
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 @pytest.mark.parametrize("goal", ["(fine cup)", "(ready cup)", "(exists (?t - thing) (fine ?t))"])
-def test_a_rule_asks_that_there_is_a_value_of_which_it_says_nothing(algorithm: str, goal: str) -> None:
+def test_a_rule_asks_that_there_is_a_value_of_which_it_says_nothing(
+    algorithm: str, goal: str
+) -> None:
     """`graspable` is unfolded into `fine`, where only its type names the grip: the plan still has to draw one."""
 
     def grips(thing: str, call: Call) -> Iterator[int]:
         yield 1
 
     init = "(good cup) (dirty cup)"
-    problem = stream_task(ANYTHING, PAIR_STREAMS, {"sample-grip": grips}, {"cup": ("thing",)}, init, goal)
+    problem = stream_task(
+        ANYTHING, PAIR_STREAMS, {"sample-grip": grips}, {"cup": ("thing",)}, init, goal
+    )
     result = solve(algorithm, problem)
     replay(problem, result)
     assert any(fact[0] == "grip" for fact in result.certified) and result.effort.refuted == 0
@@ -129,7 +137,9 @@ def test_a_rule_asks_that_there_is_a_value_of_which_it_says_nothing(algorithm: s
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_the_type_of_what_the_goal_names_is_not_certified(algorithm: str) -> None:
     """`ready` is unfolded into the goal: that a cup is a thing is no fact of a stream."""
-    text = ANYTHING.replace("(:action clean", "(:derived (shiny ?t - thing) (not (dirty ?t))) (:action clean")
+    text = ANYTHING.replace(
+        "(:action clean", "(:derived (shiny ?t - thing) (not (dirty ?t))) (:action clean"
+    )
     text = text.replace("(dirty ?t - thing)", "(dirty ?t - thing) (shiny ?t - thing)")
     init = "(good cup) (dirty cup)"
     functions = {"sample-grip": lambda thing, call: iter(())}

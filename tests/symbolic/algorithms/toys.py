@@ -10,7 +10,13 @@ from tamp.symbolic.algorithms.adaptive import solve_adaptive
 from tamp.symbolic.algorithms.bound_stream import STRANGERS, BoundStream, Objects
 from tamp.symbolic.algorithms.incremental import solve_incremental
 from tamp.symbolic.algorithms.result import Outcome, Result, StreamTask
-from tamp.symbolic.pddl.parser import output_types, parse_domain, parse_facts, parse_goal, parse_streams
+from tamp.symbolic.pddl.parser import (
+    output_types,
+    parse_domain,
+    parse_facts,
+    parse_goal,
+    parse_streams,
+)
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
@@ -34,8 +40,19 @@ def stream_task(
     bound = []
     for stream in declared.streams:
         types = output_types(stream, parsed)
-        bound.append(BoundStream(stream, functions[stream.name], tuple(types[name] for name in stream.outputs)))
-    task = Task("toy", parsed, dict(objects), parse_facts(init, parsed, objects), parse_goal(goal, parsed, objects), {})
+        bound.append(
+            BoundStream(
+                stream, functions[stream.name], tuple(types[name] for name in stream.outputs)
+            )
+        )
+    task = Task(
+        "toy",
+        parsed,
+        dict(objects),
+        parse_facts(init, parsed, objects),
+        parse_goal(goal, parsed, objects),
+        {},
+    )
     return StreamTask(task, tuple(bound), {name: name for name in objects} | dict(values or {}))
 
 
@@ -66,4 +83,8 @@ def plan_text(result: Result) -> str:
     """The plan with its values, to compare."""
     names = sorted({name for action in result.actions for name in action.arguments})
     values = {name: result.objects.values.get(name) for name in names}
-    return repr([(a.name, a.arguments) for a in result.actions]) + repr(values) + repr(result.certified)
+    return (
+        repr([(a.name, a.arguments) for a in result.actions])
+        + repr(values)
+        + repr(result.certified)
+    )

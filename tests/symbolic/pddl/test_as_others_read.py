@@ -29,7 +29,9 @@ PROBLEM = """(define (problem one) (:domain saw) (:objects p1 p2 - part b1 - boa
 SAW = ":parameters (?p - part) :precondition () :effect (cut ?p)"
 
 
-def solved(tmp_path: Path, domain: str, problem: str = PROBLEM) -> tuple[list[str], tuple[str, ...]]:
+def solved(
+    tmp_path: Path, domain: str, problem: str = PROBLEM
+) -> tuple[list[str], tuple[str, ...]]:
     """The plan's actions and the warnings of a domain and a problem in files."""
     (tmp_path / "d.pddl").write_text(domain, encoding="utf-8", newline="")
     (tmp_path / "p.pddl").write_text(problem, encoding="utf-8", newline="")
@@ -89,12 +91,36 @@ def test_read_as_fast_downward_does(old: str, new: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "note"),
     [
-        ("(:requirements :typing)", "(:requirements :typng)", "1:37: unknown requirement ':typng'. Did you mean"),
-        ("(near ?a ?b)", "(near ?a ?b) (near ?a ?b)", "predicate 'near' stands twice; first in line 4"),
-        (f"(:action saw {SAW})", f"(:action saw {SAW})(:action saw {SAW})", "action 'saw' stands twice"),
-        (f"(:action saw {SAW})", f"(:action saw {SAW})(:action saw :effect ())", "plans have it as 'saw~2'"),
-        ("(:constants)", "(:constants k k - part)", "3:16: constant 'k' stands twice; first in line 3"),
-        ("(cut ?p)))", "(and (cut ?p) (cut k))))", "'k' is only said to be an object, where a part is declared"),
+        (
+            "(:requirements :typing)",
+            "(:requirements :typng)",
+            "1:37: unknown requirement ':typng'. Did you mean",
+        ),
+        (
+            "(near ?a ?b)",
+            "(near ?a ?b) (near ?a ?b)",
+            "predicate 'near' stands twice; first in line 4",
+        ),
+        (
+            f"(:action saw {SAW})",
+            f"(:action saw {SAW})(:action saw {SAW})",
+            "action 'saw' stands twice",
+        ),
+        (
+            f"(:action saw {SAW})",
+            f"(:action saw {SAW})(:action saw :effect ())",
+            "plans have it as 'saw~2'",
+        ),
+        (
+            "(:constants)",
+            "(:constants k k - part)",
+            "3:16: constant 'k' stands twice; first in line 3",
+        ),
+        (
+            "(cut ?p)))",
+            "(and (cut ?p) (cut k))))",
+            "'k' is only said to be an object, where a part is declared",
+        ),
     ],
 )
 def test_what_is_odd_is_said(old: str, new: str, note: str) -> None:
@@ -108,18 +134,29 @@ def test_what_is_odd_is_said(old: str, new: str, note: str) -> None:
 def test_a_parameter_twice_is_one_of_both_types(tmp_path: Path) -> None:
     """As Fast Downward has it: the plan says the object twice."""
     types = "(:types board part - object both - (either board part))"
-    text = DOMAIN.replace("(:types board part - object)", types).replace("(?p - part)", "(?p - board ?p - part)")
+    text = DOMAIN.replace("(:types board part - object)", types).replace(
+        "(?p - part)", "(?p - board ?p - part)"
+    )
     problem = PROBLEM.replace("b1 - board", "b1 - board w - both").replace("(cut p1)", "(cut w)")
     assert solved(tmp_path, text, problem)[0] == ["saw w w"]
-    task = parse_task(PROBLEM.replace("(cut p1)", "(forall (?x - board ?x - part) (cut ?x))"), parse_domain(text))
-    assert solved(tmp_path, text, PROBLEM.replace("(cut p1)", "(forall (?x - board ?x - part) (cut ?x))"))[0] == []
+    task = parse_task(
+        PROBLEM.replace("(cut p1)", "(forall (?x - board ?x - part) (cut ?x))"), parse_domain(text)
+    )
+    assert (
+        solved(
+            tmp_path, text, PROBLEM.replace("(cut p1)", "(forall (?x - board ?x - part) (cut ?x))")
+        )[0]
+        == []
+    )
     assert "~" in str(task.goal)
 
 
 def test_a_rule_about_one_object_twice(tmp_path: Path) -> None:
     rule = "(:derived (near ?x ?x) (cut ?x))"
     text = DOMAIN.replace("(:action", f"{rule} (:action")
-    problem = PROBLEM.replace("(near p1 p2)", "").replace("(cut p1)", "(and (near p2 p2) (not (near p1 p2)))")
+    problem = PROBLEM.replace("(near p1 p2)", "").replace(
+        "(cut p1)", "(and (near p2 p2) (not (near p1 p2)))"
+    )
     assert solved(tmp_path, text, problem)[0] == ["saw p2"]
 
 
@@ -134,14 +171,18 @@ def test_two_actions_of_one_name_are_both_there(tmp_path: Path) -> None:
 def test_comments_in_any_encoding(encoding: str, tmp_path: Path) -> None:
     comment = {"latin-1": "Möbel, gesägt", "cp1252": "“sawn” – gesägt", "shift-jis": "鋸"}[encoding]
     file = tmp_path / "d.pddl"
-    file.write_bytes((f"; {comment}\n" + DOMAIN.replace("saw)", f"saw) ; {comment}", 1)).encode(encoding))
+    file.write_bytes(
+        (f"; {comment}\n" + DOMAIN.replace("saw)", f"saw) ; {comment}", 1)).encode(encoding)
+    )
     assert parse_domain(read_pddl(file), file).actions[0].name == "saw"
 
 
 def test_names_in_another_encoding_are_refused_at_their_place(tmp_path: Path) -> None:
     file = tmp_path / "d.pddl"
     file.write_bytes(DOMAIN.replace("cut", "säge").encode("latin-1"))
-    with pytest.raises(InputError, match=r"d.pddl:4:17: cannot read it: it is not UTF-8 text. Save it as UTF-8"):
+    with pytest.raises(
+        InputError, match=r"d.pddl:4:17: cannot read it: it is not UTF-8 text. Save it as UTF-8"
+    ):
         read_pddl(file)
     file.write_bytes(DOMAIN.encode("utf-16"))
     with pytest.raises(InputError, match="UTF-16"):
@@ -154,25 +195,65 @@ FEATURES = [
     ("domain", "(:constants)", "(@@:event a)", "events"),
     ("domain", "(:constants)", "(@@:constraints (and))", "trajectory constraints"),
     ("domain", "(:constants)", "(@@:task a)", "hierarchical tasks"),
-    ("domain", "(total-cost) - number", "(total-cost) - number (spot ?x) - @@part", "object fluents"),
+    (
+        "domain",
+        "(total-cost) - number",
+        "(total-cost) - number (spot ?x) - @@part",
+        "object fluents",
+    ),
     ("domain", ":precondition ()", ":precondition (@@>= (total-cost) 3)", "numeric fluents"),
-    ("domain", ":precondition ()", ":precondition (= @@(total-cost) 3)", "numeric or object fluents"),
+    (
+        "domain",
+        ":precondition ()",
+        ":precondition (= @@(total-cost) 3)",
+        "numeric or object fluents",
+    ),
     ("domain", ":precondition ()", ":precondition (@@preference p (cut ?p))", "preferences"),
     ("domain", ":precondition ()", ":precondition (@@over all (cut ?p))", "durative actions"),
     ("domain", ":precondition ()", "@@:duration (= ?duration 5)", "durative actions"),
     ("domain", ":effect (cut ?p)", ":effect (@@decrease (total-cost) 1)", "numeric fluents"),
     ("domain", ":effect (cut ?p)", ":effect (@@assign (total-cost) 1)", "numeric fluents"),
     ("domain", ":effect (cut ?p)", ":effect (increase @@(fuel) 1)", "numeric fluents"),
-    ("domain", ":effect (cut ?p)", ":effect (@@probabilistic 0.5 (cut ?p))", "probabilistic effects"),
+    (
+        "domain",
+        ":effect (cut ?p)",
+        ":effect (@@probabilistic 0.5 (cut ?p))",
+        "probabilistic effects",
+    ),
     ("problem", "(near p1 p2)", "@@(at 5 (cut p1))", "timed initial literals"),
     ("problem", "(near p1 p2)", "(= (total-cost) @@p1)", "object fluents"),
     ("problem", "(:goal (cut p1))", "(:goal (@@preference p (cut p1)))", "preferences"),
     ("problem", "(:goal (cut p1))", "(:goal (@@sometime (cut p1)))", "trajectory constraints"),
-    ("problem", "(:goal (cut p1))", "(@@:constraints (and)) (:goal (cut p1))", "trajectory constraints"),
-    ("problem", "(:goal (cut p1))", "(:goal (cut p1)) (:metric minimize @@(is-violated p))", "preferences"),
-    ("problem", "(:goal (cut p1))", "(:goal (cut p1)) (:metric minimize @@(+ (total-cost) (fuel)))", "numeric"),
-    ("problem", "(:goal (cut p1))", "(:goal (cut p1)) (:metric minimize @@total-time)", "durations"),
-    ("problem", "(:goal (cut p1))", "(:goal (cut p1)) (:metric @@maximize (total-cost))", "metrics to maximize"),
+    (
+        "problem",
+        "(:goal (cut p1))",
+        "(@@:constraints (and)) (:goal (cut p1))",
+        "trajectory constraints",
+    ),
+    (
+        "problem",
+        "(:goal (cut p1))",
+        "(:goal (cut p1)) (:metric minimize @@(is-violated p))",
+        "preferences",
+    ),
+    (
+        "problem",
+        "(:goal (cut p1))",
+        "(:goal (cut p1)) (:metric minimize @@(+ (total-cost) (fuel)))",
+        "numeric",
+    ),
+    (
+        "problem",
+        "(:goal (cut p1))",
+        "(:goal (cut p1)) (:metric minimize @@total-time)",
+        "durations",
+    ),
+    (
+        "problem",
+        "(:goal (cut p1))",
+        "(:goal (cut p1)) (:metric @@maximize (total-cost))",
+        "metrics to maximize",
+    ),
 ]
 
 
@@ -212,15 +293,29 @@ HOSTILE = [
     (chain(10_000), "stands below 200 others"),
     (chain(9_999).replace("- t9999)", "- t0)"), "types form a cycle: t0 - t1"),
     ("(" * 1_000_000, "nested more than 100"),
-    (chain(2).replace("t0)))", "t0)) " + "(:action a :effect " + "(and " * 500 + ")" * 501 + ")"), "nested more than"),
-    (f"(define (domain d) (:action a :effect (increase (total-cost) {'9' * 5000})))", "a word of 5,000 characters"),
-    (f"(define (domain d) (:action a :effect (increase (total-cost) {'9' * 900})))", "expected a number"),
+    (
+        chain(2).replace(
+            "t0)))", "t0)) " + "(:action a :effect " + "(and " * 500 + ")" * 501 + ")"
+        ),
+        "nested more than",
+    ),
+    (
+        f"(define (domain d) (:action a :effect (increase (total-cost) {'9' * 5000})))",
+        "a word of 5,000 characters",
+    ),
+    (
+        f"(define (domain d) (:action a :effect (increase (total-cost) {'9' * 900})))",
+        "expected a number",
+    ),
     (f"(define (domain {'n' * 100_000}))", "a word of 100,000 characters"),
     ("(define (domain d\x00))", "a control character (U+0000) in a word"),
     ("(define (domain d\x1b[31m))", "a control character (U+001B) in a word"),
     ("(define (domain d) " + "(a b) " * 400_000, "more than 1,000,000 words"),
     ("(define (domain d) " + "(:predicates (b)) (:action a :effect (a " * 40, "is never closed"),
-    (f"(define (domain d) (:predicates (p {'?x ' * 20_000})) (:action a :effect (p)))", "'p' takes 20000 arguments"),
+    (
+        f"(define (domain d) (:predicates (p {'?x ' * 20_000})) (:action a :effect (p)))",
+        "'p' takes 20000 arguments",
+    ),
 ]
 
 

@@ -28,7 +28,10 @@ X = (Parameter("?x", ("object",)),)
     ],
 )
 def test_atoms_come_from_left_to_right_with_their_signs(formula: Formula, expected: str) -> None:
-    assert " ".join(("+" if sign else "-") + atom.predicate for atom, sign in signed_atoms(formula)) == expected
+    assert (
+        " ".join(("+" if sign else "-") + atom.predicate for atom, sign in signed_atoms(formula))
+        == expected
+    )
     turned = [(atom, not sign) for atom, sign in signed_atoms(formula)]
     assert list(signed_atoms(formula, False)) == turned == list(signed_atoms(Not(formula)))
     assert list(atoms(formula)) == [atom for atom, _ in turned]

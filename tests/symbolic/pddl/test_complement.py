@@ -92,7 +92,10 @@ def test_with_the_complement_told_truly_all_conditions_mean_what_they_did(
     for name, action in before.actions.items():
         other = after.actions[name]
         for arguments in itertools.product(OBJECTS, repeat=len(action.parameters)):
-            binding = {parameter.name: one for parameter, one in zip(action.parameters, arguments, strict=True)}
+            binding = {
+                parameter.name: one
+                for parameter, one in zip(action.parameters, arguments, strict=True)
+            }
             old = before.holds(action.precondition, State.of(facts), binding)
             new = after.holds(other.precondition, State.of(told), binding)
             assert old == new, (name, arguments)

@@ -19,7 +19,9 @@ DOMAIN = parse_domain("""(define (domain d) (:requirements :adl :action-costs) (
 
 
 def scope() -> Scope:
-    inside, _ = scope_of(DOMAIN).with_variables([Parameter("?x", ("body",)), Parameter("?y", ("body",))])
+    inside, _ = scope_of(DOMAIN).with_variables(
+        [Parameter("?x", ("body",)), Parameter("?y", ("body",))]
+    )
     return inside
 
 
@@ -40,8 +42,14 @@ def shown(effect: Effect) -> str:
         ("(and)", []),
         ("(ready)", ["|(and)|+(ready)"]),
         ("(not (on ?x ?y))", ["|(and)|-(on ?x ?y)"]),
-        ("(and (ready) (and (not (ready)) (clean ?x)))", ["|(and)|+(ready)", "|(and)|-(ready)", "|(and)|+(clean ?x)"]),
-        ("(when (clean ?x) (and (ready) (not (on ?x ?y))))", ["|(clean ?x)|+(ready)", "|(clean ?x)|-(on ?x ?y)"]),
+        (
+            "(and (ready) (and (not (ready)) (clean ?x)))",
+            ["|(and)|+(ready)", "|(and)|-(ready)", "|(and)|+(clean ?x)"],
+        ),
+        (
+            "(when (clean ?x) (and (ready) (not (on ?x ?y))))",
+            ["|(clean ?x)|+(ready)", "|(clean ?x)|-(on ?x ?y)"],
+        ),
         ("(when (clean ?x) (when (clean ?y) (ready)))", ["|(and (clean ?x) (clean ?y))|+(ready)"]),
         ("(forall (?z - body) (clean ?z))", ["?z|(and)|+(clean ?z)"]),
         ("(forall (?z - body) (when (on ?z ?x) (not (clean ?z))))", ["?z|(on ?z ?x)|-(clean ?z)"]),
@@ -63,7 +71,9 @@ def test_a_variable_written_twice_is_one() -> None:
     (effect,) = parsed("(forall (?z ?z - body) (clean ?z))").simple
     first, second = (parameter.name for parameter in effect.parameters)
     assert first != second
-    assert f"(= {first} {second})" in show(effect.condition) or f"(= {second} {first})" in show(effect.condition)
+    assert f"(= {first} {second})" in show(effect.condition) or f"(= {second} {first})" in show(
+        effect.condition
+    )
 
 
 @pytest.mark.parametrize(
@@ -90,15 +100,30 @@ def test_a_cost_may_be_a_function() -> None:
         ("(increase (total-cost) -1)", "an action's cost cannot be negative, found -1"),
         ("(increase (total-cost) 1e999)", "expected a number, found '1e999'"),
         ("(increase (total-cost) nan)", "expected a number, found 'nan'"),
-        ("(increase (total-cost) (+ 1 2))", "arithmetic such as .* is not supported.*Name a number or a function"),
+        (
+            "(increase (total-cost) (+ 1 2))",
+            "arithmetic such as .* is not supported.*Name a number or a function",
+        ),
         ("(increase (total-cost) (total-cost))", "the total cost cannot increase by itself"),
         ("(increase (weight ?x) 1)", r"only \(total-cost\) can be increased"),
         ("(increase (total-cost))", r"'increase' takes \(total-cost\) and an amount, found 1 part"),
-        ("(and (increase (total-cost) 1) (increase (total-cost) (weight ?x)))", "by one function only"),
-        ("(when (ready) (increase (total-cost) 1))", "a cost inside 'when' or 'forall' is not supported"),
-        ("(forall (?z) (increase (total-cost) 1))", "a cost inside 'when' or 'forall' is not supported"),
+        (
+            "(and (increase (total-cost) 1) (increase (total-cost) (weight ?x)))",
+            "by one function only",
+        ),
+        (
+            "(when (ready) (increase (total-cost) 1))",
+            "a cost inside 'when' or 'forall' is not supported",
+        ),
+        (
+            "(forall (?z) (increase (total-cost) 1))",
+            "a cost inside 'when' or 'forall' is not supported",
+        ),
         ("(decrease (total-cost) 1)", r"'decrease' is not supported.*Costs grow by \(increase"),
-        ("(or (ready) (clean ?x))", "'or' is not possible in an effect.*What happens only sometimes is written"),
+        (
+            "(or (ready) (clean ?x))",
+            "'or' is not possible in an effect.*What happens only sometimes is written",
+        ),
         ("(not (and (ready)))", "'and' is not possible in an effect"),
         ("(= ?x ?y)", "'=' is not possible in an effect"),
         ("(when (ready))", "'when' takes a condition and an effect, found 1 part"),
@@ -108,7 +133,10 @@ def test_a_cost_may_be_a_function() -> None:
         ("(clen ?x)", "unknown predicate 'clen'.*Did you mean 'clean'"),
         ("(clean ?z)", "unknown variable '.z'"),
         ("(clean ?x ?y)", "'clean' takes 1 argument, found 2"),
-        ("(probabilistic 0.5 (ready))", "'probabilistic' is not supported: tamp has no probabilistic effects"),
+        (
+            "(probabilistic 0.5 (ready))",
+            "'probabilistic' is not supported: tamp has no probabilistic effects",
+        ),
     ],
 )
 def test_what_no_effect_can_do_is_refused_in_words(text: str, words: str) -> None:

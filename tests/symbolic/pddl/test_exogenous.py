@@ -10,7 +10,18 @@ from tamp.errors import InputError
 from tamp.symbolic.pddl.exogenous import compile_away, renamed
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.started import without_started
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Fact, Forall, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Fact,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+)
 from tamp.verification.formulas import show
 from tamp.verification.semantics import Semantics, State
 
@@ -65,18 +76,25 @@ def test_what_it_gave_counts_once_its_domain_has_been_true() -> None:
     state = semantics.apply(semantics.actions["light"], ("box",), state)
     assert usable(made.domain, facts_of(state))
     state = semantics.apply(semantics.actions["dim"], ("box",), state)
-    assert ("lit", "box") not in state and usable(made.domain, facts_of(state))  # it was lit, that is enough
+    assert ("lit", "box") not in state and usable(
+        made.domain, facts_of(state)
+    )  # it was lit, that is enough
 
 
 def test_what_is_true_or_given_at_first_needs_no_action() -> None:
     lit = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box"), ("lit", "box")}))
     assert usable(lit.domain, {*lit.facts, ("read-result", "box", "code")})
-    known = compile_away(DOMAIN, STREAMS, GOAL, frozenset({("safe", "box"), ("opens", "code", "box")}))
+    known = compile_away(
+        DOMAIN, STREAMS, GOAL, frozenset({("safe", "box"), ("opens", "code", "box")})
+    )
     assert usable(known.domain, set(known.facts))
 
 
 def test_what_waits_cannot_have_to_be_false() -> None:
-    with pytest.raises(InputError, match=r"'opens' has to be false here, and its stream waits for what actions change"):
+    with pytest.raises(
+        InputError,
+        match=r"'opens' has to be false here, and its stream waits for what actions change",
+    ):
         compile_away(DOMAIN, STREAMS, Not(Atom("opens", ("code", "box"))), frozenset())
 
 
@@ -87,7 +105,10 @@ def test_what_waits_cannot_have_to_be_false() -> None:
         (Not(Atom("a", ())), "(not (b))"),
         (And((Atom("a", ()), Or((Atom("c", ()), Atom("a", ()))))), "(and (b) (or (c) (b)))"),
         (Exists((Parameter("?x"),), Atom("a", ("?x",))), "(exists (?x - object) (b ?x))"),
-        (Forall((Parameter("?x"),), Not(Atom("a", ("?x",)))), "(forall (?x - object) (not (b ?x)))"),
+        (
+            Forall((Parameter("?x"),), Not(Atom("a", ("?x",)))),
+            "(forall (?x - object) (not (b ?x)))",
+        ),
     ],
 )
 def test_predicates_are_renamed_wherever_they_stand(formula: Formula, text: str) -> None:
@@ -104,8 +125,12 @@ SEEN = """(define (stream d) (:stream see :inputs (?x) :domain (thing ?x) :certi
 
 @pytest.mark.parametrize("order", list(itertools.product(["wash", "soil"], repeat=2)))
 @pytest.mark.parametrize("found", [True, False])
-def test_what_a_stream_finds_holds_until_an_action_ends_it(found: bool, order: tuple[str, ...]) -> None:
-    made = without_started(CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",)))
+def test_what_a_stream_finds_holds_until_an_action_ends_it(
+    found: bool, order: tuple[str, ...]
+) -> None:
+    made = without_started(
+        CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",))
+    )
     objects = {"cup": ("object",)}
     before, after = Semantics(CHANGED, objects), Semantics(made.domain, objects)
     (start,) = made.names
@@ -119,9 +144,13 @@ def test_what_a_stream_finds_holds_until_an_action_ends_it(found: bool, order: t
 
 
 def test_its_stream_certifies_what_never_changes() -> None:
-    made = without_started(CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",)))
+    made = without_started(
+        CHANGED, parse_streams(SEEN, CHANGED, waiting=True), Atom("shown", ("cup",))
+    )
     (atom,) = made.streams.streams[0].certified
-    assert atom.predicate not in made.domain.fluent_predicates and made.names == {atom.predicate: "clean"}
+    assert atom.predicate not in made.domain.fluent_predicates and made.names == {
+        atom.predicate: "clean"
+    }
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,17 @@ from hypothesis import strategies as st
 
 from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
-from tamp.symbolic.pddl.structs import And, Atom, Domain, Exists, Forall, Formula, Not, Or, Parameter
+from tamp.symbolic.pddl.structs import (
+    And,
+    Atom,
+    Domain,
+    Exists,
+    Forall,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+)
 
 TINY = parse_domain("(define (domain d) (:types t u) (:predicates (p) (q ?x ?y)))")
 OBJECTS = {"a": ("t",), "b": ("u",)}
@@ -24,7 +34,9 @@ def formulas(variables: tuple[str, ...], depth: int) -> st.SearchStrategy[Formul
         return atoms
     inner = formulas(variables, depth - 1)
     names = (f"?v{depth}", f"?w{depth}")
-    bound = st.builds(lambda one, two: (Parameter(names[0], one), Parameter(names[1], two)), types, types)
+    bound = st.builds(
+        lambda one, two: (Parameter(names[0], one), Parameter(names[1], two)), types, types
+    )
     body = formulas((*variables, *names), depth - 1)
     parts = st.lists(inner, max_size=3).map(tuple)
     return st.one_of(

@@ -66,7 +66,11 @@ def refusal(parse: Callable[[str], object], text: str) -> InputError | None:
 
 @pytest.mark.parametrize("kind", ["domain", "streams", "goal", "task"])
 def test_a_result_or_an_input_error(
-    kind: str, domain: Domain, objects: dict[str, tuple[str, ...]], domain_text: str, streams_text: str
+    kind: str,
+    domain: Domain,
+    objects: dict[str, tuple[str, ...]],
+    domain_text: str,
+    streams_text: str,
 ) -> None:
     parsers: dict[str, tuple[str, Callable[[str], object]]] = {
         "domain": (domain_text, lambda text: parse_domain(text, "f")),

@@ -43,7 +43,11 @@ def test_a_goal_may_ask_for_what_a_stream_certifies() -> None:
     domain = parse_domain(DOMAIN, "d.pddl")
     streams = parse_streams(STREAMS, domain, "s.pddl")
     task = parse_task(PROBLEM, domain, "p.pddl")
-    assert not [text for text in lint(domain, streams, task.goal, task.initial) if "look" in text or "seen" in text]
+    assert not [
+        text
+        for text in lint(domain, streams, task.goal, task.initial)
+        if "look" in text or "seen" in text
+    ]
 
 
 def test_a_domain_alone() -> None:
@@ -57,7 +61,9 @@ def test_a_domain_alone() -> None:
 def test_shipped_domains_are_clean(root: object) -> None:
     from tamp.system.files import shipped
 
-    domains = [path for path in sorted(shipped("domains").glob("*.pddl")) if ".streams" not in path.name]
+    domains = [
+        path for path in sorted(shipped("domains").glob("*.pddl")) if ".streams" not in path.name
+    ]
     assert domains
     for path in domains:
         domain = parse_domain(path.read_text(encoding="utf-8"), path)

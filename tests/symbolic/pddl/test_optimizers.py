@@ -9,7 +9,9 @@ from tamp.symbolic.pddl.optimizers import check_optimizer
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.sections import read_sections
 
-DOMAIN = parse_domain("(define (domain d) (:predicates (conf ?q) (pose ?p) (near ?q ?p) (apart ?a ?b)))")
+DOMAIN = parse_domain(
+    "(define (domain d) (:predicates (conf ?q) (pose ?p) (near ?q ?p) (apart ?a ?b)))"
+)
 STREAMS = parse_streams(
     """(define (stream d)
     (:stream sample :inputs () :outputs (?q) :certified (conf ?q))
@@ -19,14 +21,20 @@ STREAMS = parse_streams(
 
 
 def checked(optimizer: str) -> tuple[list[str], list[str]]:
-    _, (section,) = read_sections(f"(define (stream d) {optimizer})", "stream", (":optimizer",), "d.pddl")
+    _, (section,) = read_sections(
+        f"(define (stream d) {optimizer})", "stream", (":optimizer",), "d.pddl"
+    )
     return check_optimizer(section, STREAMS, DOMAIN)
 
 
 def test_where_streams_certify_the_same_it_is_left_aside_with_a_note() -> None:
-    notes, alone = checked("(:optimizer gurobi (:variables (?q) :graph (conf ?q)) (:constraint (near ?q ?p)))")
+    notes, alone = checked(
+        "(:optimizer gurobi (:variables (?q) :graph (conf ?q)) (:constraint (near ?q ?p)))"
+    )
     assert alone == []
-    assert notes == ["d.pddl:1:20: optimizer 'gurobi' is left aside: streams certify all that it would"]
+    assert notes == [
+        "d.pddl:1:20: optimizer 'gurobi' is left aside: streams certify all that it would"
+    ]
 
 
 def test_what_nothing_else_certifies_is_named_once_with_its_place() -> None:
@@ -51,14 +59,26 @@ def test_an_objective_promises_nothing() -> None:
     [
         ("(:optimizer)", "an optimizer has no name"),
         ("(:optimizer ?x)", "expected an optimizer's name, found '.x'"),
-        ("(:optimizer o variables)", "expected a part of the optimizer, one of :variables, :constraint, :objective"),
-        ("(:optimizer o (:variable (?q)))", r"unknown part .* of optimizer 'o'.*Did you mean ':variables'"),
+        (
+            "(:optimizer o variables)",
+            "expected a part of the optimizer, one of :variables, :constraint, :objective",
+        ),
+        (
+            "(:optimizer o (:variable (?q)))",
+            r"unknown part .* of optimizer 'o'.*Did you mean ':variables'",
+        ),
         ("(:optimizer o ())", r"unknown part '\(\)' of optimizer 'o'"),
         ("(:optimizer o (:constraint))", "':constraint' needs a list of variables or a fact"),
         ("(:optimizer o (:constraint near))", "expected a list of variables, or a fact such as"),
-        ("(:optimizer o (:constraint (nea ?q ?p)))", "unknown predicate 'nea'.*Did you mean 'near'"),
+        (
+            "(:optimizer o (:constraint (nea ?q ?p)))",
+            "unknown predicate 'nea'.*Did you mean 'near'",
+        ),
         ("(:optimizer o (:variables (q)))", "expected a variable such as .x, found 'q'"),
-        ("(:optimizer o (:variables (?q) :grap (conf ?q)))", "unknown keyword ':grap' of the variables"),
+        (
+            "(:optimizer o (:variables (?q) :grap (conf ?q)))",
+            "unknown keyword ':grap' of the variables",
+        ),
         ("(:optimizer o (:variables (?q) :graph (near ?q ?p)))", "unknown variable '.p'"),
     ],
 )

@@ -18,10 +18,19 @@ RaisesAt = Callable[..., InputError]
     ("marked", "message"),
     [
         ("@@(define (domain d)\n  (:predicates (on ?a ?b))", "never closed"),
-        ("(define (domain d)\n  @@(:predicates (on ?a ?b)\n  (:action a :parameters ()))", "never closed"),
+        (
+            "(define (domain d)\n  @@(:predicates (on ?a ?b)\n  (:action a :parameters ()))",
+            "never closed",
+        ),
         ("(define @@(domain d\n  (:predicates (on ?a ?b)))", "never closed"),
-        ("(define (domain d)\n  (:action a :parameters @@(?x\n    :effect (on ?x))\n  (:action b))", "never closed"),
-        ("(define (domain d)\n(:action a :effect (and @@(on ?x\n (not (on ?y))))\n(:action b))", "never closed"),
+        (
+            "(define (domain d)\n  (:action a :parameters @@(?x\n    :effect (on ?x))\n  (:action b))",
+            "never closed",
+        ),
+        (
+            "(define (domain d)\n(:action a :effect (and @@(on ?x\n (not (on ?y))))\n(:action b))",
+            "never closed",
+        ),
         ("(define (domain d)\n  (:action a\n    :effect @@(and (p)\n  )\n)", "never closed"),
         ("@@(and (on a b)", "never closed"),
         ("(and @@(on a b (on b c))", "never closed"),
@@ -64,7 +73,9 @@ def place(text: str, index: int) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(("kind", "exact"), [("left out", 0.9), ("too many", 0.9)])
-def test_most_are_found_exactly(kind: str, exact: float, domain_text: str, streams_text: str) -> None:
+def test_most_are_found_exactly(
+    kind: str, exact: float, domain_text: str, streams_text: str
+) -> None:
     total = right = same_line = 0
     for text in (domain_text, streams_text):
         for broken, places in mutations(text, kind):

@@ -16,7 +16,9 @@ DOMAIN = parse_domain("""(define (domain d) (:requirements :typing) (:types cup 
 
 
 def section(rule: str) -> Section:
-    _, (found,) = read_sections(f"(define (domain d) {rule})", "domain", (":derived", ":axiom"), "d.pddl")
+    _, (found,) = read_sections(
+        f"(define (domain d) {rule})", "domain", (":derived", ":axiom"), "d.pddl"
+    )
     return found
 
 
@@ -36,7 +38,12 @@ def checked(rule: str) -> None:
         ("(:derived (high ?x) (clean ?x))", "(high ?x)", [("body",)], "(clean ?x)"),
         ("(:derived (high ?x - cup) (clean ?x))", "(high ?x)", [("cup",)], "(clean ?x)"),
         ("(:derived (on ?x ?y) (and))", "(on ?x ?y)", [("body",), ("plate",)], "(and)"),
-        ("(:derived (ready) (exists (?x - cup) (clean ?x)))", "(ready)", [], "(exists (?x - cup) (clean ?x))"),
+        (
+            "(:derived (ready) (exists (?x - cup) (clean ?x)))",
+            "(ready)",
+            [],
+            "(exists (?x - cup) (clean ?x))",
+        ),
         ("(:axiom (high ?x) (clean ?x))", "(high ?x)", [("body",)], "(clean ?x)"),
         (
             "(:axiom :parameters (?x - cup) :context (clean ?x) :implies (high ?x))",
@@ -58,7 +65,12 @@ def test_rules_in_any_spelling(rule: str, head: str, types: list, body: str) -> 
 def test_a_variable_twice_in_the_head_is_one() -> None:
     found = parsed("(:derived (on ?x ?x) (clean ?x))")
     first, second = found.head.terms
-    assert first != second and "(=" in show(found.body) and first in show(found.body) and second in show(found.body)
+    assert (
+        first != second
+        and "(=" in show(found.body)
+        and first in show(found.body)
+        and second in show(found.body)
+    )
 
 
 @pytest.mark.parametrize(
@@ -68,9 +80,15 @@ def test_a_variable_twice_in_the_head_is_one() -> None:
         ("(:derived (high ?x) (ready) (ready))", "found 3 parts"),
         ("(:derived () (ready))", r"expected a fact such as \(on \?a \?b\), found '\(\)'"),
         ("(:derived high (ready))", "expected a fact such as .*, found 'high'"),
-        ("(:derived (and (high ?x)) (ready))", r"a rule defines one predicate, found '\(and ...\)'"),
+        (
+            "(:derived (and (high ?x)) (ready))",
+            r"a rule defines one predicate, found '\(and ...\)'",
+        ),
         ("(:derived (hihg ?x) (ready))", "unknown predicate 'hihg'.*Did you mean 'high'"),
-        ("(:derived (high ?x ?y) (ready))", r"'high' takes 1 argument, found 2. Its form is \(high \?a\)"),
+        (
+            "(:derived (high ?x ?y) (ready))",
+            r"'high' takes 1 argument, found 2. Its form is \(high \?a\)",
+        ),
         ("(:derived (high x) (ready))", "expected a variable such as .x, found 'x'"),
         ("(:derived (high ?x) (clean ?y))", "unknown variable '.y'"),
         ("(:axiom :context (ready))", "the axiom has no :implies"),
@@ -87,6 +105,8 @@ def test_a_head_with_another_number_of_arguments_declares_anew_with_a_warning() 
     (found,) = redefinition(section("(:derived (high ?x ?y) (ready))"), DOMAIN.predicates)
     name, (predicate, note) = found
     assert name == "high" and [one.name for one in predicate.parameters] == ["?x", "?y"]
-    assert note.endswith("'high' is declared with 1, defined with 2 arguments") and note.startswith("d.pddl:1:")
+    assert note.endswith("'high' is declared with 1, defined with 2 arguments") and note.startswith(
+        "d.pddl:1:"
+    )
     assert list(redefinition(section("(:derived (high ?x) (ready))"), DOMAIN.predicates)) == []
     assert list(redefinition(section("(:derived (new ?x) (ready))"), DOMAIN.predicates)) == []

@@ -20,7 +20,10 @@ def read_domain(text: str) -> tuple[str, list[tuple[str, int]]]:
 
 def test_a_file_has_a_name_and_sections_in_their_order() -> None:
     text = "(define (domain Cupboard) (:types a b) (:action pick) (:Types) (:action place x y))"
-    assert read_domain(text) == ("cupboard", [(":types", 2), (":action", 1), (":types", 0), (":action", 3)])
+    assert read_domain(text) == (
+        "cupboard",
+        [(":types", 2), (":action", 1), (":types", 0), (":action", 3)],
+    )
     assert read_domain("(define (domain d))") == ("d", [])
 
 
@@ -37,11 +40,23 @@ def test_a_file_has_a_name_and_sections_in_their_order() -> None:
         ("(define (domain))", "with one name, found 0 names"),
         ("(define (domain a b))", "with one name, found 2 names"),
         ("(define (domain ?d))", "expected a name, found '.d'"),
-        ("(define (domain d) types)", r"expected a section of the domain such as \(:types ...\), found 'types'"),
+        (
+            "(define (domain d) types)",
+            r"expected a section of the domain such as \(:types ...\), found 'types'",
+        ),
         ("(define (domain d) ())", r"expected a section of the domain, found '\(\)'"),
-        ("(define (domain d) ((:types)))", "expected a section's keyword, one of :types, :predicates, :action"),
-        ("(define (domain d) (:typs a))", "unknown section ':typs' of the domain.*Did you mean ':types'"),
-        ("(define (domain d) (:durative-action a))", "':durative-action' is not supported: tamp has no durative"),
+        (
+            "(define (domain d) ((:types)))",
+            "expected a section's keyword, one of :types, :predicates, :action",
+        ),
+        (
+            "(define (domain d) (:typs a))",
+            "unknown section ':typs' of the domain.*Did you mean ':types'",
+        ),
+        (
+            "(define (domain d) (:durative-action a))",
+            "':durative-action' is not supported: tamp has no durative",
+        ),
         ("(define (domain d)) more", "expected the end of the text after"),
     ],
 )
@@ -52,7 +67,9 @@ def test_what_is_no_such_file_is_said_with_its_place(text: str, words: str) -> N
 
 
 def test_a_section_that_may_stand_once() -> None:
-    _, found = read_sections("(define (domain d)\n(:types a)\n(:action x)\n(:types b))", "domain", KNOWN, None)
+    _, found = read_sections(
+        "(define (domain d)\n(:types a)\n(:action x)\n(:types b))", "domain", KNOWN, None
+    )
     assert single(found, ":predicates") is None and items_of(found, ":predicates") == ()
     action = single(found, ":action")
     assert action is not None and action.keyword.place.line == 3
@@ -63,7 +80,10 @@ def test_a_section_that_may_stand_once() -> None:
 
 def values(text: str) -> dict[str, str]:
     found = keyword_values(read(text), "action 'pick'", (":parameters", ":effect"))
-    return {key: node.text if isinstance(node, Symbol) else node.head or "()" for key, node in found.items()}
+    return {
+        key: node.text if isinstance(node, Symbol) else node.head or "()"
+        for key, node in found.items()
+    }
 
 
 def test_keywords_have_one_value_each_in_any_order() -> None:
@@ -90,6 +110,9 @@ def test_wrong_pairs(text: str, words: str) -> None:
 def test_features_are_named_as_the_user_wrote_them() -> None:
     assert unsupported("always") == "'always' is not supported: tamp has no trajectory constraints"
     assert unsupported("always", "Always").startswith("'Always' is not supported")
-    assert lacking("(= a 3)", "numeric fluents") == "'(= a 3)' is not supported: tamp has no numeric fluents"
+    assert (
+        lacking("(= a 3)", "numeric fluents")
+        == "'(= a 3)' is not supported: tamp has no numeric fluents"
+    )
     assert ":process" in sections(()) and ":process" not in sections((":process",))
     assert all(word.startswith(":") and word in FEATURES for word in sections(()))

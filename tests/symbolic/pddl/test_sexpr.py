@@ -18,7 +18,11 @@ blanks = st.sampled_from([" ", "\n", "\t", "\r\n", " ; a (comment\n", "\n\n  "])
 
 
 def write(tree: Nested, blank: str) -> str:
-    return tree if isinstance(tree, str) else f"({blank}{blank.join(write(item, blank) for item in tree)}{blank})"
+    return (
+        tree
+        if isinstance(tree, str)
+        else f"({blank}{blank.join(write(item, blank) for item in tree)}{blank})"
+    )
 
 
 def plain(node: Node) -> Nested:
@@ -50,7 +54,11 @@ def test_case_is_ignored_but_remembered() -> None:
     (group,) = read("(On MUG Table)")
     assert group == read("(on mug table)")[0]
     assert isinstance(group, Group)
-    assert [item.written for item in group.items if isinstance(item, Symbol)] == ["On", "MUG", "Table"]
+    assert [item.written for item in group.items if isinstance(item, Symbol)] == [
+        "On",
+        "MUG",
+        "Table",
+    ]
     assert group.head == "on"
 
 

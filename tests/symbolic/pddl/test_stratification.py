@@ -32,7 +32,11 @@ def cyclic(uses: Uses, names: list[str]) -> bool:
     graph = nx.DiGraph()
     graph.add_nodes_from(names)
     graph.add_edges_from((head, used) for head, used, _ in uses)
-    component = {name: number for number, part in enumerate(nx.strongly_connected_components(graph)) for name in part}
+    component = {
+        name: number
+        for number, part in enumerate(nx.strongly_connected_components(graph))
+        for name in part
+    }
     return any(not positive and component[head] == component[used] for head, used, positive in uses)
 
 
@@ -58,17 +62,28 @@ def test_random_rules_have_strata_just_where_no_negation_is_on_a_cycle() -> None
             assert levels[head] >= levels[used] + (not positive), (seed, head, used)
         # and no level is higher than what it rests on asks for
         for name in names:
-            floors = [levels[used] + (not positive) for head, used, positive in uses if head == name]
-            assert levels[name] == max(floors, default=0) or name in {used for head, used, _ in uses if head == name}
+            floors = [
+                levels[used] + (not positive) for head, used, positive in uses if head == name
+            ]
+            assert levels[name] == max(floors, default=0) or name in {
+                used for head, used, _ in uses if head == name
+            }
     assert 50 < refused < 350
 
 
 def test_the_error_names_the_shortest_way_round_and_stands_at_the_negation() -> None:
-    uses = [("a", "b", True), ("b", "c", True), ("c", "a", False), ("b", "a", True), ("a", "d", False)]
+    uses = [
+        ("a", "b", True),
+        ("b", "c", True),
+        ("c", "a", False),
+        ("b", "a", True),
+        ("a", "d", False),
+    ]
     with pytest.raises(InputError) as caught:
         strata(rules_of(uses, ["a", "b", "c", "d"]))
-    assert "derived predicate 'c' rests on its own negation: c rests on not a rests on b rests on c" in str(
-        caught.value
+    assert (
+        "derived predicate 'c' rests on its own negation: c rests on not a rests on b rests on c"
+        in str(caught.value)
     )
     assert (caught.value.line, caught.value.column) == (3, 7)
 

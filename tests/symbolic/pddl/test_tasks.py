@@ -32,16 +32,27 @@ def test_objects_are_named_as_their_owner_writes_them(domain: Domain, objects: O
     assert parse_goal("(ON box TABLE)", domain, objects) == Atom("on", ("Box", "table"))
     with pytest.raises(InputError, match="may mean any of several objects"):
         parse_goal("(on box table)", domain, {**objects, "BOX": ("movable",)})
-    assert parse_goal("(on BOX table)", domain, {**objects, "BOX": ("movable",)}) == Atom("on", ("BOX", "table"))
+    assert parse_goal("(on BOX table)", domain, {**objects, "BOX": ("movable",)}) == Atom(
+        "on", ("BOX", "table")
+    )
 
 
 @pytest.mark.parametrize(
     ("marked", "message"),
     [
-        ("(on mug @@mug)", "'mug' is a movable, not a surface. Choices: depot, table, cupboard_top"),
+        (
+            "(on mug @@mug)",
+            "'mug' is a movable, not a surface. Choices: depot, table, cupboard_top",
+        ),
         ("(on mug @@shelf)", "'shelf' is a container, not a surface"),
-        ("(on @@cupboard_top table)", "'cupboard_top' is a surface, not a body. Choices: depot, mug, Box, table"),
-        ("(on mug @@tabel)", "unknown object 'tabel'. Choices: depot, table, cupboard_top. Did you mean 'table'?"),
+        (
+            "(on @@cupboard_top table)",
+            "'cupboard_top' is a surface, not a body. Choices: depot, mug, Box, table",
+        ),
+        (
+            "(on mug @@tabel)",
+            "unknown object 'tabel'. Choices: depot, table, cupboard_top. Did you mean 'table'?",
+        ),
         ("(at-base @@mug)", "'mug' is a movable, not a base-conf; there is none"),
         ("@@(on mug)", "'on' takes 2 arguments, found 1. Its form is (on ?o ?s)"),
         ("(and\n  (@@onn mug table))", "unknown predicate 'onn'"),
@@ -58,7 +69,9 @@ def test_objects_are_named_as_their_owner_writes_them(domain: Domain, objects: O
         ("(on @@(mug) table)", "expected a variable or an object, found '(mug)'"),
     ],
 )
-def test_wrong_goal(marked: str, message: str, domain: Domain, objects: Objects, raises_at: RaisesAt) -> None:
+def test_wrong_goal(
+    marked: str, message: str, domain: Domain, objects: Objects, raises_at: RaisesAt
+) -> None:
     raises_at(lambda text: parse_goal(text, domain, objects, "p.yaml"), marked, message)
 
 
@@ -66,7 +79,9 @@ def test_places_in_the_file_around_a_goal(domain: Domain, objects: Objects) -> N
     with pytest.raises(InputError, match=r"^p\.yaml:18:15: 'mug' is"):
         parse_goal("(on mug mug)", domain, objects, "p.yaml", line_offset=17, column_offset=6)
     with pytest.raises(InputError, match=r"^p\.yaml:19:10: 'mug' is"):
-        parse_goal("(and\n (on mug mug))", domain, objects, "p.yaml", line_offset=17, column_offset=6)
+        parse_goal(
+            "(and\n (on mug mug))", domain, objects, "p.yaml", line_offset=17, column_offset=6
+        )
 
 
 def test_facts(domain: Domain, objects: Objects) -> None:
@@ -88,7 +103,9 @@ def test_facts(domain: Domain, objects: Objects) -> None:
         ("(hand-empty) (@@hand-emty)", "unknown predicate 'hand-emty'"),
     ],
 )
-def test_wrong_facts(marked: str, message: str, domain: Domain, objects: Objects, raises_at: RaisesAt) -> None:
+def test_wrong_facts(
+    marked: str, message: str, domain: Domain, objects: Objects, raises_at: RaisesAt
+) -> None:
     raises_at(lambda text: parse_facts(text, domain, objects), marked, message)
 
 
@@ -122,13 +139,19 @@ def test_problem(domain: Domain) -> None:
         ("minimize (total-cost)", "minimize @@(fuel-used)", "the metric is (total-cost)"),
     ],
 )
-def test_wrong_problem(old: str, new: str, message: str, domain: Domain, changed: Changed, raises_at: RaisesAt) -> None:
+def test_wrong_problem(
+    old: str, new: str, message: str, domain: Domain, changed: Changed, raises_at: RaisesAt
+) -> None:
     raises_at(lambda text: parse_task(text, domain), changed(PROBLEM, old, new), message)
 
 
 def test_a_problem_for_another_domain_is_noted(domain: Domain) -> None:
-    task = parse_task(PROBLEM.replace("(:domain cupboard)", "(:domain cupbord)"), domain, "one.pddl")
-    assert task.notes == ("one.pddl:2:12: the problem is for domain 'cupbord', the domain is 'cupboard'",)
+    task = parse_task(
+        PROBLEM.replace("(:domain cupboard)", "(:domain cupbord)"), domain, "one.pddl"
+    )
+    assert task.notes == (
+        "one.pddl:2:12: the problem is for domain 'cupbord', the domain is 'cupboard'",
+    )
 
 
 def test_without_a_metric_every_action_costs_one(domain: Domain) -> None:

@@ -23,7 +23,10 @@ TYPES = {"object": "object", "body": "object", "pose": "object"}
 
 
 def listed(text: str) -> list[tuple[str, tuple[str, ...]]]:
-    return [(one.name.text, tuple(type_.text for type_ in one.types)) for one in typed_list(read(text), "a name")]
+    return [
+        (one.name.text, tuple(type_.text for type_ in one.types))
+        for one in typed_list(read(text), "a name")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -33,7 +36,10 @@ def listed(text: str) -> list[tuple[str, tuple[str, ...]]]:
         ("a b", [("a", ()), ("b", ())]),
         ("a b - body", [("a", ("body",)), ("b", ("body",))]),
         ("a - body b", [("a", ("body",)), ("b", ())]),
-        ("a - body b c - pose d", [("a", ("body",)), ("b", ("pose",)), ("c", ("pose",)), ("d", ())]),
+        (
+            "a - body b c - pose d",
+            [("a", ("body",)), ("b", ("pose",)), ("c", ("pose",)), ("d", ())],
+        ),
         ("a - (either body pose)", [("a", ("body", "pose"))]),
         ("- body a", [("a", ())]),  # Fast Downward reads a type of no names
         ("A - Body", [("a", ("body",))]),
@@ -65,26 +71,41 @@ def test_parameters_are_variables_of_known_types() -> None:
         Parameter("?b", ("body",)),
         Parameter("?c", ("object",)),
     )
-    assert parameters(read("?a - (either body pose body)"), TYPES) == (Parameter("?a", ("body", "pose")),)
+    assert parameters(read("?a - (either body pose body)"), TYPES) == (
+        Parameter("?a", ("body", "pose")),
+    )
     with pytest.raises(InputError, match=r"unknown type 'bdy'.*Did you mean 'body'"):
         parameters(read("?a - bdy"), TYPES)
     for wrong in ("a", "?", ":a"):
-        with pytest.raises(InputError, match=f"expected a variable such as .x, found '.*{wrong[-1]}'"):
+        with pytest.raises(
+            InputError, match=f"expected a variable such as .x, found '.*{wrong[-1]}'"
+        ):
             parameters(read(wrong), TYPES)
 
 
-@given(st.lists(st.sampled_from(["?x", "?y", "?x~2", "?z"]), max_size=8), st.sets(st.sampled_from(["?x", "?y"])))
-def test_names_made_distinct_differ_from_each_other_and_from_those_taken(names: list[str], taken: set[str]) -> None:
+@given(
+    st.lists(st.sampled_from(["?x", "?y", "?x~2", "?z"]), max_size=8),
+    st.sets(st.sampled_from(["?x", "?y"])),
+)
+def test_names_made_distinct_differ_from_each_other_and_from_those_taken(
+    names: list[str], taken: set[str]
+) -> None:
     made = [one.name for one in distinct([Parameter(name, (name,)) for name in names], taken)]
     assert len({*made, *taken}) == len(made) + len(taken)
     for name, new in zip(names, made, strict=True):
         assert new == name or new.startswith(f"{name}~")
     first = {name: made[names.index(name)] for name in names if name not in taken}
-    assert all(first[name] == name or name == "?x~2" for name in first)  # the first keeps its name where it can
+    assert all(
+        first[name] == name or name == "?x~2" for name in first
+    )  # the first keeps its name where it can
 
 
 def test_a_declaration_may_name_two_parameters_alike() -> None:
-    assert [one.name for one in placeholders(read("?x ?x ?x - body"), TYPES)] == ["?x", "?x~2", "?x~3"]
+    assert [one.name for one in placeholders(read("?x ?x ?x - body"), TYPES)] == [
+        "?x",
+        "?x~2",
+        "?x~3",
+    ]
 
 
 def test_types_are_checked_and_each_counts_once() -> None:

@@ -6,7 +6,18 @@ import heapq
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
 
-from tamp.symbolic.pddl.structs import Action, And, Atom, Exists, Fact, Formula, Not, Or, Parameter, Task
+from tamp.symbolic.pddl.structs import (
+    Action,
+    And,
+    Atom,
+    Exists,
+    Fact,
+    Formula,
+    Not,
+    Or,
+    Parameter,
+    Task,
+)
 
 State = frozenset[Fact]
 
@@ -37,7 +48,11 @@ class Interpreter:
     def fitting(self, parameter: Parameter) -> list[str]:
         """The objects of a parameter's types."""
         is_a = self.task.domain.is_a
-        return [o for o, types in self.objects.items() if any(is_a(t, w) for t in types for w in parameter.types)]
+        return [
+            o
+            for o, types in self.objects.items()
+            if any(is_a(t, w) for t in types for w in parameter.types)
+        ]
 
     def bindings(self, parameters: Iterable[Parameter]) -> Iterator[dict[str, str]]:
         """All objects for some parameters."""
@@ -60,7 +75,10 @@ class Interpreter:
             return all(self.holds(part, state, names) for part in formula.parts)
         if isinstance(formula, Or):
             return any(self.holds(part, state, names) for part in formula.parts)
-        results = (self.holds(formula.body, state, {**names, **b}) for b in self.bindings(formula.parameters))
+        results = (
+            self.holds(formula.body, state, {**names, **b})
+            for b in self.bindings(formula.parameters)
+        )
         return any(results) if isinstance(formula, Exists) else all(results)
 
     def derived(self, predicate: str, terms: tuple[str, ...], state: State) -> bool:
@@ -93,7 +111,9 @@ class Interpreter:
                             changed = True
         return frozenset(holds)
 
-    def apply(self, action: Action, names: Mapping[str, str], state: State, closed: State) -> State | None:
+    def apply(
+        self, action: Action, names: Mapping[str, str], state: State, closed: State
+    ) -> State | None:
         if not self.holds(action.precondition, closed, names):
             return None
         added: set[Fact] = set()
@@ -108,7 +128,9 @@ class Interpreter:
 
     def cost(self, action: Action, names: Mapping[str, str]) -> float:
         if isinstance(action.cost, Atom):
-            return self.task.costs[(action.cost.predicate, *(names.get(t, t) for t in action.cost.terms))]
+            return self.task.costs[
+                (action.cost.predicate, *(names.get(t, t) for t in action.cost.terms))
+            ]
         return action.cost
 
     def run(self, steps: Iterable[tuple[str, tuple[str, ...]]]) -> float:

@@ -14,7 +14,16 @@ from tamp.symbolic.search.plan_trace import trace
 from tamp.symbolic.search.search import Reason, search
 from tests.symbolic.search.interpreter import Interpreter
 
-SIZES = {"blocks": 3, "logistics": 2, "gripper": 3, "rovers": 1, "satellite": 2, "depot": 2, "miconic": 2, "network": 4}
+SIZES = {
+    "blocks": 3,
+    "logistics": 2,
+    "gripper": 3,
+    "rovers": 1,
+    "satellite": 2,
+    "depot": 2,
+    "miconic": 2,
+    "network": 4,
+}
 
 
 @pytest.mark.parametrize("name", GENERATORS)
@@ -26,7 +35,12 @@ def test_small_tasks_are_solved_and_optimally(name: str) -> None:
         interpreter = Interpreter(task)
         instantiated = instantiate(task)
         best = interpreter.best(20_000)
-        for method, heuristic in (("astar", "lmcut"), ("greedy", "ff+landmarks"), ("wastar", "ff"), ("eager", "hadd")):
+        for method, heuristic in (
+            ("astar", "lmcut"),
+            ("greedy", "ff+landmarks"),
+            ("wastar", "ff"),
+            ("eager", "hadd"),
+        ):
             result = search(instantiated, search=method, heuristic=heuristic)
             if best is None:
                 assert result.reason is Reason.UNSOLVABLE
@@ -34,7 +48,9 @@ def test_small_tasks_are_solved_and_optimally(name: str) -> None:
             assert result.plan is not None
             cost = interpreter.run((o.name, o.arguments) for o in result.plan.operators)
             assert cost == best if method == "astar" else cost >= best
-            assert len(trace(instantiated, result.plan.operators).steps) == len(result.plan.operators)
+            assert len(trace(instantiated, result.plan.operators).steps) == len(
+                result.plan.operators
+            )
             solved += 1
     assert solved >= 4
 

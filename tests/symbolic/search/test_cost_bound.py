@@ -16,7 +16,9 @@ TASK = instantiate(parse_task(SHOPPING, parse_domain(SHOP)))
 CHEAPEST = 9.0
 
 
-@pytest.mark.parametrize(("name", "heuristic"), [("wastar", "ff"), ("wastar", "ff+landmarks"), ("astar", "lmcut")])
+@pytest.mark.parametrize(
+    ("name", "heuristic"), [("wastar", "ff"), ("wastar", "ff+landmarks"), ("astar", "lmcut")]
+)
 def test_only_plans_below_the_limit_are_found(name: str, heuristic: str) -> None:
     found = search(TASK, search=name, heuristic=heuristic, below=12.0)
     assert found.plan is not None and found.plan.cost < 12.0

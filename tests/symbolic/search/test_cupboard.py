@@ -28,7 +28,9 @@ def eight() -> InstantiatedTask:
 
 @pytest.mark.parametrize("name", INFORMED)
 @pytest.mark.parametrize("priced", [True, False])
-def test_eight_interchangeable_bodies_need_no_search(eight: InstantiatedTask, name: str, priced: bool) -> None:
+def test_eight_interchangeable_bodies_need_no_search(
+    eight: InstantiatedTask, name: str, priced: bool
+) -> None:
     result = search(eight, search=name, price=effort if priced else lambda fact: 0.0)
     assert result.plan is not None
     assert len(result.plan.operators) == 32
@@ -56,7 +58,10 @@ def test_every_search_and_heuristic_by_the_book(name: str, heuristic: str) -> No
     result = search(instantiate(task, facts, objects), search=name, heuristic=heuristic)
     assert result.plan is not None
     assert (
-        Interpreter(task, facts, objects, on_demand=True).run((o.name, o.arguments) for o in result.plan.operators) == 4
+        Interpreter(task, facts, objects, on_demand=True).run(
+            (o.name, o.arguments) for o in result.plan.operators
+        )
+        == 4
     )
     assert result.plan.cost == 4
 
@@ -65,16 +70,29 @@ def blocked(price: float, name: str, heuristic: str = "ff") -> tuple[list[str], 
     """Body o0 shall leave the table, but o1 at its start pose is in the way of every reach for it."""
     task, facts, objects = cupboard(2, 3)
     goal = And((Atom("on", ("o0", "shelf")),))
-    instantiated = instantiate(type(task)(task.name, task.domain, task.objects, task.initial, goal, {}), facts, objects)
+    instantiated = instantiate(
+        type(task)(task.name, task.domain, task.objects, task.initial, goal, {}), facts, objects
+    )
 
     def prices(fact: Fact) -> float:
-        return price if fact[0] == "reach-clear" and fact[1:3] == ("o0", "o0_start") and fact[6] == "o1" else 0.0
+        return (
+            price
+            if fact[0] == "reach-clear" and fact[1:3] == ("o0", "o0_start") and fact[6] == "o1"
+            else 0.0
+        )
 
     result = search(
-        instantiated, search=name, heuristic=heuristic, price=lambda f: prices(f) if f[-1] == "o1_start" else 0.0
+        instantiated,
+        search=name,
+        heuristic=heuristic,
+        price=lambda f: prices(f) if f[-1] == "o1_start" else 0.0,
     )
     assert result.plan is not None
-    return [f"{o.name} {o.arguments[0]}" for o in result.plan.operators], result.plan.cost, result.expanded
+    return (
+        [f"{o.name} {o.arguments[0]}" for o in result.plan.operators],
+        result.plan.cost,
+        result.expanded,
+    )
 
 
 @pytest.mark.parametrize("name", INFORMED)
@@ -106,7 +124,11 @@ def test_bodies_that_swap_places_need_a_third_place(name: str) -> None:
     facts = {
         f
         for f in facts
-        if f not in {("pose-clear", "o0", "#p0_1", "o1", "o1_start"), ("pose-clear", "o1", "#p1_1", "o0", "o0_start")}
+        if f
+        not in {
+            ("pose-clear", "o0", "#p0_1", "o1", "o1_start"),
+            ("pose-clear", "o1", "#p1_1", "o0", "o0_start"),
+        }
     }
     task = type(task)(task.name, task.domain, task.objects, task.initial, goal, {})
     result = search(instantiate(task, facts, objects), search=name)
@@ -114,7 +136,9 @@ def test_bodies_that_swap_places_need_a_third_place(name: str) -> None:
     steps = [f"{o.name} {o.arguments[0]}" for o in result.plan.operators]
     assert steps.count("place o0") + steps.count("place o1") == 3
     assert (
-        Interpreter(task, facts, objects, on_demand=True).run((o.name, o.arguments) for o in result.plan.operators)
+        Interpreter(task, facts, objects, on_demand=True).run(
+            (o.name, o.arguments) for o in result.plan.operators
+        )
         == result.plan.cost
     )
     assert result.plan.cost == 12
@@ -130,9 +154,17 @@ def test_limits_are_reported(eight: InstantiatedTask) -> None:
 
 def test_infinite_prices_take_operators_away() -> None:
     instantiated = instantiate(*cupboard(1, 2))
-    assert search(instantiated, price=lambda f: float("inf") if f[0] == "nothing" else 0.0).plan is not None
-    for name in ("pick-motion", "supported"):  # an operator rests on the one, the goal's derivation on the other
-        result = search(instantiated, price=lambda f, name=name: float("inf") if f[0] == name else 0.0)
+    assert (
+        search(instantiated, price=lambda f: float("inf") if f[0] == "nothing" else 0.0).plan
+        is not None
+    )
+    for name in (
+        "pick-motion",
+        "supported",
+    ):  # an operator rests on the one, the goal's derivation on the other
+        result = search(
+            instantiated, price=lambda f, name=name: float("inf") if f[0] == name else 0.0
+        )
         assert result.reason is Reason.UNSOLVABLE
 
 
@@ -152,9 +184,17 @@ print(json.dumps(plans))
 def test_the_same_plan_whatever_the_hash_seed() -> None:
     outputs: list[object] = []
     for seed in ("0", "1", "77"):
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(sys.path)}
+        environment = {
+            **os.environ,
+            "PYTHONHASHSEED": seed,
+            "PYTHONPATH": os.pathsep.join(sys.path),
+        }
         run = subprocess.run(
-            [sys.executable, "-c", SCRIPT], env=environment, capture_output=True, text=True, check=True
+            [sys.executable, "-c", SCRIPT],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
         )
         outputs.append(json.loads(run.stdout))
     assert outputs[0] == outputs[1] == outputs[2]

@@ -51,7 +51,10 @@ def ways(goal: Goal, *axioms: Axiom, meanings: tuple[str, ...] = ()) -> list[set
 
 
 def test_a_fluent_holds_by_itself() -> None:
-    assert ways(Goal(facts("a"), facts("b"))) == [{frozenset({(("a",), True)})}, {frozenset({(("b",), False)})}]
+    assert ways(Goal(facts("a"), facts("b"))) == [
+        {frozenset({(("a",), True)})},
+        {frozenset({(("b",), False)})},
+    ]
 
 
 def test_a_rule_opens_into_its_body_and_two_rules_into_two_ways() -> None:
@@ -61,7 +64,10 @@ def test_a_rule_opens_into_its_body_and_two_rules_into_two_ways() -> None:
 
 def test_what_denies_a_disjunction_denies_all_of_it() -> None:
     (found,) = ways(Goal(frozenset(), facts("p")), axiom("p", "a"), axiom("p", "b c"))
-    assert found == {frozenset({(("a",), False), (("b",), False)}), frozenset({(("a",), False), (("c",), False)})}
+    assert found == {
+        frozenset({(("a",), False), (("b",), False)}),
+        frozenset({(("a",), False), (("c",), False)}),
+    }
 
 
 def test_ways_that_contradict_themselves_are_none() -> None:
@@ -77,7 +83,12 @@ def test_a_part_made_up_for_the_goal_is_taken_apart() -> None:
 
 def test_a_universal_part_denied_is_taken_apart_by_its_rules() -> None:
     parts = goal_parts(
-        task(Goal(frozenset(), facts(["some"])), axiom("some", "a"), axiom("some", "", "b"), meanings=("some",))
+        task(
+            Goal(frozenset(), facts(["some"])),
+            axiom("some", "a"),
+            axiom("some", "", "b"),
+            meanings=("some",),
+        )
     )
     assert [part.literal for part in parts] == [(("a",), False), (("b",), True)]
 
@@ -115,15 +126,21 @@ def rules(draw: st.DrawFn) -> list[Axiom]:
         known = FLUENTS + DERIVED[:index]
         for _ in range(draw(st.integers(0, 2))):
             body = draw(st.lists(st.tuples(st.sampled_from(known), st.booleans()), max_size=3))
-            positive, negative = (frozenset(fact for fact, sign in body if sign is wanted) for wanted in (True, False))
+            positive, negative = (
+                frozenset(fact for fact, sign in body if sign is wanted) for wanted in (True, False)
+            )
             made.append(Axiom(head, positive, negative))
     return made
 
 
 @given(rules(), st.sampled_from(FLUENTS + DERIVED), st.booleans())
 @settings(max_examples=150)
-def test_a_literal_holds_just_where_one_of_its_ways_does(axioms: list[Axiom], fact: Fact, wanted: bool) -> None:
-    goal = Goal(frozenset({fact}) if wanted else frozenset(), frozenset() if wanted else frozenset({fact}))
+def test_a_literal_holds_just_where_one_of_its_ways_does(
+    axioms: list[Axiom], fact: Fact, wanted: bool
+) -> None:
+    goal = Goal(
+        frozenset({fact}) if wanted else frozenset(), frozenset() if wanted else frozenset({fact})
+    )
     (part,) = goal_parts(task(goal, *axioms))
     without_rules = fact in DERIVED and not any(rule.head == fact for rule in axioms)
     if without_rules:  # it is then a fluent like any other
@@ -131,7 +148,9 @@ def test_a_literal_holds_just_where_one_of_its_ways_does(axioms: list[Axiom], fa
         return
     for state in states():
         # Derived facts without any rule are fluents as well, and false in these states.
-        assert ((fact in closure(state, axioms)) == wanted) == any(is_so(way, state) for way in part.ways)
+        assert ((fact in closure(state, axioms)) == wanted) == any(
+            is_so(way, state) for way in part.ways
+        )
 
 
 @pytest.mark.parametrize("order", [("a", "b"), ("b", "a")])

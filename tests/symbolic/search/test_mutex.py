@@ -56,24 +56,36 @@ ROOMS = """
 def told(goal: str, balls: int) -> set[str] | None:
     names = [f"b{i}" for i in range(balls)]
     init = " ".join(f"(at {name} hall)" for name in names)
-    domain = parse_domain(ROOMS.replace("(:types ball room)", "(:types ball room) (:constants hall - room)"), None)
+    domain = parse_domain(
+        ROOMS.replace("(:types ball room)", "(:types ball room) (:constants hall - room)"), None
+    )
     text = (
         f"(define (problem p) (:domain rooms) (:objects {' '.join(names)} - ball den loft - room)"
         f" (:init {init} (free)) (:goal {goal}))"
     )
     found = excluded(instantiate(parse_task(text, domain, None)), Deadline())
-    return None if found is None else {" ".join(fact) if wanted else f"not {' '.join(fact)}" for fact, wanted in found}
+    return (
+        None
+        if found is None
+        else {" ".join(fact) if wanted else f"not {' '.join(fact)}" for fact, wanted in found}
+    )
 
 
 @pytest.mark.parametrize("balls", [2, 5, 20])
 def test_the_fewest_are_named(balls: int) -> None:
     assert told("(and (at b0 den) (at b1 loft) (at b0 loft))", balls) == {"at b0 den", "at b0 loft"}
-    assert told("(and (carried b0) (at b1 loft) (carried b1))", balls) == {"at b1 loft", "carried b1"}
+    assert told("(and (carried b0) (at b1 loft) (carried b1))", balls) == {
+        "at b1 loft",
+        "carried b1",
+    }
     assert told("(and (carried b0) (carried b1))", balls) == {"carried b0", "carried b1"}
     assert told("(and (carried b0) (free))", balls) == {"carried b0", "free"}
     assert told("(and (away b0) (at b0 hall))", balls) == {"away b0", "at b0 hall"}
     assert told("(and (at b0 den) (not (moved)))", balls) == {"at b0 den", "not moved"}
-    assert told("(and (forall (?b - ball) (at ?b den)) (carried b1))", balls) == {"at b1 den", "carried b1"}
+    assert told("(and (forall (?b - ball) (at ?b den)) (carried b1))", balls) == {
+        "at b1 den",
+        "carried b1",
+    }
     assert told("(and (at b0 den) (not (at b0 den)))", balls) == {"at b0 den", "not at b0 den"}
 
 
@@ -94,11 +106,15 @@ CIRCLES = """
 """
 
 
-@pytest.mark.parametrize("goal", ["(reach r0 r9)", "(not (reach r0 r9))", "(and (reach r0 r9) (not (reach r9 r0)))"])
+@pytest.mark.parametrize(
+    "goal", ["(reach r0 r9)", "(not (reach r0 r9))", "(and (reach r0 r9) (not (reach r9 r0)))"]
+)
 def test_rules_that_lead_in_circles_come_to_an_end(goal: str) -> None:
     """The ways to reach a room through all others are as many as their orders."""
     names = " ".join(f"r{i}" for i in range(10))
-    text = f"(define (problem p) (:domain circles) (:objects {names} - room) (:init) (:goal {goal}))"
+    text = (
+        f"(define (problem p) (:domain circles) (:objects {names} - room) (:init) (:goal {goal}))"
+    )
     instantiated = instantiate(parse_task(text, parse_domain(CIRCLES, None), None))
     began = time.process_time()
     assert excluded(instantiated, Deadline()) is None

@@ -34,11 +34,15 @@ STALL = 10**9
 
 
 def told(result: Result) -> tuple[object, ...]:
-    plan = None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
+    plan = (
+        None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
+    )
     return plan, result.reason, result.expanded, result.evaluated
 
 
-def compare(monkeypatch: pytest.MonkeyPatch, instantiated: InstantiatedTask, price: dict, **options: object) -> Result:
+def compare(
+    monkeypatch: pytest.MonkeyPatch, instantiated: InstantiatedTask, price: dict, **options: object
+) -> Result:
     """Search in both loops, and once from the one into the other."""
     monkeypatch.setattr(restarts, "STALLED", STALL)
     monkeypatch.setattr(search_module, "STALLED", STALL)
@@ -64,7 +68,15 @@ def test_random_tasks_with_random_prices(block: int, monkeypatch: pytest.MonkeyP
         name, heuristic = WAYS[seed % len(WAYS)]
         limit = rng.choice((None, None, 3, 20))
         weight = rng.choice((1.0, 2.5, 5.0))
-        found = compare(monkeypatch, instantiated, price, search=name, heuristic=heuristic, limit=limit, weight=weight)
+        found = compare(
+            monkeypatch,
+            instantiated,
+            price,
+            search=name,
+            heuristic=heuristic,
+            limit=limit,
+            weight=weight,
+        )
         plans += found.plan is not None
     assert plans >= 10
 
@@ -77,10 +89,25 @@ def test_guards_of_all_kinds(seed: int, name: str, monkeypatch: pytest.MonkeyPat
     for instantiated in (listed, assumed):
         found = compare(monkeypatch, instantiated, prices, search=name)
         if name == "wastar" and found.plan is not None:
-            compare(monkeypatch, instantiated, prices, search=name, below=float(len(found.plan.operators)))
+            compare(
+                monkeypatch,
+                instantiated,
+                prices,
+                search=name,
+                below=float(len(found.plan.operators)),
+            )
 
 
-SIZES = {"blocks": 9, "logistics": 6, "gripper": 8, "rovers": 4, "satellite": 5, "depot": 4, "miconic": 6, "network": 6}
+SIZES = {
+    "blocks": 9,
+    "logistics": 6,
+    "gripper": 8,
+    "rovers": 4,
+    "satellite": 5,
+    "depot": 4,
+    "miconic": 6,
+    "network": 6,
+}
 
 
 @pytest.mark.parametrize("name", SIZES)
@@ -101,7 +128,10 @@ def test_broken_costs_and_dear_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     for length in ("0.5", "9000"):
         changed = problem.replace("(= (length w0 w1) ", f"(= (length w0 w1) {length} ; ", 1)
         assert changed != problem
-        lines = [line if length not in line else line.replace(" ; ", ")\n;", 1) for line in changed.split("\n")]
+        lines = [
+            line if length not in line else line.replace(" ; ", ")\n;", 1)
+            for line in changed.split("\n")
+        ]
         instantiated = instantiate(parse_task("\n".join(lines), parse_domain(domain)))
         compare(monkeypatch, instantiated, {}, search="greedy", heuristic="ff+landmarks")
 
@@ -109,7 +139,9 @@ def test_broken_costs_and_dear_ones(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_audits_and_limits_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     domain, problem = GENERATORS["depot"](8, Random(1))
     instantiated = instantiate(parse_task(problem, parse_domain(domain)))
-    found = compare(monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", limit=700)
+    found = compare(
+        monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", limit=700
+    )
     assert found.expanded == 700 and found.plan is None
     asked: list[int] = []
 
@@ -117,14 +149,19 @@ def test_audits_and_limits_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(1)
         return True
 
-    found = compare(monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", audit=audit)
+    found = compare(
+        monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", audit=audit
+    )
     assert found.expanded == 500 and found.plan is None and asked
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_words_are_those_of_the_state(seed: int) -> None:
     rng = Random(seed)
-    one, other = rng.getrandbits(200) & rng.getrandbits(200), rng.getrandbits(200) & rng.getrandbits(130)
+    one, other = (
+        rng.getrandbits(200) & rng.getrandbits(200),
+        rng.getrandbits(200) & rng.getrandbits(130),
+    )
     rebuilt = [0, 0]
     for w, a, b in pairs_of(one, other):
         for k, word in enumerate((a, b)):
@@ -136,7 +173,9 @@ def test_words_are_those_of_the_state(seed: int) -> None:
 
 
 def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(selection.sys.modules, "tamp.symbolic.search.packed.compiled", raising=False)
+    monkeypatch.delitem(
+        selection.sys.modules, "tamp.symbolic.search.packed.compiled", raising=False
+    )
     for kept, enough in ((False, selection.COMPILE_THRESHOLD), (True, selection.LOAD_THRESHOLD)):
         monkeypatch.setattr(selection, "_METER", selection._Meter())
         monkeypatch.setattr(selection, "compiled_before", lambda kept=kept: kept)
@@ -165,7 +204,9 @@ def test_luby_numbers() -> None:
 
 
 @pytest.mark.parametrize("heuristic", ["ff+landmarks", "ff"])
-def test_a_search_that_stalls_begins_anew_and_finds_a_plan(heuristic: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_that_stalls_begins_anew_and_finds_a_plan(
+    heuristic: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The same seed gives the same plan, whichever loop it begins in; it holds by the book."""
     for module in (restarts, search_module):
         monkeypatch.setattr(module, "STALLED", 50)
@@ -176,7 +217,9 @@ def test_a_search_that_stalls_begins_anew_and_finds_a_plan(heuristic: str, monke
     found: dict[tuple[int, bool], Result] = {}
     for seed, packed in ((0, False), (0, True), (1, True), (2, True)):
         monkeypatch.setattr(selection, "pays", lambda entries, packed=packed: packed)
-        found[seed, packed] = result = search(instantiated, search="greedy", heuristic=heuristic, seed=seed)
+        found[seed, packed] = result = search(
+            instantiated, search="greedy", heuristic=heuristic, seed=seed
+        )
         assert result.plan is not None
         steps = [(operator.name, operator.arguments) for operator in result.plan.operators]
         assert Interpreter(task).run(steps) == result.plan.cost

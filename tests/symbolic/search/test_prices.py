@@ -21,8 +21,14 @@ TESTS = ("pose-clear", "reach-clear")
 
 
 def random_prices(rng: Random, facts: frozenset[Fact]) -> dict[Fact, float]:
-    prices = {f: rng.choice((0.3, 2.5, 100.0, math.inf)) for f in sorted(facts) if f[0] in TESTS and rng.random() < 0.4}
-    return prices | {f: rng.choice((0.5, 3.0)) for f in sorted(facts) if f[0] not in TESTS and rng.random() < 0.2}
+    prices = {
+        f: rng.choice((0.3, 2.5, 100.0, math.inf))
+        for f in sorted(facts)
+        if f[0] in TESTS and rng.random() < 0.4
+    }
+    return prices | {
+        f: rng.choice((0.5, 3.0)) for f in sorted(facts) if f[0] not in TESTS and rng.random() < 0.2
+    }
 
 
 def step_cost(operator: Operator, state: Facts, prices: dict[Fact, float]) -> float:
@@ -48,7 +54,9 @@ def dijkstra(instantiated: InstantiatedTask, prices: dict[Fact, float]) -> float
             if operator.positive <= state and operator.negative.isdisjoint(state):
                 reached = cost + step_cost(operator, state, prices)
                 if reached < math.inf:
-                    heapq.heappush(queue, (reached, next(order), (state - operator.deleted) | operator.added))
+                    heapq.heappush(
+                        queue, (reached, next(order), (state - operator.deleted) | operator.added)
+                    )
     return math.inf
 
 
@@ -81,7 +89,9 @@ def test_informed_searches_pay_what_they_say(seed: int, name: str) -> None:
     _, prices, listed, assumed = instances(seed)
     best = dijkstra(listed, prices)
     found: list[list[str]] = []
-    for instantiated, price in itertools.product((listed, assumed), (prices, lambda fact: prices.get(fact, 0.0))):
+    for instantiated, price in itertools.product(
+        (listed, assumed), (prices, lambda fact: prices.get(fact, 0.0))
+    ):
         result = search(instantiated, search=name, price=price)
         if best == math.inf:
             assert result.plan is None
@@ -110,9 +120,16 @@ def test_what_the_goal_is_derived_from_has_a_price(method: str, cheap: str) -> N
     instantiated = instantiate(parse_task(problem, domain), [("within", "p1"), ("within", "p2")])
     dear = "p2" if cheap == "p1" else "p1"
     for blind in (None, "blind"):
-        result = search(instantiated, search=method, price={("within", dear): 5.0}, heuristic=blind or "ff")
+        result = search(
+            instantiated, search=method, price={("within", dear): 5.0}, heuristic=blind or "ff"
+        )
         assert result.plan is not None
         assert [operator.arguments for operator in result.plan.operators] == [(cheap,)]
-    only = search(instantiated, search=method, price={("within", "p1"): 5.0, ("within", "p2"): 7.0}, heuristic="blind")
+    only = search(
+        instantiated,
+        search=method,
+        price={("within", "p1"): 5.0, ("within", "p2"): 7.0},
+        heuristic="blind",
+    )
     assert only.plan is not None
     assert only.plan.cost == 1.0

@@ -43,7 +43,9 @@ def atom(rng: Random, predicates: tuple[str, ...], variables: tuple[str, ...]) -
     return Atom(name, tuple(rng.choice(terms) for _ in range(ARITY[name])))
 
 
-def formula(rng: Random, predicates: tuple[str, ...], variables: tuple[str, ...], depth: int) -> Formula:
+def formula(
+    rng: Random, predicates: tuple[str, ...], variables: tuple[str, ...], depth: int
+) -> Formula:
     kind = rng.choice(("leaf", "and", "and", "or", "not", "quantified")) if depth else "leaf"
     if kind == "leaf":
         leaf = atom(rng, predicates, variables)
@@ -51,7 +53,10 @@ def formula(rng: Random, predicates: tuple[str, ...], variables: tuple[str, ...]
             leaf = Atom("=", (rng.choice((*variables, "a")), rng.choice((*variables, "b"))))
         return leaf if rng.random() < 0.7 else Not(leaf)
     if kind in ("and", "or"):
-        parts = tuple(formula(rng, predicates, variables, depth - 1) for _ in range(rng.choice((0, 1, 2, 2, 3))))
+        parts = tuple(
+            formula(rng, predicates, variables, depth - 1)
+            for _ in range(rng.choice((0, 1, 2, 2, 3)))
+        )
         return And(parts) if kind == "and" else Or(parts)
     if kind == "not":
         return Not(formula(rng, predicates, variables, depth - 1))
@@ -70,29 +75,47 @@ def random_task(rng: Random) -> Task:
         for _ in range(rng.randint(1, 2)):
             body = formula(rng, below, names, rng.randint(1, 2))
             if names and rng.random() < 0.3:  # a recursive rule
-                step = Exists((Parameter("?k"),), And((Atom("q", ("?h0", "?k")), Atom(head, ("?k",)))))
+                step = Exists(
+                    (Parameter("?k"),), And((Atom("q", ("?h0", "?k")), Atom(head, ("?k",))))
+                )
                 body = Or((body, step))
             derived.append(Derived(Atom(head, names), parameters, body))
         below = (*below, head)
     actions: list[Action] = []
     for i in range(rng.randint(1, 3)):
-        parameters = tuple(Parameter(f"?{'xy'[k]}", rng.choice(TYPES)) for k in range(rng.randint(0, 2)))
+        parameters = tuple(
+            Parameter(f"?{'xy'[k]}", rng.choice(TYPES)) for k in range(rng.randint(0, 2))
+        )
         names = tuple(p.name for p in parameters)
         effects: list[Effect] = []
         for _ in range(rng.randint(1, 4)):
-            own = (Parameter(rng.choice(("?x", "?w")), rng.choice(TYPES)),) if rng.random() < 0.3 else ()
+            own = (
+                (Parameter(rng.choice(("?x", "?w")), rng.choice(TYPES)),)
+                if rng.random() < 0.3
+                else ()
+            )
             scope = tuple(dict.fromkeys((*names, *(p.name for p in own))))
             condition = And(()) if rng.random() < 0.5 else formula(rng, below, scope, 1)
             effects.append(Effect(atom(rng, FLUENT, scope), rng.random() < 0.6, condition, own))
         precondition = formula(rng, below, names, rng.randint(0, 2))
         cost = rng.choice((1.0, 1.0, 2.0, 3.5, Atom("price", ("a",))))
         actions.append(Action(f"act{i}", parameters, precondition, tuple(effects), cost))
-    rows = [(name, *terms) for name in (*FLUENT, *STATIC) for terms in itertools.product("abc", repeat=ARITY[name])]
+    rows = [
+        (name, *terms)
+        for name in (*FLUENT, *STATIC)
+        for terms in itertools.product("abc", repeat=ARITY[name])
+    ]
     initial = frozenset(row for row in rows if rng.random() < 0.25)
-    goal = And(tuple(formula(rng, below, (), rng.choice((0, 0, 1, 2))) for _ in range(rng.randint(2, 4))))
-    predicates = {n: Predicate(n, tuple(Parameter(f"?{k}") for k in range(size))) for n, size in ARITY.items()}
+    goal = And(
+        tuple(formula(rng, below, (), rng.choice((0, 0, 1, 2))) for _ in range(rng.randint(2, 4)))
+    )
+    predicates = {
+        n: Predicate(n, tuple(Parameter(f"?{k}") for k in range(size))) for n, size in ARITY.items()
+    }
     types = {"object": "object", "block": "object", "room": "object"}
-    domain = Domain("random", types, {"a": OBJECTS["a"]}, predicates, {}, tuple(actions), tuple(derived))
+    domain = Domain(
+        "random", types, {"a": OBJECTS["a"]}, predicates, {}, tuple(actions), tuple(derived)
+    )
     task = Task("random", domain, OBJECTS, initial, goal, {("price", "a"): 2.0})
     return task if rng.random() < 0.3 else replace(task, goal=reachable_goal(rng, task, below))
 

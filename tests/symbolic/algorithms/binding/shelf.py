@@ -45,8 +45,12 @@ def planned(
         "sample-pose": poses,
         "test-clear": lambda cup, pose, call: clear(cup, pose),
     }
-    problem = stream_task(DOMAIN, STREAMS, functions, {name: ("cup",) for name in cups.split()}, "", goal)
-    run = start_adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
+    problem = stream_task(
+        DOMAIN, STREAMS, functions, {name: ("cup",) for name in cups.split()}, "", goal
+    )
+    run = start_adaptive(
+        problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None
+    )
     found = search_plan(run)
     assert found is not None
     return run, skeleton_of(run, found)

@@ -45,7 +45,9 @@ def test_choices_in_between_are_not_searched(slots: int, fluents: str) -> None:
         yield ("view", number) if number >= 5 else Rejection("too dark", (slot,))
 
     names = [f"s{i}" for i in range(slots + 1)]
-    init = "(filled s0) (ready s1)" + "".join(f"(next {a} {b})" for a, b in itertools.pairwise(names))
+    init = "(filled s0) (ready s1)" + "".join(
+        f"(next {a} {b})" for a, b in itertools.pairwise(names)
+    )
     problem = stream_task(
         DOMAIN,
         STREAMS.format(fluents=fluents),

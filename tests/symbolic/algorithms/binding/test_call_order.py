@@ -15,7 +15,9 @@ from tamp.symbolic.pddl.structs import Stream
 TEST, GENERATOR, FLUENT = 0, 1, 2
 
 
-def node(kind: int, name: str, inputs: tuple[int | str, ...], outputs: tuple[int, ...], step: int = 0) -> Node:
+def node(
+    kind: int, name: str, inputs: tuple[int | str, ...], outputs: tuple[int, ...], step: int = 0
+) -> Node:
     """A call of a stream of one of the three kinds."""
     fluents = ("at",) if kind == FLUENT else ()
     declared = ("?o",) if kind == GENERATOR or outputs else ()
@@ -46,10 +48,14 @@ def test_random_calls_are_in_the_first_topological_order_by_rank() -> None:
         graph.add_nodes_from(range(len(nodes)))
         producer = {variable: place for place, one in enumerate(nodes) for variable in one.outputs}
         for place, one in enumerate(nodes):
-            graph.add_edges_from((producer[term], place) for term in one.inputs if isinstance(term, int))
+            graph.add_edges_from(
+                (producer[term], place) for term in one.inputs if isinstance(term, int)
+            )
             graph.add_edges_from((nodes.index(needed), place) for needed in one.needs)
 
-        first = nx.lexicographical_topological_sort(graph, key=lambda place: (*rank(nodes[place]), place))
+        first = nx.lexicographical_topological_sort(
+            graph, key=lambda place: (*rank(nodes[place]), place)
+        )
         assert ordered(nodes) == tuple(nodes[place] for place in first), seed
         lengths += len(nodes)
     assert lengths > 800

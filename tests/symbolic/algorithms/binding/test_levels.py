@@ -63,7 +63,9 @@ def test_resets_are_those_of_the_jumps_since(seed: int) -> None:
             levels.enter(index, level(index))
             entered[index] = len(jumps)
         for index in range(len(entered)):
-            assert (levels.standing(index) is None) == reference_resets(jumps, entered[index], index)
+            assert (levels.standing(index) is None) == reference_resets(
+                jumps, entered[index], index
+            )
 
 
 def test_levels_that_a_jump_crosses_are_not_entered_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +74,9 @@ def test_levels_that_a_jump_crosses_are_not_entered_again(monkeypatch: pytest.Mo
     goal = f"(and {' '.join(f'(put {name})' for name in names.split())})"
     run, skeleton = planned(goal, lambda cup, pose: cup != "c00" or pose == 4, names)
     late = next(node for node in skeleton.nodes if node.stream.is_test and node.inputs[0] == "c00")
-    skeleton = replace(skeleton, nodes=(*(node for node in skeleton.nodes if node is not late), late))
+    skeleton = replace(
+        skeleton, nodes=(*(node for node in skeleton.nodes if node is not late), late)
+    )
 
     entered: list[int] = []
     enter = Binder._enter  # pyright: ignore[reportPrivateUsage]
@@ -84,4 +88,6 @@ def test_levels_that_a_jump_crosses_are_not_entered_again(monkeypatch: pytest.Mo
     monkeypatch.setattr(Binder, "_enter", counted)
     values = run.binder.bind(skeleton, 4, 100)
     assert values is not None and run.replay.fault(skeleton, values) is None
-    assert len(entered) == len(skeleton.nodes) + 3, "three jumps back, each of which asks the test anew"
+    assert len(entered) == len(skeleton.nodes) + 3, (
+        "three jumps back, each of which asks the test anew"
+    )

@@ -43,7 +43,11 @@ def test_a_test_comes_as_soon_as_its_inputs_are_there() -> None:
     waiting = [node for node in skeleton.nodes if node.stream.is_test]
     for node in skeleton.nodes:
         assert {term for term in node.inputs if isinstance(term, int)} <= known
-        ready = [one for one in waiting if {term for term in one.inputs if isinstance(term, int)} <= known]
+        ready = [
+            one
+            for one in waiting
+            if {term for term in one.inputs if isinstance(term, int)} <= known
+        ]
         assert node.stream.is_test or not ready
         waiting = [one for one in waiting if one is not node]
         known.update(node.outputs)
@@ -74,7 +78,9 @@ def test_what_is_asked_for_and_lifts_a_guard_as_well_is_one_value() -> None:
     functions = {"sample-grip": grips, "test-firm": lambda spot, grip, call: grip == 3}
     goal = "(exists (?g - grip) (held ?g))"
     problem = stream_task(GUARD, GUARD_STREAMS, functions, {}, "(on s)", goal)
-    run = start_adaptive(problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None)
+    run = start_adaptive(
+        problem, lambda key: random.Random(key), Deadline(20.0), lambda effort: None
+    )
     found = search_plan(run)
     assert found is not None
     skeleton = skeleton_of(run, found)

@@ -19,7 +19,9 @@ TESTED = ("clear", "tea", "#p1")
 
 def test_a_test_of_what_is_not_drawn_costs_a_little() -> None:
     run, _ = planned("(put tea)", cups="tea")
-    assert exploration_prices(run.optimistic.facts, Experience(), {}) == {TESTED: UNTRIED_TEST_PRICE}
+    assert exploration_prices(run.optimistic.facts, Experience(), {}) == {
+        TESTED: UNTRIED_TEST_PRICE
+    }
 
 
 def test_what_was_tried_is_priced_by_what_came_of_it() -> None:
@@ -29,10 +31,16 @@ def test_what_was_tried_is_priced_by_what_came_of_it() -> None:
     assert exploration_prices(run.optimistic.facts, experience, {}) == {}
 
 
-@pytest.mark.parametrize(("failures", "expected"), [(0, 1.0), (3, 4.0), (1000, MAX_EXPECTED_FAILURES)])
+@pytest.mark.parametrize(
+    ("failures", "expected"), [(0, 1.0), (3, 4.0), (1000, MAX_EXPECTED_FAILURES)]
+)
 def test_earlier_runs_charge_for_failures_up_to_a_limit(failures: int, expected: float) -> None:
     run, _ = planned("(put tea)", cups="tea")
-    prices = exploration_prices(run.optimistic.facts, Experience(), {"sample-pose": Posterior(1, failures)})
+    prices = exploration_prices(
+        run.optimistic.facts, Experience(), {"sample-pose": Posterior(1, failures)}
+    )
     assert prices == {DRAWN: pytest.approx(SCALE * expected), TESTED: UNTRIED_TEST_PRICE}
-    prices = exploration_prices(run.optimistic.facts, Experience(), {"test-clear": Posterior(1, failures)})
+    prices = exploration_prices(
+        run.optimistic.facts, Experience(), {"test-clear": Posterior(1, failures)}
+    )
     assert prices == {TESTED: pytest.approx(UNTRIED_TEST_PRICE + SCALE * expected)}

@@ -8,7 +8,11 @@ from typing import Any
 import pytest
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.algorithms.experience.failing_states import OTHER_STATE, avoid_failing_states, choose_instances
+from tamp.symbolic.algorithms.experience.failing_states import (
+    OTHER_STATE,
+    avoid_failing_states,
+    choose_instances,
+)
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact, Stream
@@ -27,7 +31,9 @@ def instance(stream: str, *inputs: str) -> OptimisticInstance:
 
 def facts_of(first: OptimisticInstance, *others: OptimisticInstance) -> OptimisticFacts:
     made = [first, *others]
-    return OptimisticFacts(producers={WAY: first}, alternatives={WAY: made} if others else {}, instances=made)
+    return OptimisticFacts(
+        producers={WAY: first}, alternatives={WAY: made} if others else {}, instances=made
+    )
 
 
 def task(initial: frozenset[Fact] = frozenset()) -> InstantiatedTask:
@@ -35,20 +41,32 @@ def task(initial: frozenset[Fact] = frozenset()) -> InstantiatedTask:
     none: frozenset[Fact] = frozenset()
     operators = [
         Operator("go", (), none, none, frozenset({("there",)}), none, static=frozenset({WAY})),
-        *(Operator("open", door[1:], none, frozenset({door}), frozenset({door}), none) for door in DOORS),
-        *(Operator("shut", door[1:], frozenset({door}), none, none, frozenset({door})) for door in DOORS),
+        *(
+            Operator("open", door[1:], none, frozenset({door}), frozenset({door}), none)
+            for door in DOORS
+        ),
+        *(
+            Operator("shut", door[1:], frozenset({door}), none, none, frozenset({door}))
+            for door in DOORS
+        ),
     ]
     goal = Goal(frozenset({("there",)}))
-    return InstantiatedTask(initial, goal, tuple(operators), (), frozenset({("there",), *DOORS}), {})
+    return InstantiatedTask(
+        initial, goal, tuple(operators), (), frozenset({("there",), *DOORS}), {}
+    )
 
 
-def doors_when_going(failed: dict[str, list[frozenset[Fact]]], *made: OptimisticInstance) -> frozenset[Fact] | None:
+def doors_when_going(
+    failed: dict[str, list[frozenset[Fact]]], *made: OptimisticInstance
+) -> frozenset[Fact] | None:
     """The open doors in the state from which the cheapest plan goes; None without a plan."""
     experience = Experience()
     for stream, states in failed.items():
         for state in states:
             experience.record_failing_state((stream, ()), ("open",), state)
-    plan = search(avoid_failing_states(task(), experience, facts_of(*made)), search="astar", heuristic="blind").plan
+    plan = search(
+        avoid_failing_states(task(), experience, facts_of(*made)), search="astar", heuristic="blind"
+    ).plan
     if plan is None:
         return None
     state: frozenset[Fact] = frozenset()
@@ -94,7 +112,9 @@ def test_facts_of_other_predicates_say_nothing() -> None:
     experience = Experience()
     experience.record_failing_state(("plan", ()), ("lit",), NOTHING)
     changed = avoid_failing_states(task(), experience, facts_of(instance("plan")))
-    assert search(changed, search="astar", heuristic="blind").plan is None, "no lamp can be lit, whatever is opened"
+    assert search(changed, search="astar", heuristic="blind").plan is None, (
+        "no lamp can be lit, whatever is opened"
+    )
 
 
 def test_made_up_predicates_look_like_no_pddl_name() -> None:
@@ -102,16 +122,27 @@ def test_made_up_predicates_look_like_no_pddl_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("state", "chosen"), [(NOTHING, "fly"), (frozenset(DOORS[:1]), "plan"), (frozenset(DOORS), None)]
+    ("state", "chosen"),
+    [(NOTHING, "fly"), (frozenset(DOORS[:1]), "plan"), (frozenset(DOORS), None)],
 )
-def test_the_first_call_that_has_not_failed_in_the_state_is_chosen(state: frozenset[Fact], chosen: Any) -> None:
+def test_the_first_call_that_has_not_failed_in_the_state_is_chosen(
+    state: frozenset[Fact], chosen: Any
+) -> None:
     made = instance("plan"), instance("fly")
     experience = Experience()
-    for stream, failed in (("plan", NOTHING), ("plan", frozenset(DOORS)), ("fly", frozenset(DOORS))):
+    for stream, failed in (
+        ("plan", NOTHING),
+        ("plan", frozenset(DOORS)),
+        ("fly", frozenset(DOORS)),
+    ):
         experience.record_failing_state((stream, ()), ("open",), failed)
     found = choose_instances(facts_of(*made), experience, frozenset({WAY}), state | {("there",)})
-    assert ({WAY: chosen} if chosen else {}) == {fact: one.stream.name for fact, one in found.items()}
+    assert ({WAY: chosen} if chosen else {}) == {
+        fact: one.stream.name for fact, one in found.items()
+    }
 
 
 def test_nothing_is_chosen_where_one_call_certifies() -> None:
-    assert choose_instances(facts_of(instance("plan")), Experience(), frozenset({WAY}), NOTHING) == {}
+    assert (
+        choose_instances(facts_of(instance("plan")), Experience(), frozenset({WAY}), NOTHING) == {}
+    )

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections import Counter
 
 from tamp.stream import Rejection
-from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects, failure_counts
+from tamp.symbolic.algorithms.experience.failure_counts import (
+    FailureCount,
+    blocking_objects,
+    failure_counts,
+)
 from tests.symbolic.algorithms.binding.shelf import planned
 
 NAMES = {"tea": "tea", "mug": "mug"}
@@ -39,7 +43,9 @@ def test_what_never_worked_comes_first() -> None:
 def test_what_states_are_to_blame_for_counts_as_well() -> None:
     run, skeleton = planned("(put tea)")
     fact = skeleton.nodes[1].fact
-    run.knowledge.experience.record_nogood(fact, frozenset((("at", "mug", "p"),)), Rejection("no way", ("mug",)))
+    run.knowledge.experience.record_nogood(
+        fact, frozenset((("at", "mug", "p"),)), Rejection("no way", ("mug",))
+    )
     (row,) = failure_counts([skeleton], run.knowledge.experience, NAMES)
     assert (row.tries, row.reasons) == (1, Counter({"no way": 1}))
     assert blocking_objects([row], NAMES) == (("mug", 1),)
@@ -48,7 +54,14 @@ def test_what_states_are_to_blame_for_counts_as_well() -> None:
 def test_things_in_the_way_are_those_of_the_problem_that_were_met() -> None:
     """Words say nothing: only what a rejection names as hit or blocking counts."""
     rows = [
-        FailureCount("put tea", "plan", 5, 0, Counter({"too far from tea": 5}), Counter({"Mug": 4, "wall": 3})),
+        FailureCount(
+            "put tea",
+            "plan",
+            5,
+            0,
+            Counter({"too far from tea": 5}),
+            Counter({"Mug": 4, "wall": 3}),
+        ),
         FailureCount("take mug", "plan", 1, 0, Counter({"hits tea": 1}), Counter({"tea": 1})),
         FailureCount("take tea", "plan", 9, 0, Counter({"hits mug": 9})),
     ]

@@ -12,7 +12,8 @@ AT = ("at", "mug", "p2")
 
 
 @pytest.mark.parametrize(
-    ("successes", "failures", "expected"), [(0, 0, 0.0), (0, 1, 1.0), (0, 3, 3.0), (1, 3, 1.0), (3, 1, 0.0)]
+    ("successes", "failures", "expected"),
+    [(0, 0, 0.0), (0, 1, 1.0), (0, 3, 3.0), (1, 3, 1.0), (3, 1, 0.0)],
 )
 def test_failures_to_expect(successes: int, failures: int, expected: float) -> None:
     record = FailureRecord(successes, failures)

@@ -38,7 +38,9 @@ def explained(init: str, goal: str, algorithm: str = "adaptive") -> str:
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_the_missing_fact_is_named_through_a_chain_of_actions(algorithm: str) -> None:
     text = explained("(raw egg) (fresh egg)", "(cooked egg)", algorithm)
-    assert "cook needs (hot" in text and "light needs (gas)" in text and "nothing makes true" in text
+    assert (
+        "cook needs (hot" in text and "light needs (gas)" in text and "nothing makes true" in text
+    )
 
 
 def test_only_what_is_missing_is_named() -> None:
@@ -47,7 +49,10 @@ def test_only_what_is_missing_is_named() -> None:
 
 
 def test_goals_that_exclude_each_other_are_named_and_no_others() -> None:
-    text = explained("(raw egg) (fresh egg) (raw ham) (fresh ham) (gas)", "(and (cooked egg) (raw egg) (cooked ham))")
+    text = explained(
+        "(raw egg) (fresh egg) (raw ham) (fresh ham) (gas)",
+        "(and (cooked egg) (raw egg) (cooked ham))",
+    )
     assert "(cooked egg) and (raw egg) cannot both hold" in text
     assert "ham" not in text
 
@@ -81,7 +86,11 @@ def test_a_stream_that_was_given_up_proves_nothing(algorithm: str, given_up: boo
     assert "mug" in " ".join(result.explanation)
     if algorithm == "adaptive":
         (tally,) = result.tallies
-        assert (tally.action, tally.stream, tally.always_failed) == ("pick mug", "sample-grasp", True)
+        assert (tally.action, tally.stream, tally.always_failed) == (
+            "pick mug",
+            "sample-grasp",
+            True,
+        )
         assert tally.tries == tally.reasons["hits wall"] >= 2
         assert blocking_objects(result.tallies, problem.values) == (("wall", tally.tries),)
 
@@ -101,8 +110,12 @@ def test_what_failed_once_is_not_blamed_before_what_failed_a_hundred_times() -> 
         FailureCount("pick cup", "inverse-kinematics", 120, 2, Counter({"hits wall": 118})),
     ]
     problem = stream_task(KITCHEN, NO_STREAMS, {}, THINGS, "", "(cooked egg)")
-    (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
+    (first, *_) = explain_failures(
+        problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True
+    )
     assert first.startswith("pick cup: inverse-kinematics worked 2 times in 120 tries")
     rows[0] = FailureCount("place cup", "test-pose-clear", 30, 0, Counter({"hits can": 30}))
-    (first, *_) = explain_failures(problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True)
+    (first, *_) = explain_failures(
+        problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True
+    )
     assert first == "place cup: test-pose-clear never worked in 30 tries: 30 hits can"

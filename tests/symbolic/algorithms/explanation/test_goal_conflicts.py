@@ -25,7 +25,9 @@ goal: {goal}
 """
 
 
-def solved(goal: str, count: int, folder: Path, algorithm: str = "adaptive") -> tuple[Solution, float]:
+def solved(
+    goal: str, count: int, folder: Path, algorithm: str = "adaptive"
+) -> tuple[Solution, float]:
     """The solution, and the seconds of CPU that it took."""
     at = [(-0.8 + 0.17 * (i % 10), 0.3 * (i // 10) - 0.2) for i in range(count)]
     box = "box: [0.05, 0.05, 0.1], on: table"
@@ -38,7 +40,11 @@ def solved(goal: str, count: int, folder: Path, algorithm: str = "adaptive") -> 
 
 
 GOALS = [
-    ("(and (inside b0 cupboard_1) (on b0 cupboard_top))", ("(inside b0 cupboard_1)", "(on b0 cupboard_top)"), 1),
+    (
+        "(and (inside b0 cupboard_1) (on b0 cupboard_top))",
+        ("(inside b0 cupboard_1)", "(on b0 cupboard_top)"),
+        1,
+    ),
     ("(and (on b0 desk) (inside b0 cupboard_2))", ("(on b0 desk)", "(inside b0 cupboard_2)"), 1),
     (
         "(and (forall (?o - movable) (on ?o desk)) (on b1 cupboard_top))",
@@ -55,14 +61,20 @@ GOALS = [
         ("(exists (?g) (holding b0 ?g))", "(exists (?g) (holding b1 ?g))"),
         2,
     ),
-    ("(and (hand-empty) (exists (?g - grasp) (holding b0 ?g)))", ("(hand-empty)", "(holding b0 ?g)"), 1),
+    (
+        "(and (hand-empty) (exists (?g - grasp) (holding b0 ?g)))",
+        ("(hand-empty)", "(holding b0 ?g)"),
+        1,
+    ),
     ("(and (on b0 desk) (not (on b0 desk)))", ("(on b0 desk)", "(not (on b0 desk))"), 1),
 ]
 
 
 @pytest.mark.parametrize("count", [1, 2, 4, 8, 20])
 @pytest.mark.parametrize(("goal", "named", "least"), GOALS)
-def test_both_are_named(goal: str, named: tuple[str, str], least: int, count: int, tmp_path: Path) -> None:
+def test_both_are_named(
+    goal: str, named: tuple[str, str], least: int, count: int, tmp_path: Path
+) -> None:
     if count < least:
         pytest.skip("it takes more bodies")
     solution, used = solved(goal, count, tmp_path)
@@ -78,7 +90,8 @@ def test_the_reference_algorithm_names_them_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "goal", ["(and (on b0 desk) (on b1 desk))", "(and (on b0 desk) (exists (?g - grasp) (holding b1 ?g)))"]
+    "goal",
+    ["(and (on b0 desk) (on b1 desk))", "(and (on b0 desk) (exists (?g - grasp) (holding b1 ?g)))"],
 )
 def test_what_can_be_had_together_is_planned(goal: str, tmp_path: Path) -> None:
     solution, _ = solved(goal, 4, tmp_path)

@@ -31,7 +31,10 @@ OBJECTS = {"egg": ("food",), "ring": ("stove",)}
 
 
 def missing(*facts: tuple[str, ...], assumed: tuple[str, ...] = ()) -> UnachievableFacts:
-    functions = {"sample-pose": lambda food, call: iter(()), "test-near": lambda food, pose, call: False}
+    functions = {
+        "sample-pose": lambda food, call: iter(()),
+        "test-near": lambda food, pose, call: False,
+    }
     problem: StreamTask = stream_task(DOMAIN, STREAMS, functions, OBJECTS, "", "(eaten egg)")
     return UnachievableFacts(problem.task, problem.streams, facts, OBJECTS, assumed)
 
@@ -52,10 +55,15 @@ RAW = ("raw", "egg")
             "eat needs (cooked egg), and cook needs (hot some s), and being hot needs (gas ring), "
             "which nothing makes true",
         ),
-        ((("hot", "ring"),), "eat needs (cooked egg), and cook needs (raw egg), which nothing makes true"),
+        (
+            (("hot", "ring"),),
+            "eat needs (cooked egg), and cook needs (raw egg), which nothing makes true",
+        ),
     ],
 )
-def test_the_chain_ends_at_what_nothing_makes_true(facts: tuple[tuple[str, ...], ...], reason: str) -> None:
+def test_the_chain_ends_at_what_nothing_makes_true(
+    facts: tuple[tuple[str, ...], ...], reason: str
+) -> None:
     assert missing(*facts).reason(("eaten", "egg")) == reason
 
 

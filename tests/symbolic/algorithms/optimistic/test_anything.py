@@ -22,7 +22,11 @@ RULE = "(:derived (covered ?c - cup) BODY)"
 
 
 def task(
-    condition: str = "(done)", parameters: str = "()", goal: str = "(done)", rule: str = "", effect: str = "(done)"
+    condition: str = "(done)",
+    parameters: str = "()",
+    goal: str = "(done)",
+    rule: str = "",
+    effect: str = "(done)",
 ) -> Task:
     text = DOMAIN.replace("CONDITION", condition).replace("PARAMETERS", parameters)
     domain = parse_domain(text.replace("RULE", rule).replace("EFFECT", effect))
@@ -48,7 +52,9 @@ def task(
         (CUP, "(and (full ?c) (not (exists (?l - lid) (fits ?l ?c))))", set()),
     ],
 )
-def test_variables_that_no_fact_names(parameters: str, condition: str, expected: set[tuple[str, ...]]) -> None:
+def test_variables_that_no_fact_names(
+    parameters: str, condition: str, expected: set[tuple[str, ...]]
+) -> None:
     assert anything(task(condition, parameters)) == expected
 
 

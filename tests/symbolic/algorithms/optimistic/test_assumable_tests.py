@@ -29,15 +29,22 @@ STREAMS = """
 
 
 def task(
-    condition: str = "(thing ?o)", effect: str = "(thing ?o)", more: str = "", streams: str = STREAMS
+    condition: str = "(thing ?o)",
+    effect: str = "(thing ?o)",
+    more: str = "",
+    streams: str = STREAMS,
 ) -> StreamTask:
     domain = DOMAIN.replace("CONDITION", condition).replace("EFFECT", effect).replace("EXTRA", "")
     functions = dict.fromkeys(("draw", "test", "other", "next"), lambda *values, call: iter(()))
-    return stream_task(domain, streams.replace("MORE", more), functions, {"cup": ("thing",)}, "", "(done)")
+    return stream_task(
+        domain, streams.replace("MORE", more), functions, {"cup": ("thing",)}, "", "(done)"
+    )
 
 
 def names(problem: StreamTask) -> dict[str, str]:
-    return {key: stream.name for key, (stream, _) in assumable(problem.streams, problem.task).items()}
+    return {
+        key: stream.name for key, (stream, _) in assumable(problem.streams, problem.task).items()
+    }
 
 
 def test_a_test_that_only_lifts_a_guard_is_assumable() -> None:
@@ -47,7 +54,9 @@ def test_a_test_that_only_lifts_a_guard_is_assumable() -> None:
     assert atom.terms == ("?o", "?p", "?q")
 
 
-@pytest.mark.parametrize("condition", ["(free ?o ?p ?p)", "(not (free ?o ?p ?p))", "(or (free ?o ?p ?p) (done))"])
+@pytest.mark.parametrize(
+    "condition", ["(free ?o ?p ?p)", "(not (free ?o ?p ?p))", "(or (free ?o ?p ?p) (done))"]
+)
 def test_a_test_that_an_action_asks_for_is_not(condition: str) -> None:
     """In an action's condition even a negation counts as help: only rules become guards."""
     assert names(task(condition=condition)) == {}
@@ -70,14 +79,19 @@ def test_a_test_whose_fact_another_stream_certifies_or_needs_is_not(more: str) -
     [
         (":certified (free ?o ?p ?q))", ":certified (and (free ?o ?p ?q) (pose ?o ?q)))"),
         (":certified (free ?o ?p ?q))", ":certified (free ?o ?p ?p))"),
-        (":certified (free ?o ?p ?q))", ":outputs (?r) :certified (and (pose ?o ?r) (free ?o ?p ?q)))"),
+        (
+            ":certified (free ?o ?p ?q))",
+            ":outputs (?r) :certified (and (pose ?o ?r) (free ?o ?p ?q)))",
+        ),
         (
             "(and (pose ?o ?p) (pose ?o ?q)) :certified (free",
             "(and (given ?o) (pose ?o ?p) (pose ?o ?q)) :certified (free",
         ),
     ],
 )
-def test_it_certifies_one_fact_of_all_its_inputs_and_is_asked_of_what_streams_give(old: str, new: str) -> None:
+def test_it_certifies_one_fact_of_all_its_inputs_and_is_asked_of_what_streams_give(
+    old: str, new: str
+) -> None:
     assert STREAMS.count(old) == 1
     assert names(task(streams=STREAMS.replace(old, new))) == {}
 

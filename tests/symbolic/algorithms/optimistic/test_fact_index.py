@@ -14,13 +14,20 @@ NAMES = ("a", "b", "c")
 VARIABLES = ("?x", "?y", "?z")
 
 
-def brute(atoms: list[Atom], facts: set[Fact], binding: dict[str, str]) -> set[tuple[tuple[str, str], ...]]:
+def brute(
+    atoms: list[Atom], facts: set[Fact], binding: dict[str, str]
+) -> set[tuple[tuple[str, str], ...]]:
     """All bindings of the atoms' variables under which each atom is a fact."""
-    free = sorted({term for atom in atoms for term in atom.terms if term[0] == "?"} - binding.keys())
+    free = sorted(
+        {term for atom in atoms for term in atom.terms if term[0] == "?"} - binding.keys()
+    )
     found = set()
     for values in product(NAMES, repeat=len(free)):
         full = {**binding, **dict(zip(free, values, strict=True))}
-        if all((atom.predicate, *(full.get(term, term) for term in atom.terms)) in facts for atom in atoms):
+        if all(
+            (atom.predicate, *(full.get(term, term) for term in atom.terms)) in facts
+            for atom in atoms
+        ):
             found.add(tuple(sorted(full.items())))
     return found
 
@@ -30,7 +37,10 @@ def test_random_joins() -> None:
     for seed in range(300):
         random = Random(seed)
         facts = {
-            (random.choice(("p", "q")), *(random.choice(NAMES) for _ in range(random.randint(1, 2))))
+            (
+                random.choice(("p", "q")),
+                *(random.choice(NAMES) for _ in range(random.randint(1, 2))),
+            )
             for _ in range(random.randint(0, 20))
         }
         index = FactIndex()

@@ -50,9 +50,18 @@ class World:
         yield from (((hole, place),) for place in places)
 
     def run(self, goal: tuple[Any, ...], fixed: tuple[str, ...] = ()) -> tuple[Run, Outcome]:
-        init = [("Hole", "box"), ("Hole", "floor"), *(("Handle", peg, "knob") for peg in self.at if peg not in fixed)]
+        init = [
+            ("Hole", "box"),
+            ("Hole", "floor"),
+            *(("Handle", peg, "knob") for peg in self.at if peg not in fixed),
+        ]
         for peg, place in self.at.items():
-            init += [("Peg", peg), ("Spot", peg, place), ("At", peg, place), ("In", place, place[0])]
+            init += [
+                ("Peg", peg),
+                ("Spot", peg, place),
+                ("At", peg, place),
+                ("In", place, place[0]),
+            ]
         functions = {"spot": from_gen_fn(self.spot), "free": from_test(lambda b, p, o, q: p != q)}
         task = bind(PDDLProblem(DOMAIN, {}, STREAMS, functions, init, goal)).task
         run = start_adaptive(task, random_streams(0), Deadline(20.0), lambda effort: None)

@@ -37,9 +37,16 @@ CHAIN_STREAMS = """
 
 @pytest.fixture
 def chain() -> tuple[Sequence[BoundStream], list[Fact]]:
-    functions = dict.fromkeys(("to-second", "to-third", "test-last", "waste"), lambda *values, call: iter(()))
+    functions = dict.fromkeys(
+        ("to-second", "to-third", "test-last", "waste"), lambda *values, call: iter(())
+    )
     problem = stream_task(
-        CHAIN, CHAIN_STREAMS, functions, {"a": ("link",), "b": ("link",)}, "(first a) (first b)", "(done)"
+        CHAIN,
+        CHAIN_STREAMS,
+        functions,
+        {"a": ("link",), "b": ("link",)},
+        "(first a) (first b)",
+        "(done)",
     )
     useful = relevant(problem.streams, used_predicates(problem.task))
     return useful, [*sorted(problem.task.initial), *type_facts(problem.task)]
@@ -62,11 +69,15 @@ def test_levels_of_a_chain(chain: tuple[Sequence[BoundStream], list[Fact]]) -> N
 
 
 @pytest.mark.parametrize(("levels", "count"), [(1, 2), (2, 4), (3, 6), (4, 6)])
-def test_depth_is_limited(chain: tuple[Sequence[BoundStream], list[Fact]], levels: int, count: int) -> None:
+def test_depth_is_limited(
+    chain: tuple[Sequence[BoundStream], list[Fact]], levels: int, count: int
+) -> None:
     assert len(guesses(instantiate_streams(*chain, max_depth=levels))) == count
 
 
-@pytest.mark.parametrize(("enough", "names"), [(1, ["to-second"] * 2), (3, ["to-second"] * 2 + ["to-third"])])
+@pytest.mark.parametrize(
+    ("enough", "names"), [(1, ["to-second"] * 2), (3, ["to-second"] * 2 + ["to-third"])]
+)
 def test_with_enough_guesses_no_deeper_ones_are_made(
     chain: tuple[Sequence[BoundStream], list[Fact]], enough: int, names: list[str]
 ) -> None:
@@ -83,7 +94,9 @@ def test_fixpoint(chain: tuple[Sequence[BoundStream], list[Fact]]) -> None:
     streams, known = chain
     optimistic = instantiate_streams(streams, known)
     made = guesses(optimistic)
-    level = dict.fromkeys(known, 0) | {fact: guess.depth for fact, guess in optimistic.producers.items()}
+    level = dict.fromkeys(known, 0) | {
+        fact: guess.depth for fact, guess in optimistic.producers.items()
+    }
     assert all(guess.depth == 1 + max(level[fact] for fact in guess.domain) for guess in made)
     outputs = [name for guess in made for name in guess.outputs]
     assert len(outputs) == len(set(outputs)) == len(optimistic.types) == 4
@@ -96,9 +109,15 @@ def test_fixpoint(chain: tuple[Sequence[BoundStream], list[Fact]]) -> None:
     }
 
 
-def test_dead_calls_and_what_rests_on_them_are_left_out(chain: tuple[Sequence[BoundStream], list[Fact]]) -> None:
+def test_dead_calls_and_what_rests_on_them_are_left_out(
+    chain: tuple[Sequence[BoundStream], list[Fact]],
+) -> None:
     made = guesses(instantiate_streams(*chain, ended=frozenset({("to-second", ("a",))})))
-    assert [(g.stream.name, g.depth) for g in made] == [("to-second", 1), ("to-third", 2), ("test-last", 3)]
+    assert [(g.stream.name, g.depth) for g in made] == [
+        ("to-second", 1),
+        ("to-third", 2),
+        ("test-last", 3),
+    ]
     assert made[0].inputs == ("b",)
 
 
@@ -123,5 +142,8 @@ def test_order_of_facts_does_not_change_how_much_is_guessed(
     chain: tuple[Sequence[BoundStream], list[Fact]],
 ) -> None:
     streams, known = chain
-    forward, backward = guesses(instantiate_streams(streams, known)), guesses(instantiate_streams(streams, known[::-1]))
+    forward, backward = (
+        guesses(instantiate_streams(streams, known)),
+        guesses(instantiate_streams(streams, known[::-1])),
+    )
     assert len(forward) == len(backward) == 6

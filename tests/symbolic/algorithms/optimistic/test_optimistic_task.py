@@ -136,7 +136,9 @@ def test_where_all_is_instantiated_there_is_no_more() -> None:
 
 
 @pytest.mark.parametrize("sampled", [(), (("link", "c"), ("after", "a", "c")), (("last", "a"),)])
-def test_the_sampled_task_has_no_placeholders_of_streams_that_can_be_called(sampled: tuple[Any, ...]) -> None:
+def test_the_sampled_task_has_no_placeholders_of_streams_that_can_be_called(
+    sampled: tuple[Any, ...],
+) -> None:
     knowledge = Knowledge()
     knowledge.sampled_facts.update(dict.fromkeys(sampled))
     made = sampled_task(task(), knowledge)

@@ -30,7 +30,8 @@ from tests.symbolic.search.test_random_tasks import random_task
 def walk(instantiated: InstantiatedTask, rng: Random) -> list[float | tuple[int, ...]]:
     """What all heuristics say along a random walk, under random prices."""
     successors = Successors(
-        instantiated, random_prices(rng, frozenset().union(*(o.static for o in instantiated.operators)))
+        instantiated,
+        random_prices(rng, frozenset().union(*(o.static for o in instantiated.operators))),
     )
     said: list[float | tuple[int, ...]] = []
     heuristics = [HEURISTICS[name](successors) for name in ("ff", "hadd", "hmax", "lmcut")]
@@ -40,7 +41,9 @@ def walk(instantiated: InstantiatedTask, rng: Random) -> list[float | tuple[int,
         for heuristic in heuristics:
             estimate = heuristic(closed)
             said += [estimate.value, estimate.plan]
-        choices = [i for i in successors.applicable(closed) if successors.step_cost(i, closed) < math.inf]
+        choices = [
+            i for i in successors.applicable(closed) if successors.step_cost(i, closed) < math.inf
+        ]
         if not choices:
             break
         state = successors.apply(rng.choice(choices), state, closed)
@@ -69,7 +72,13 @@ def test_a_search_ends_alike_whichever_loops_it_runs(monkeypatch: pytest.MonkeyP
         monkeypatch.setattr(relaxation, "choose", lambda entries, loops=loops: loops)
         result = search(instantiate(*cupboard(3)))
         assert result.plan is not None
-        found.append(([(o.name, o.arguments) for o in result.plan.operators], result.plan.cost, result.evaluated))
+        found.append(
+            (
+                [(o.name, o.arguments) for o in result.plan.operators],
+                result.plan.cost,
+                result.evaluated,
+            )
+        )
     assert found[0] == found[1]
 
 
@@ -81,7 +90,11 @@ def test_rows_are_turned_and_appended_to(loops: Kernels) -> None:
     assert more.lists() == [[2, 0], [5, 7], [2], [6], []]
     assert isinstance(more, CsrRows)
     assert csr_rows(more.lists()).lists() == more.lists()
-    assert list(loops.incremented(loops.reals([1.0, 2.0]), loops.integers([1, 1]), loops.reals([0.5, 1.0]), 1)) == [
+    assert list(
+        loops.incremented(
+            loops.reals([1.0, 2.0]), loops.integers([1, 1]), loops.reals([0.5, 1.0]), 1
+        )
+    ) == [
         1,
         3.5,
         0,
@@ -111,7 +124,9 @@ def test_only_what_numba_has_all_of_and_newer_than_its_source_counts_as_compiled
     for module, names in tiers.CACHED:
         for name in names:
             assert not tiers.compiled_before()
-            (tmp_path / "__pycache__" / f"{Path(str(module.__file__)).stem}.{name}-7.py311.nbi").write_text("")
+            (
+                tmp_path / "__pycache__" / f"{Path(str(module.__file__)).stem}.{name}-7.py311.nbi"
+            ).write_text("")
     assert tiers.compiled_before()
     later = time.time() + 10.0
     os.utime(tmp_path / "rows.py", (later, later))

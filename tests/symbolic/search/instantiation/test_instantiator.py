@@ -21,11 +21,16 @@ Objects = Mapping[str, tuple[str, ...]]
 
 def plain(instantiated: InstantiatedTask) -> InstantiatedTask:
     """Guards that are made only when they are asked for, made."""
-    operators = tuple(replace(one, guards=tuple(sorted(set(one.guards), key=str))) for one in instantiated.operators)
+    operators = tuple(
+        replace(one, guards=tuple(sorted(set(one.guards), key=str)))
+        for one in instantiated.operators
+    )
     return replace(instantiated, operators=operators)
 
 
-def check(task: Task, facts: Sequence[Fact], objects: Objects, steps: int, assumed: frozenset[str]) -> Instantiator:
+def check(
+    task: Task, facts: Sequence[Fact], objects: Objects, steps: int, assumed: frozenset[str]
+) -> Instantiator:
     """One instantiator that is told more and more, against a new one each time."""
     instantiator = Instantiator(task, assumed)
     for step in range(steps + 1):

@@ -47,7 +47,9 @@ def test_an_unreachable_goal_is_named() -> None:
 
 
 def test_a_fact_that_nothing_deletes_is_named() -> None:
-    instantiated = ground(MOVE + "(:action light :parameters () :effect (lamp))", "(at a) (lamp)", "(not (lamp))")
+    instantiated = ground(
+        MOVE + "(:action light :parameters () :effect (lamp))", "(at a) (lamp)", "(not (lamp))"
+    )
     assert unreachable(instantiated) == (("not", "lamp"),)
     assert search(instantiated).reason is Reason.UNSOLVABLE
 
@@ -58,7 +60,8 @@ def test_static_goals() -> None:
 
 
 @pytest.mark.parametrize(
-    "effect", ["(forall (?x - node) (not (at ?x)))", "(forall (?x - node) (when (at ?x) (not (at ?x))))"]
+    "effect",
+    ["(forall (?x - node) (not (at ?x)))", "(forall (?x - node) (when (at ?x) (not (at ?x))))"],
 )
 def test_deleting_all_is_unconditional_and_adding_wins(effect: str) -> None:
     jump = f"(:action jump :parameters (?x - node) :effect (and {effect} (at ?x)))"
@@ -113,12 +116,18 @@ def test_a_derived_fact_must_not_depend_on_its_negation() -> None:
 
 def test_guards_are_lifted_by_tests_that_may_hold() -> None:
     task, facts, objects = cupboard(2, 1)
-    place = next(o for o in instantiate(task, facts, objects).operators if o.name == "place" and "#p0_1" in o.arguments)
+    place = next(
+        o
+        for o in instantiate(task, facts, objects).operators
+        if o.name == "place" and "#p0_1" in o.arguments
+    )
     other = frozenset([("at-pose", "o1", "#p1_1")])
     assert Guard(other, ("pose-clear", "o0", "#p0_1", "o1", "#p1_1")) in list(place.guards)
     assert len(place.guards) == 4  # two poses of the other body, for the pose and for the reach
     bare = [fact for fact in facts if not fact[0].endswith("-clear")]
-    hard = next(o for o in instantiate(task, bare, objects).operators if o.arguments == place.arguments)
+    hard = next(
+        o for o in instantiate(task, bare, objects).operators if o.arguments == place.arguments
+    )
     assert other <= hard.negative  # nothing lifts it
     assert not hard.guards
     assumed = instantiate(task, bare, objects, assumed=frozenset(("pose-clear", "reach-clear")))
@@ -141,6 +150,8 @@ def test_quantified_disjunctive_and_negative_conditions() -> None:
         :precondition (or (at ?x) (exists (?y - node) (and (seen ?y) (edge ?y ?x)))) :effect (seen ?x))
       (:action light :parameters ()
         :precondition (forall (?x ?y - node) (imply (edge ?y ?x) (seen ?x))) :effect (lamp))"""
-    result = search(ground(body, "(at a) (edge a b) (edge a c)", "(lamp)"), search="astar", heuristic="hmax")
+    result = search(
+        ground(body, "(at a) (edge a b) (edge a c)", "(lamp)"), search="astar", heuristic="hmax"
+    )
     assert result.plan is not None
     assert sorted(map(str, result.plan.operators)) == ["(light)", "(see a)", "(see b)", "(see c)"]

@@ -23,7 +23,10 @@ DOMAIN = """(define (domain d) (:predicates (obj ?o) (at ?o ?l) (pose ?o ?p) (hi
 
 
 def names(body: str, more: str = "", given: frozenset[str] = frozenset()) -> list[str]:
-    return [rule.head.predicate for rule in unfoldable(parse_domain(DOMAIN.format(body=body, more=more)), given)]
+    return [
+        rule.head.predicate
+        for rule in unfoldable(parse_domain(DOMAIN.format(body=body, more=more)), given)
+    ]
 
 
 def test_a_rule_whose_body_binds_nothing_is_unfolded() -> None:
@@ -63,7 +66,9 @@ def test_bound_variables_are_those_that_a_positive_atom_names_in_every_case() ->
 def random_problem(rng: Random) -> str:
     places, things, poses = ["l0", "l1"], ["o0", "o1", "o2"], ["p0", "p1"]
     facts = [f"(obj {o})" for o in things]
-    facts += [f"(fits {at} {o} {p})" for at in places for o in things for p in poses if rng.random() < 0.8]
+    facts += [
+        f"(fits {at} {o} {p})" for at in places for o in things for p in poses if rng.random() < 0.8
+    ]
     facts += [
         f"(hits {o} {p} {b} {q})"
         for o in things
@@ -112,8 +117,12 @@ def test_types_of_the_head_are_kept() -> None:
         " (:derived (d ?x - a ?y - b) (not (p ?y)))"
         " (:action go :parameters (?x ?y) :precondition (d ?x ?y) :effect (done)))"
     )
-    text = "(define (problem q) (:domain d) (:objects x - a y - b z - object) (:init) (:goal (done)))"
-    assert [str(operator) for operator in instantiate(parse_task(text, domain)).operators] == ["(go x y)"]
+    text = (
+        "(define (problem q) (:domain d) (:objects x - a y - b z - object) (:init) (:goal (done)))"
+    )
+    assert [str(operator) for operator in instantiate(parse_task(text, domain)).operators] == [
+        "(go x y)"
+    ]
     assert Normalizer(domain).definitions["d"][0].head == Atom("d", ("?x", "?y"))
 
 
@@ -135,5 +144,7 @@ TYPED = """(define (domain d) (:types a b - object) (:constants x - a y - b) (:p
 def test_a_goal_may_ask_for_the_type_of_an_object(goal: str, solvable: bool) -> None:
     """Unfolded, a rule's head asks it; no other condition here does."""
     text = f"(define (problem q) (:domain d) (:init) (:goal {goal}))"
-    found = search(instantiate(parse_task(text, parse_domain(TYPED))), search="astar", heuristic="blind")
+    found = search(
+        instantiate(parse_task(text, parse_domain(TYPED))), search="astar", heuristic="blind"
+    )
     assert (found.plan is not None) == solvable
