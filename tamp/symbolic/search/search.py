@@ -120,7 +120,7 @@ def search(
         run = space()
         plan, reason = _attempt(run, packed)
     else:
-        run = space([HEURISTICS[name](successors) for name in names])
+        run = first = space([HEURISTICS[name](successors) for name in names])
         if packable:
             run.too_slow = lambda: (
                 (search == "greedy" and limit is None and run.expanded >= STALLED)
@@ -131,6 +131,8 @@ def search(
         except TooSlow:
             run = space()
             plan, reason = _attempt(run, packed)
+        finally:
+            first.too_slow = None  # it holds the run, which holds it
 
     return Result(
         plan,

@@ -58,10 +58,10 @@ def test_of_a_turned_cylinder_they_touch_its_rims(turn: tuple[float, float, floa
     points = pose.apply(rim(0.3, 0.8))
     low, high = bounds([Part(Cylinder(0.3, 0.8))], pose)
     # 720 points miss the extreme of a rim by at most r (1 - cos(quarter of a degree)).
-    assert (low <= points.min(axis=0) + 1e-12).all() and low == pytest.approx(
+    assert (low <= points.min(axis=0) + 1e-9).all() and low == pytest.approx(
         points.min(axis=0), abs=5e-6
     )
-    assert (high >= points.max(axis=0) - 1e-12).all() and high == pytest.approx(
+    assert (high >= points.max(axis=0) - 1e-9).all() and high == pytest.approx(
         points.max(axis=0), abs=5e-6
     )
 

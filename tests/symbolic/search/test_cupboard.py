@@ -14,6 +14,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Fact
 from tamp.symbolic.search.heuristics.registry import HEURISTICS
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask
+from tamp.symbolic.search.packed import selection
 from tamp.symbolic.search.plan_trace import trace
 from tamp.symbolic.search.search import SEARCHES, Reason, search
 from tests.symbolic.search.interpreter import Interpreter
@@ -152,7 +153,9 @@ def test_limits_are_reported(eight: InstantiatedTask) -> None:
     assert result.expanded == 3
 
 
-def test_infinite_prices_take_operators_away() -> None:
+@pytest.mark.parametrize("packed", [False, True])
+def test_infinite_prices_take_operators_away(packed: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(selection, "pays", lambda entries: packed)
     instantiated = instantiate(*cupboard(1, 2))
     assert (
         search(instantiated, price=lambda f: float("inf") if f[0] == "nothing" else 0.0).plan

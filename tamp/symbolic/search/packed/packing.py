@@ -199,7 +199,7 @@ def pack_relaxation(
     waits = [*map(len, relaxation.before), *[1] * len(removers)]
     costs = [*relaxation.costs, *[0.0] * len(removers)]
     prices = [price for _, price in keys.members]
-    finite = [*costs, *(p for p in (*prices, *rises.columns[1]) if p < math.inf)]
+    finite = [p for p in (*costs, *prices, *rises.columns[1]) if p < math.inf]
     found = 0 if marks is None else len(marks.landmarks)
     whole = all(cost == int(cost) for cost in finite)
     return Relaxed._make((
