@@ -1,4 +1,4 @@
-"""Write tamp/geometric/robot/assets/<robot>/reachability.npz: the table that base poses are drawn from.
+"""Write panda_mobile's reachability.npz, the table that base poses are drawn from; tamp-robot makes other robots'.
 
     python benchmarks/build_reachability.py
 
@@ -10,11 +10,11 @@ more than its neighbours with nearby heights, distances and headings do: a draw 
 from __future__ import annotations
 
 import itertools
-import sys
 
 import numpy as np
 from scipy.ndimage import minimum_filter
 
+from tamp.commands.robot_folder.reach_table import directions, rotation_with_up
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
@@ -30,21 +30,6 @@ SEVENTHS = 12
 LEAST_MANIPULABILITY = 0.02
 TURN = 1.6
 """Radians of joint 1 that a comfortable solution may use at bearing 0; the rest is left for the base's yaw."""
-
-
-def directions(frequency: int = 4) -> Array:
-    """Unit vectors (n, 3): the points of an octahedron's faces divided `frequency` times; the axes are among them."""
-    grid = itertools.product(range(-frequency, frequency + 1), repeat=3)
-    points = np.array([p for p in grid if sum(map(abs, p)) == frequency], dtype=float)
-    return points / np.linalg.norm(points, axis=1, keepdims=True)
-
-
-def rotation_with_up(up: Array) -> Array:
-    """Some tool orientation (3, 3) that sees the world's z as `up`: its last row."""
-    helper = np.eye(3)[np.argmin(np.abs(up))]
-    x = np.cross(helper, up)
-    x /= np.linalg.norm(x)
-    return np.array([x, np.cross(up, x), up])
 
 
 def comfortable(robot: Robot, kinematics: Kinematics, solutions: Array) -> int:
@@ -90,9 +75,9 @@ def build(robot: Robot) -> dict[str, Array]:
 
 
 def main() -> None:
-    """Build the tables of the robots named on the command line, of all by default."""
-    for name in sys.argv[1:] or sorted(ROBOTS):
-        np.savez_compressed(asset(ROBOTS[name]()), **build(ROBOTS[name]()))  # pyright: ignore[reportArgumentType]
+    """Build the table of the robot with seven joints whose closed form counts solutions by the last one."""
+    robot = ROBOTS["panda_mobile"]()
+    np.savez_compressed(asset(robot), **build(robot))  # pyright: ignore[reportArgumentType]
 
 
 if __name__ == "__main__":

@@ -13,7 +13,15 @@ from numpy.random import Generator as Random
 from grounding.mesh_folder import MeshFolder
 from grounding.oracles import Verdict, settled
 from grounding.random_poses import afloat, on_ground, random_rest, random_turn
-from grounding.scenes import LabelledScene, SampledScene, Scenes, free, resting
+from grounding.scenes import (
+    LabelledScene,
+    SampledScene,
+    Scenes,
+    free,
+    resting,
+    some_settles,
+    touchable,
+)
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.stability.placement import resting_pose
@@ -106,15 +114,16 @@ class DemonstrationGenerator:
         else:
             poses = resting(scene, rng)
         for pose in free(poses, scene)[:4]:
-            self._drops.set_up(self._scenes.items(scene.body), self._scenes.around(scene, pose))
+            self._drops.set_up(
+                self._scenes.items(scene.body), touchable(scene, pose, self._scenes.items)
+            )
             if all(contact.distance > -0.0005 for contact in self._drops.contacts(pose)):
                 return self._drops.drop(pose, 2.5)
         return None
 
     def _feasible(self, scene: SampledScene, rng: Random) -> bool:
-        poses = free(np.concatenate([resting(scene, rng) for _ in range(16)]), scene)[:8]
-        verdicts = settled(scene.situation(np.eye(4)), poses, self._drops, self._scenes.items)
-        return any(verdict is Verdict.HOLDS for verdict in verdicts)
+        poses = np.concatenate([resting(scene, rng) for _ in range(16)])
+        return some_settles(scene, poses, self._drops, self._scenes.items)
 
     # Samples that do not hold
 

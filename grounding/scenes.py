@@ -14,7 +14,7 @@ from numpy.random import Generator as Random
 from grounding.body_geometry import BodyGeometry
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
-from grounding.oracles import REACH, ItemOf
+from grounding.oracles import REACH, ItemOf, Verdict, settled
 from grounding.random_poses import (
     afloat,
     on_ground,
@@ -28,7 +28,7 @@ from grounding.relation_scene import Placed, RelationScene, gap, near
 from grounding.separation import Obstacles, separations
 from grounding.supports import Support, scaled_region, support_templates
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.drops import Item
+from tamp.simulation.drops import Drops, Item
 
 OTHERS = {"train": (5, 9), "test": (5, 15)}
 """Bodies in a scene beside the arguments and the other support."""
@@ -39,6 +39,9 @@ SUPPORT_SCALES = {"train": (0.8, 1.2), "test": (0.6, 1.4)}
 
 TRIES = 16
 """Poses at rest that are tried at once."""
+
+TRIED = 8
+"""Poses that are let go until a scene counts as one in which nothing holds."""
 
 GAP = 0.001
 """Metres that are kept between bodies."""
@@ -158,14 +161,6 @@ class Scenes:
             stand.matrix @ support.region.matrix,
         )
 
-    def around(self, scene: SampledScene, pose: Array) -> list[tuple[Item, Array]]:
-        """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
-        their matrices.
-        """
-        box = Placed(scene.body, pose).box
-        bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
-        return [(self.items(item.form), item.matrix) for item in bodies]
-
     def on_other(
         self, form: BodyGeometry, other: tuple[str, float, Placed], rng: Random
     ) -> Array | None:
@@ -216,6 +211,23 @@ class Scenes:
         if (name, scale) not in self._scaled:
             self._scaled[name, scale] = (self._objects.get(name) or self._forms[name]).scaled(scale)
         return self._scaled[name, scale]
+
+
+def touchable(scene: SampledScene, pose: Array, items: ItemOf) -> list[tuple[Item, Array]]:
+    """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
+    their matrices.
+    """
+    box = Placed(scene.body, pose).box
+    bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
+    return [(items(item.form), item.matrix) for item in bodies]
+
+
+def some_settles(scene: SampledScene, poses: Array, drops: Drops, items: ItemOf) -> bool:
+    """Check whether the relation holds in physics at one of the poses T_world_body, shape (n, 4,
+    4), the first TRIED of them that are clear of the other bodies.
+    """
+    verdicts = settled(scene.situation(np.eye(4)), free(poses, scene)[:TRIED], drops, items)
+    return any(verdict is Verdict.HOLDS for verdict in verdicts)
 
 
 def free(poses: Array, scene: SampledScene) -> Array:

@@ -15,7 +15,7 @@ from grounding.oracles import Verdict, settled
 from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M, PaperScenes
 from grounding.random_poses import random_rest, random_turn
 from grounding.relation_scene import Placed
-from grounding.scenes import LabelledScene, SampledScene, free
+from grounding.scenes import LabelledScene, SampledScene, free, some_settles, touchable
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drops import Drops
@@ -77,7 +77,9 @@ class PaperDemonstrations:
     def _positive(self, scene: SampledScene, rng: Random) -> Array | None:
         """Let the body fall onto or into argument 0 where nothing is in the way."""
         for pose in free(self._scenes.resting(scene, rng), scene)[:4]:
-            self._drops.set_up(self._scenes.items(scene.body), self._scenes.around(scene, pose))
+            self._drops.set_up(
+                self._scenes.items(scene.body), touchable(scene, pose, self._scenes.items)
+            )
             pose[2, 3] += FALL_M
             if all(contact.distance > 0.0 for contact in self._drops.contacts(pose)):
                 return self._drops.drop(pose, SETTLING_S)
@@ -85,9 +87,7 @@ class PaperDemonstrations:
 
     def _feasible(self, scene: SampledScene, rng: Random) -> bool:
         poses = np.concatenate([self._scenes.resting(scene, rng) for _ in range(16)])
-        poses = free(poses, scene)[:8]
-        verdicts = settled(scene.situation(np.eye(4)), poses, self._drops, self._scenes.items)
-        return any(verdict is Verdict.HOLDS for verdict in verdicts)
+        return some_settles(scene, poses, self._drops, self._scenes.items)
 
     # Samples that do not hold
 

@@ -18,9 +18,9 @@ from numpy.random import Generator as Random
 from grounding.body_geometry import BodyGeometry
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
-from grounding.oracles import REACH, ItemOf
+from grounding.oracles import ItemOf
 from grounding.random_poses import pick, random_rest, solids, upright
-from grounding.relation_scene import Placed, gap, region_of
+from grounding.relation_scene import Placed, region_of
 from grounding.scenes import GAP, TRIES, SampledScene
 from grounding.separation import Obstacles, separations
 from grounding.supports import Support, scaled_region
@@ -28,7 +28,6 @@ from tamp.errors import InputError
 from tamp.geometric.loading.furniture import FURNITURE, Options
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Part, Surface
-from tamp.simulation.drops import Item
 
 OBJECT_COUNT = {"train": (5, 9), "test": (5, 15)}
 """Bodies in a scene, argument 1 among them, the two pieces of furniture not."""
@@ -147,14 +146,6 @@ class PaperScenes:
             Obstacles([item for _, _, item in others]),
             T_world_region,
         )
-
-    def around(self, scene: SampledScene, pose: Array) -> list[tuple[Item, Array]]:
-        """Return what the body can touch from T_world_body, shape (4, 4), as the engine's items and
-        their matrices.
-        """
-        box = Placed(scene.body, pose).box
-        bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
-        return [(self.items(item.form), item.matrix) for item in bodies]
 
     def resting(self, scene: SampledScene, rng: Random) -> Array:
         """Sample world poses at rest in the region, shape (n, 4, 4), n <= TRIES: `on` upright,

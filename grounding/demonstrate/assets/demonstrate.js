@@ -595,14 +595,7 @@ function hands() {
     if (state.hold) { drag(state.hold, ...spotOf(event)); return; }
     const dx = event.clientX - before[0], dy = event.clientY - before[1];
     down.set(event.pointerId, [event.clientX, event.clientY]);
-    if (down.size > 1) camera.distance *= Math.exp((-dy * 0.01) / down.size);
-    else if (event.shiftKey || event.buttons & 6) {
-      const { right, up } = viewNow(canvas), scale = (camera.distance * 0.75) / canvas.clientHeight;
-      camera.target = camera.target.map((p, i) => p - scale * (dx * right[i] - dy * up[i]));
-    } else {
-      camera.yaw -= dx * 0.007;
-      camera.pitch = Math.min(1.55, Math.max(-0.2, camera.pitch + dy * 0.007));
-    }
+    lookAround(camera, event, [dx, dy], down.size, viewNow(canvas), (camera.distance * 0.75) / canvas.clientHeight, -0.2);
     state.dirty = true;
   });
   canvas.addEventListener("wheel", (event) => {

@@ -6,15 +6,7 @@ const ANGLE = 40, RING = 0.014;
 const camera = { target: [0, 0, 0.7], yaw: 0, pitch: 0.55, distance: 2 };
 
 function viewNow(canvas) {
-  const { target, yaw, pitch, distance } = camera;
-  const out = [Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch)];
-  const eye = target.map((x, i) => x + distance * out[i]), ahead = out.map((x) => -x);
-  const right = V.unit(V.cross(ahead, [0, 0, 1])), up = V.cross(right, ahead);
-  const f = 1 / Math.tan((ANGLE * Math.PI) / 360), near = 0.02, far = 60;
-  const aspect = (canvas.clientWidth || 1) / (canvas.clientHeight || 1);
-  const turn = [...right, -V.dot(right, eye), ...up, -V.dot(up, eye), ...out, -V.dot(out, eye), 0, 0, 0, 1];
-  const lens = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), (2 * far * near) / (near - far), 0, 0, -1, 0];
-  return { matrix: M.mul(lens, turn), eye, right, up, ahead, f, aspect };
+  return viewFrom(camera, canvas, ANGLE, 0.02, 60);
 }
 
 function onScreen(canvas, view, [x, y, z]) {

@@ -65,6 +65,17 @@ def snap_to_region(
     return placement_on(index, face, T_region_body, region.name)
 
 
+def placement_of(
+    faces: StableFaces, proposal: Placement | Pose, region: Surface | Cavity, T_world_region: Pose
+) -> Placement | Rejection:
+    """Return the placement that a proposal means: itself, or the one that a pose T_world_body is
+    nearest to, see `snap_to_region`.
+    """
+    if isinstance(proposal, Placement):
+        return proposal
+    return snap_to_region(faces, proposal, region, T_world_region)
+
+
 def placement_on(index: int, face: Face, T_region_body: Pose, region: str) -> Placement:
     """Read the placement on a face that is known off a pose; its height and tilt are dropped.
 

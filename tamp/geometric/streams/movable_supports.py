@@ -23,7 +23,7 @@ from tamp.geometric.stability.placement import (
     BALANCE,
     Placement,
     certified_pose,
-    snap_to_region,
+    placement_of,
 )
 from tamp.geometric.stability.stable_poses import Face
 from tamp.geometric.streams.proposal_stream import draw
@@ -96,14 +96,12 @@ def _placements(
         return
 
     def judge(proposal: Placement | Pose) -> Pose | Rejection:
-        if isinstance(proposal, Pose):
-            snapped = snap_to_region(faces, proposal, region, T_world_region)
-            if isinstance(snapped, Rejection):
-                return snapped
-            proposal = snapped
+        placement = placement_of(faces, proposal, region, T_world_region)
+        if isinstance(placement, Rejection):
+            return placement
 
-        proposal = _centred(faces.ways[proposal.face], proposal, region)
-        pose = certified_pose(faces, proposal, region, T_world_region)
+        placement = _centred(faces.ways[placement.face], placement, region)
+        pose = certified_pose(faces, placement, region, T_world_region)
         if isinstance(pose, Rejection):
             return pose
 

@@ -9,7 +9,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
-from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
+from tamp.geometric.stability.placement import Placement, certified_pose, placement_of
 from tamp.geometric.streams.approach import open_hand_hits
 from tamp.geometric.streams.firmness import GRAVITY, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
@@ -94,13 +94,11 @@ def _placements(
         return
 
     def judge(proposal: Placement | Pose) -> Pose | Rejection:
-        if isinstance(proposal, Pose):
-            snapped = snap_to_region(faces, proposal, region, T_world_region)
-            if isinstance(snapped, Rejection):
-                return snapped
-            proposal = snapped
+        placement = placement_of(faces, proposal, region, T_world_region)
+        if isinstance(placement, Rejection):
+            return placement
 
-        pose = certified_pose(faces, proposal, region, T_world_region)
+        pose = certified_pose(faces, placement, region, T_world_region)
         if isinstance(pose, Rejection):
             return pose
         hit = context.collisions.between(body, pose, {})

@@ -30,6 +30,29 @@ const V = {
   unit: (a) => { const n = Math.hypot(a[0], a[1], a[2]) || 1; return [a[0] / n, a[1] / n, a[2] / n]; },
 };
 
+// A camera looks at `target` from `distance` metres, in the direction of yaw and pitch; `angle` is the height of its picture in degrees.
+function viewFrom(camera, canvas, angle, near, far) {
+  const { target, yaw, pitch, distance } = camera;
+  const out = [Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch)];
+  const eye = target.map((x, i) => x + distance * out[i]), ahead = out.map((x) => -x);
+  const right = V.unit(V.cross(ahead, [0, 0, 1])), up = V.cross(right, ahead);
+  const f = 1 / Math.tan((angle * Math.PI) / 360);
+  const aspect = (canvas.clientWidth || 1) / (canvas.clientHeight || 1);
+  const turn = [...right, -V.dot(right, eye), ...up, -V.dot(up, eye), ...out, -V.dot(out, eye), 0, 0, 0, 1];
+  const lens = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), (2 * far * near) / (near - far), 0, 0, -1, 0];
+  return { matrix: M.mul(lens, turn), eye, right, up, ahead, f, aspect };
+}
+
+// What a drag by pixels does to it: two fingers come near, Shift or another button moves, else it turns.
+function lookAround(camera, event, [dx, dy], fingers, { right, up }, scale, lowest) {
+  if (fingers > 1) camera.distance *= Math.exp((-dy * 0.01) / fingers);
+  else if (event.shiftKey || event.buttons & 6) camera.target = camera.target.map((p, i) => p - scale * (dx * right[i] - dy * up[i]));
+  else {
+    camera.yaw -= dx * 0.007;
+    camera.pitch = Math.min(1.55, Math.max(lowest, camera.pitch + dy * 0.007));
+  }
+}
+
 function bytes(text) {
   const raw = atob(text), out = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; i++) out[i] = raw.charCodeAt(i);

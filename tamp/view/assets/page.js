@@ -152,15 +152,7 @@ function scene() {
 const camera = { target: data.view.target.slice(), yaw: data.view.yaw, pitch: data.view.pitch, distance: data.view.distance };
 
 function viewNow() {
-  const { target, yaw, pitch, distance } = camera, canvas = byId("picture");
-  const out = [Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch)];
-  const eye = target.map((x, i) => x + distance * out[i]), ahead = out.map((x) => -x);
-  const right = V.unit(V.cross(ahead, [0, 0, 1])), up = V.cross(right, ahead);
-  const f = 1 / Math.tan((data.view.angle * Math.PI) / 360), near = 0.05, far = 60;
-  const aspect = (canvas.clientWidth || 1) / (canvas.clientHeight || 1);
-  const turn = [...right, -V.dot(right, eye), ...up, -V.dot(up, eye), ...out, -V.dot(out, eye), 0, 0, 0, 1];
-  const lens = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), (2 * far * near) / (near - far), 0, 0, -1, 0];
-  return { matrix: M.mul(lens, turn), eye, right, up };
+  return viewFrom(camera, byId("picture"), data.view.angle, 0.05, 60);
 }
 
 function onScreen(view, [x, y, z]) {
@@ -333,14 +325,7 @@ function hands() {
     if (!before) { pointing(event); return; }
     const dx = event.clientX - before[0], dy = event.clientY - before[1];
     down.set(event.pointerId, [event.clientX, event.clientY]);
-    if (down.size > 1) { camera.distance *= Math.exp((-dy * 0.01) / down.size); }
-    else if (event.shiftKey || event.buttons & 6) {
-      const { right, up } = viewNow(), scale = (camera.distance * 1.2) / canvas.clientHeight;
-      camera.target = camera.target.map((p, i) => p - scale * (dx * right[i] - dy * up[i]));
-    } else {
-      camera.yaw -= dx * 0.007;
-      camera.pitch = Math.min(1.55, Math.max(-0.3, camera.pitch + dy * 0.007));
-    }
+    lookAround(camera, event, [dx, dy], down.size, viewNow(), (camera.distance * 1.2) / canvas.clientHeight, -0.3);
     state.dirty = true;
   });
   canvas.addEventListener("wheel", (event) => {

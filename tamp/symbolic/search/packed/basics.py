@@ -39,6 +39,14 @@ def heap_push(ints, reals, keys, ties, items, size, key, tie, item):
     ints[items + k] = item
 
 
+def list_push(ints, reals, space, k, key, tie, entry):
+    """Push an entry onto the k-th open list."""
+    base, size = k * space.entries, ints[SIZES + k]
+    keys, ties, items = space.keys + base, space.ties + base, space.items + base
+    heap_push(ints, reals, keys, ties, items, size, key, tie, entry)
+    ints[SIZES + k] += 1
+
+
 def heap_pop(ints, reals, keys, ties, items, size):
     """Remove the first of a heap of so many: its item is read before."""
     last = size - 1
@@ -90,7 +98,6 @@ def contains(ints, starts, facts, i, state):
 def push_goal(ints, reals, t, space, node, cost, key):
     """Push a goal state that costs something to derive: it waits for what is cheaper than it."""
     kinds = t.heuristics
-    capacity = space.entries
     entry = ints[ENTRIES]
     ints[ENTRIES] += 1
     ints[PUSHED] += 1
@@ -100,16 +107,4 @@ def push_goal(ints, reals, t, space, node, cost, key):
     ints[space.entry_operator + entry] = GOAL_ENTRY
     for k in (0, kinds):
         if k == 0 or ints[SIZES + k]:
-            base, size = k * capacity, ints[SIZES + k]
-            heap_push(
-                ints,
-                reals,
-                space.keys + base,
-                space.ties + base,
-                space.items + base,
-                size,
-                key,
-                ints[PUSHED],
-                entry,
-            )
-            ints[SIZES + k] += 1
+            list_push(ints, reals, space, k, key, ints[PUSHED], entry)

@@ -26,7 +26,7 @@ from tamp.symbolic.search.packed.basics import (
     SIZES,
     UNTIL,
     heap_pop,
-    heap_push,
+    list_push,
 )  # fmt: skip
 from tamp.symbolic.search.packed.estimates import (
     explore,
@@ -90,7 +90,6 @@ def pop(ints, reals, t, space, greedy):
 def push(ints, reals, t, r, x, space, node, i, reached, order, prefer, weight):
     """Push a successor onto the lists of all heuristics, under its parent's estimates."""
     kinds, greedy = t.heuristics, weight == math.inf
-    capacity = space.entries
     cost, step = reals[space.cost + node], reals[t.costs + i]
     entry = ints[ENTRIES]
     ints[ENTRIES] += 1
@@ -104,34 +103,10 @@ def push(ints, reals, t, r, x, space, node, i, reached, order, prefer, weight):
         if dearer != 0.0 and ints[t.kinds + k] == 0 and ints[x.in_plan + i]:
             extra = dearer - paid(ints, reals, r, x, i)
         key = h + extra if greedy else cost + step + extra + weight * h
-        base, size = k * capacity, ints[SIZES + k]
-        heap_push(
-            ints,
-            reals,
-            space.keys + base,
-            space.ties + base,
-            space.items + base,
-            size,
-            key,
-            order,
-            entry,
-        )
-        ints[SIZES + k] += 1
+        list_push(ints, reals, space, k, key, order, entry)
         if prefer and extra <= step:
             key = h if greedy else cost + weight * h
-            base, size = (kinds + k) * capacity, ints[SIZES + kinds + k]
-            heap_push(
-                ints,
-                reals,
-                space.keys + base,
-                space.ties + base,
-                space.items + base,
-                size,
-                key,
-                order,
-                entry,
-            )
-            ints[SIZES + kinds + k] += 1
+            list_push(ints, reals, space, kinds + k, key, order, entry)
 
 
 def evaluate(ints, reals, t, r, x, space, node, parent):
