@@ -50,6 +50,12 @@ class Person:
     def ready(self) -> None:
         self.browser.wait("window.tamp && tamp.idle()")
 
+    def pictured(self) -> None:
+        """Wait for the cards' pictures: until they are there a card may move away from the mouse."""
+        self.browser.wait(
+            "[...document.querySelectorAll('.card img')].every((i) => i.complete && i.naturalWidth > 0)"
+        )
+
     def key(self, key: str, shift: bool = False) -> None:
         self.actions += 1
         code = CODES.get(key, ord(key.upper()) if len(key) == 1 else 0)
@@ -274,13 +280,14 @@ def test_labels_cards_and_what_is_asked_first(
         or person.run("tamp.state.stage.number") == 1
     )
     assert person.text("#count-fails") == "1 / 10" and "saved" in person.text("#toast")
-    person.browser.wait(
-        "[...document.querySelectorAll('.card img')].every((i) => i.complete && i.naturalWidth > 0)"
-    )
+    person.pictured()
     (card,) = studio.folder.cards()
     person.click(".card .flip")
     assert person.text("#count-holds") == "1 / 10"
+    person.pictured()
+    before = person.run("tamp.state.stage.number")
     person.click(f".card[data-name='{card.name}'] img")
+    person.browser.wait(f"tamp.state.stage.number !== {before} && tamp.idle()")
     assert person.argument(0) == a and person.argument(1) == b
     person.key("n")
     assert "shows the same and says the opposite" in person.text("#trouble")
