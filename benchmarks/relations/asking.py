@@ -8,8 +8,9 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from benchmarks.relations.geometry import Batch, join, pick, situations
+from benchmarks.relations.hand import put, scenes, shown, spoil
 from benchmarks.relations.measure import accuracy
-from benchmarks.relations.relations import RELATIONS, put, scenes, shown, spoil
+from benchmarks.relations.relations import RELATIONS
 from grounding.relations.asking import questions
 from grounding.relations.committee import fit
 from grounding.relations.evidence import gather

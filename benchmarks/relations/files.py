@@ -9,7 +9,8 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from benchmarks.relations.geometry import Batch, pick
-from benchmarks.relations.relations import RELATIONS, shown
+from benchmarks.relations.hand import shown
+from benchmarks.relations.relations import RELATIONS
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import BodyEntry, DemonstrationFile, write_demonstration
 from tamp.geometric.scene.pose import Pose

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from benchmarks.relations.geometry import Array, Batch, pick, situations, trouble
-from benchmarks.relations.relations import RELATIONS, put, scenes, shown
+from benchmarks.relations.hand import put, scenes, shown
+from benchmarks.relations.relations import RELATIONS
 from grounding.relations.committee import Committee
 from grounding.relations.generator import Generator
 from grounding.relations.learner import cross_validated, trained

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from benchmarks.relations.geometry import pick, situations, trouble
+from benchmarks.relations.hand import put, scenes, shown
 from benchmarks.relations.measure import Case, accuracy, holding, measured, steady
-from benchmarks.relations.relations import RELATIONS, put, scenes, shown
+from benchmarks.relations.relations import RELATIONS
 from grounding.relations.asking import questions
 from grounding.relations.committee import fit
 from grounding.relations.demonstration_file import Demonstration, demonstrations_of

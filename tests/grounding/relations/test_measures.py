@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from benchmarks.relations.geometry import situations
-from benchmarks.relations.relations import RELATIONS, shown
+from benchmarks.relations.hand import shown
+from benchmarks.relations.relations import RELATIONS
 from grounding.relations.catalogue import catalogue, measure
 from grounding.relations.chance import about_z, chance
 from grounding.relations.situation import Situations, joined, situation_of
