@@ -15,9 +15,13 @@ from typing import Any
 
 import numba
 from numba.core import event
-from numba.core.targetconfig import TargetConfig
 
 from tamp.system.deadline import STANDSTILL
+from tamp.system.quick_compiling import (
+    code_when_called,
+    compare_quickly,
+    generate_code_when_called,
+)
 
 Told = Callable[[int], None]
 """Called with the number of functions compiled so far, whenever another one begins."""
@@ -58,45 +62,8 @@ _COMPILING = _Compiling()
 event.register("numba:compile", _COMPILING)
 
 
-def _compare_quickly() -> None:
-    """Give numba's options a hash and a comparison of the same results in a tenth of the time.
-
-    Typing looks every `a[i]` up in 14 tables whose keys hold the options, and each look compares
-    all of those, one property at a time: a sixth of what compiling takes.
-    """
-    # of another numba: it goes on as it is
-    if not {"_values", "options", "values"} <= {*dir(TargetConfig)}:
-        return
-
-    hashes: dict[type, int] = {}
-
-    def quick_hash(self: Any) -> int:
-        kind = type(self)
-        if kind not in hashes:
-            hashes[kind] = hash(tuple(sorted(self.values())))  # numba's own: of the names alone
-        return hashes[kind]
-
-    def quick_eq(self: Any, other: object) -> Any:
-        if not isinstance(other, TargetConfig):
-            return NotImplemented
-        if type(self) is type(other) and self._values == other._values:
-            return True
-        return _all_values(self) == _all_values(other)
-
-    TargetConfig.__hash__ = quick_hash
-    TargetConfig.__eq__ = quick_eq
-
-
-def _all_values(config: Any) -> dict[str, Any]:
-    """Return `TargetConfig.values` of an instance: what is set, and the defaults of the rest."""
-    kind = type(config)
-    if kind not in _DEFAULTS:
-        _DEFAULTS[kind] = {name: option.default for name, option in kind.options.items()}
-    return {**_DEFAULTS[kind], **config._values}
-
-
-_DEFAULTS: dict[type, dict[str, Any]] = {}
-_compare_quickly()
+compare_quickly()
+generate_code_when_called()
 
 
 def tell(told: Told | None) -> None:
@@ -118,16 +85,17 @@ def njit(
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        if cache:
-            try:
-                return numba.njit(signature, cache=True, **options)(function)
-            except RuntimeError as error:  # numba found no folder
-                if "cannot cache" not in str(error):
-                    raise
-                _say("no folder for it can be written")
-            except OSError as error:  # the folder's disk is full
-                _say(os.strerror(error.errno) if error.errno else str(error))
-        return numba.njit(signature, **options)(function)
+        with code_when_called():
+            if cache:
+                try:
+                    return numba.njit(signature, cache=True, **options)(function)
+                except RuntimeError as error:  # numba found no folder
+                    if "cannot cache" not in str(error):
+                        raise
+                    _say("no folder for it can be written")
+                except OSError as error:  # the folder's disk is full
+                    _say(os.strerror(error.errno) if error.errno else str(error))
+            return numba.njit(signature, **options)(function)
 
     return compiled
 

@@ -183,7 +183,7 @@ def _decide_pairs(
     return np.int64(FREE), count
 
 
-@njit(**{**INLINE, "_nrt": True})
+@njit(**{**JIT, "_nrt": True, "inline": "always"})
 def _decided(start, end, padding, tables):
     """Decide an edge, interval by interval; see kernels.py."""
     if _leaves_the_room(start, end, unpack(tables, np.int64(0))[0]):
@@ -217,7 +217,8 @@ def _decided(start, end, padding, tables):
         intervals[1, 0], intervals[1, 1] = 0.0, 0.0
         intervals[2, 0], intervals[2, 1] = 0.5, 0.5
 
-    count, head, tail = 0, 0, 3 if moves else 1
+    # Typed, since a literal would have what it is given to compiled twice.
+    count, head, tail = np.int64(0), np.int64(0), np.int64(3 if moves else 1)
     while head < tail:
         middle, half = intervals[head, 0], intervals[head, 1]
         for k in range(size):
@@ -226,7 +227,7 @@ def _decided(start, end, padding, tables):
         if head < 3:
             for k in range(n):
                 place_part(k, frames, change, joints, parts, part_poses, placed, reach)
-            first = 0
+            first = np.int64(0)
             last = _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
         else:
             first, last = lists[head, 0], lists[head, 1]
