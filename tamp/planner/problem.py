@@ -195,9 +195,14 @@ def _read(
     if carries(parsed):
         loaded = replace(loaded, scene=with_tops(loaded.scene))
 
-    streams_path = (
-        Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
-    )
+    beside = domain_path.with_suffix(".streams.pddl")
+    streams_path = Path(streams) if streams is not None else beside
+    if streams is None and not beside.exists():
+        raise InputError(
+            f"no such file: the streams of '{domain_path.name}' are looked for beside it",
+            file=beside,
+            remedy="--streams FILE names others",
+        )
     declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
     return _Files(loaded, parsed, domain_path, declared, streams_path)
 
