@@ -9,6 +9,7 @@ from tamp.geometric.samplers.mixture import Account
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Record
 from tamp.planner.timed_trajectories import Trajectory
+from tamp.symbolic.algorithms.cause import Cause
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.algorithms.result import Outcome, SearchStatistics
@@ -62,7 +63,7 @@ class Solution:
         values: The value of every name in the plan: poses, grasps, base configurations, reaches,
             motions.
         certified: The facts that streams certified and the plan rests on.
-        explanation: Why there is no plan, a line a cause.
+        causes: Why there is no plan; `explanation` has their texts.
         tallies: What was tried for which action, where there is no plan.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
         record: What was tried, when `solve` was asked to record it.
@@ -80,7 +81,7 @@ class Solution:
     certified: tuple[Fact, ...] = ()
     statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: SearchStatistics = field(default_factory=SearchStatistics)
-    explanation: tuple[str, ...] = ()
+    causes: tuple[Cause, ...] = ()
     tallies: tuple[FailureCount, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
@@ -95,6 +96,11 @@ class Solution:
     def solved(self) -> bool:
         """Tell whether there is a plan."""
         return self.outcome is Outcome.SOLVED
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Return why there is no plan, a line a cause."""
+        return tuple(cause.text for cause in self.causes)
 
     @property
     def cost(self) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from tamp.plan.read import PlanFile
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Fact, Formula
+from tamp.verification.formulas import facts as facts_of
 from tamp.verification.formulas import show
 from tamp.verification.initial_state import meant
 from tamp.verification.semantics import Semantics, State
@@ -112,7 +113,7 @@ class Standing:
             self._log.add("goal", f"{show(goal)} does not follow from the facts at the end")
 
         felt: set[Fact] = set()
-        reasons: dict[str, str] = {}
+        reasons: dict[Fact, str] = {}
         for name in self._world.scene.movable:
             if name == in_hand:
                 continue
@@ -126,12 +127,13 @@ class Standing:
                     if why is None:
                         felt.add(fact)
                     else:
-                        reasons[f"({' '.join(fact)})"] = why
+                        reasons[fact] = why
 
         facts = {(name, *row) for name, rows in state.facts.items() for row in rows}
         if not self._semantics.without(("on", "inside")).holds(goal, State.of(facts | felt)):
+            wanted = facts_of(goal)
             asked = "; ".join(
-                f"{fact}: {why}" for fact, why in reasons.items() if fact in show(goal)
+                f"({' '.join(fact)}): {why}" for fact, why in reasons.items() if fact in wanted
             )
             message = f"{show(goal)} does not hold in the geometry at the end"
             self._log.add("goal", f"{message}: {asked}" if asked else message)

@@ -15,6 +15,7 @@ from tamp.geometric.scene.scene import Box, Cylinder
 from tamp.geometric.stability.hulls import part_mesh
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.streams.hand_fit import CONE
+from tamp.stream import Rejection, RejectionKind
 
 LEVEL = math.cos(math.radians(1.0))
 """Cosine of the largest tilt with which a body counts as lying flat."""
@@ -29,9 +30,9 @@ HALF_MILLIMETRE = 5e-4
 """What a width must exceed the hand's opening by, metres."""
 
 
-def too_flat(context: Context, body: str, pose: Pose) -> str | None:
-    """Say in words that a box or a can that lies flat here has no grasp; None unless that is
-    proven.
+def too_flat(context: Context, body: str, pose: Pose) -> Rejection | None:
+    """Reject a box or a can that lies flat here and has no grasp, with the body beneath it; None
+    unless that is proven.
 
     Its sides are farther apart than the hand opens, so one finger would hold its underside; and all
     of that, and what is around, lies on one convex part of a fixed body.
@@ -60,7 +61,8 @@ def too_flat(context: Context, body: str, pose: Pose) -> str | None:
         below = cut(where.apply(vertices), triangles, under)
         if below is not None and (distances(corners, below) <= 0.0).all():
             tall = f"{1000 * (high[2] - low[2]):.0f} mm tall, {100 * width:.0f} cm wide"
-            return f"too flat to be grasped ({tall}): no finger gets between it and {name}"
+            what = f"too flat to be grasped ({tall}): no finger gets between it and {name}"
+            return Rejection(what, kind=RejectionKind.NO_GRASP, bodies=(name,))
 
     return None
 

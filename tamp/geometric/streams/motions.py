@@ -193,7 +193,8 @@ def _diagnosed(
         )
         failed = failure.value if gap is None else gap.text
         what = f"no motion even without the movable bodies: {failed}{where}"
-        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(ahead))
+        bodies = dict.fromkeys((*ahead, *(() if gap is None else gap.bodies)))
+        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(bodies))
 
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)

@@ -186,7 +186,7 @@ class _Drawer:
             if isinstance(pose, Rejection):
                 refused[pose] += 1
                 self.ledger.judged(source.account, pose.reason)
-                self.call.refused(self._posed(proposal), pose.reason)
+                self.call.refused(self._posed(proposal), pose)
                 continue
 
             hit = next((name for name in self.poses if self._near(pose, name)), None)
@@ -195,8 +195,9 @@ class _Drawer:
                 source.clear = True
                 return pose
 
-            self.ledger.judged(source.account, f"hits {hit}")
-            self.call.refused(pose, f"hits {hit}")
+            rejection = Rejection.hits(hit)
+            self.ledger.judged(source.account, rejection.reason)
+            self.call.refused(pose, rejection)
             source.clash = source.clash or pose
 
         return source.take_clash() if source.clear else None

@@ -30,7 +30,7 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
     """
     flat = too_flat(context, body, pose)
     if flat is not None:
-        return Rejection(flat, kind=RejectionKind.NO_GRASP)
+        return flat
     return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
 
 
@@ -64,11 +64,11 @@ def within_reach(
     if robot.drive == "fixed":
         return _from_where_it_is(context, low, high, span)
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
-    return True if gap is None else _out_of_reach(gap.text)
+    return True if gap is None else _out_of_reach(gap.text, gap.bodies)
 
 
-def _out_of_reach(how: str) -> Rejection:
-    return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE)
+def _out_of_reach(how: str, bodies: tuple[str, ...] = ()) -> Rejection:
+    return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE, bodies=bodies)
 
 
 def _from_where_it_is(context: Context, low: Array, high: Array, span: float) -> bool | Rejection:

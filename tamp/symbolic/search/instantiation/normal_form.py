@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.pddl.structs import (
     And,
     Atom,
@@ -19,6 +20,7 @@ from tamp.symbolic.pddl.structs import (
     Parameter,
 )
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
+from tamp.symbolic.search.operators import Meaning
 
 MAX_CONJUNCTIONS = 12
 """A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary
@@ -259,9 +261,12 @@ class Normalizer:
             if atom.predicate in self.definitions:
                 wanted.setdefault((atom.predicate, not refuted))
 
-    def meanings(self) -> dict[str, str]:
+    def meanings(self) -> dict[str, Meaning]:
         """Show the auxiliary predicates' formulas in PDDL, by name."""
-        return {name: show(formula) for name, formula in self.auxiliary.items()}
+        return {
+            name: Meaning(show(formula), terms_of(formula))
+            for name, formula in self.auxiliary.items()
+        }
 
 
 def show(formula: Formula) -> str:
@@ -276,6 +281,11 @@ def show(formula: Formula) -> str:
     word = "exists" if isinstance(formula, Exists) else "forall"
     variables = " ".join(p.name.split(" ")[0] for p in formula.parameters)
     return f"({word} ({variables}) {show(formula.body)})"
+
+
+def terms_of(formula: Formula) -> tuple[str, ...]:
+    """List the terms of a formula's atoms from left to right, as often as they stand there."""
+    return tuple(term for atom in atoms(formula) for term in atom.terms)
 
 
 def type_relation(types: Types) -> str:
