@@ -9,7 +9,7 @@ from itertools import combinations
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
-from tamp.symbolic.search.instantiation.normal_form import show, terms_of
+from tamp.symbolic.search.instantiation.meanings import meaning_of
 from tamp.symbolic.search.mutex import excluded
 from tamp.symbolic.search.operators import Goal, InstantiatedTask, Meaning
 from tamp.symbolic.search.search import Reason, search
@@ -60,14 +60,14 @@ def _conjuncts(
     denied = {part.body for part in parts if isinstance(part, Not)}
     for part in parts:
         if part in denied:
-            return _sorted((_meaning(part), _meaning(Not(part))))
+            return _sorted((meaning_of(part), meaning_of(Not(part))))
     fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:MAX_PAIRS]
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
         if excluded(instantiate(And(some)), deadline) is not None:
-            return tuple(_meaning(part) for part in some)
-    return tuple(_meaning(part) for part in parts)
+            return tuple(meaning_of(part) for part in some)
+    return tuple(meaning_of(part) for part in parts)
 
 
 def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple[Fact, bool], ...]:
@@ -103,10 +103,6 @@ def _meanings(
         negated = not wanted and not (meaning is not None and fact[0].startswith("forall "))
         meant.append(Meaning(f"(not {text})" if negated else text, terms))
     return _sorted(meant)
-
-
-def _meaning(formula: Formula) -> Meaning:
-    return Meaning(show(formula), terms_of(formula))
 
 
 def _sorted(goals: Iterable[Meaning]) -> tuple[Meaning, ...]:

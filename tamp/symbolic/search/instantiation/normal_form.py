@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.pddl.structs import (
     And,
     Atom,
@@ -19,6 +18,7 @@ from tamp.symbolic.pddl.structs import (
     Or,
     Parameter,
 )
+from tamp.symbolic.search.instantiation.meanings import meaning_of
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
 from tamp.symbolic.search.operators import Meaning
 
@@ -263,29 +263,7 @@ class Normalizer:
 
     def meanings(self) -> dict[str, Meaning]:
         """Show the auxiliary predicates' formulas in PDDL, by name."""
-        return {
-            name: Meaning(show(formula), terms_of(formula))
-            for name, formula in self.auxiliary.items()
-        }
-
-
-def show(formula: Formula) -> str:
-    """Show a formula in PDDL, on one line."""
-    if isinstance(formula, Atom):
-        return f"({' '.join((formula.predicate, *(t.split(' ')[0] for t in formula.terms)))})"
-    if isinstance(formula, Not):
-        return f"(not {show(formula.body)})"
-    if isinstance(formula, And | Or):
-        connective = "and" if isinstance(formula, And) else "or"
-        return f"({' '.join((connective, *map(show, formula.parts)))})"
-    word = "exists" if isinstance(formula, Exists) else "forall"
-    variables = " ".join(p.name.split(" ")[0] for p in formula.parameters)
-    return f"({word} ({variables}) {show(formula.body)})"
-
-
-def terms_of(formula: Formula) -> tuple[str, ...]:
-    """List the terms of a formula's atoms from left to right, as often as they stand there."""
-    return tuple(term for atom in atoms(formula) for term in atom.terms)
+        return {name: meaning_of(formula) for name, formula in self.auxiliary.items()}
 
 
 def type_relation(types: Types) -> str:
