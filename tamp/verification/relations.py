@@ -15,7 +15,7 @@ from tamp.relations.observed import moved, scene_names
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.relations import Relation, instances
 from tamp.symbolic.pddl.structs import Domain, Fact
-from tamp.verification.initial_state import meant
+from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import State
 from tamp.verification.violation_log import Log
 
@@ -66,7 +66,7 @@ class Relations:
         facts: set[Fact] = {(name, *row) for name, rows in state.facts.items() for row in rows}
         at = (
             {row[0]: row[1] for row in state.all("at-pose")}
-            if meant(self._domain, "at-pose")
+            if has_standard_meaning(self._domain, "at-pose")
             else {}
         )
         for relation, classifier in self._asked.values():

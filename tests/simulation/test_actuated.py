@@ -11,11 +11,10 @@ import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Pose, pose_difference
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.actuation import RATE, Actuated
 from tamp.simulation.engines import ENGINES, installed, open_actuated
-from tamp.verification.initial_state import apart
 
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
@@ -117,7 +116,7 @@ def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(
     T = held_off_centre(off_centre)
     for angle in (2.0, -2.0, 2.0):
         turned(off_centre, angle, 3.0)
-        moved, angle = apart(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
+        moved, angle = pose_difference(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
         # MuJoCo's friction knows speeds only: on a circle a body drifts outwards by w^2 r dt / 2 a second.
         assert moved < (0.004 if type(off_centre).__name__ == "MujocoActuated" else 0.002)
         assert angle < np.radians(2)
