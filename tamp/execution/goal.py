@@ -11,7 +11,7 @@ from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.observation import Truth
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
-from tamp.geometric.samplers.choice import ANY, Registry
+from tamp.geometric.samplers.choice import ANY_RELATION, Registry
 from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.classifier import Unanswered, probability
 from tamp.geometric.scene.pose import pose_difference
@@ -82,7 +82,7 @@ def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
     """
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
-        if relation == ANY:
+        if relation == ANY_RELATION:
             continue
         for name, make in makers.items():
             classifier = _made(make)

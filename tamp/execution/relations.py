@@ -10,7 +10,7 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
 from tamp.execution.observation import Truth
-from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry, maker, parse_choice
+from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY, Classifier
 from tamp.geometric.streams.registry import STREAMS
@@ -145,7 +145,7 @@ def named_classifiers(
     found: dict[str, tuple[str, Classifier]] = {}
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
     for relation, text in {**planned, **names}.items():
-        if relation in SAMPLERS or text.partition(":")[0] == GIVEN:
+        if relation in SAMPLERS or text.partition(":")[0] == USER_OBJECT:
             continue
         try:
             choice = parse_choice(relation, text, registry)

@@ -16,7 +16,7 @@ from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.observation import Truth
-from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry
+from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry
 from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.values import Grasp
 from tamp.plan.open import Stored
@@ -230,4 +230,4 @@ def _same(first: Array, second: Array) -> bool:
 
 def is_given(sampler: str) -> bool:
     """Check whether a plan's sampler was an object, which no file keeps."""
-    return sampler.partition(":")[0] == GIVEN
+    return sampler.partition(":")[0] == USER_OBJECT

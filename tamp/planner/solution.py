@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tamp.geometric.samplers.mixture import Account
+from tamp.geometric.samplers.mixture import SamplerRecord
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Record
 from tamp.planner.timed_trajectories import Trajectory
@@ -86,8 +86,8 @@ class Solution:
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None
-    samplers: Mapping[str, tuple[Account, ...]] = field(
-        default_factory=dict[str, "tuple[Account, ...]"]
+    samplers: Mapping[str, tuple[SamplerRecord, ...]] = field(
+        default_factory=dict[str, "tuple[SamplerRecord, ...]"]
     )
     improvements: tuple[Improvement, ...] = ()
     bound: float | None = None

@@ -20,11 +20,11 @@ from tamp.geometric.streams.loads import load_of, plan_loaded_pick, standing
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
 
-HARDEST = 4
+MAX_EFFORT = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
 before."""
 
-LOOKS = 33
+STRAIGHT_WAY_CONFS = 33
 """Configurations on the straight way that are looked at to say what is in it."""
 
 
@@ -166,7 +166,7 @@ def _attempts(
     """Yield paths, or why there is none, with growing effort; end when a failure is final."""
     attachment = None if held is None else context.attachment(held)
     arrangement = context.collisions.arrangement(poses, attachment)
-    for effort in range(HARDEST + 1):
+    for effort in range(MAX_EFFORT + 1):
         planned = query.plan(arrangement, effort)
         while planned.path is not None:
             yield planned.path
@@ -215,7 +215,8 @@ def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list
     start, goal = query.ends
     arrangement = context.fixed_only(held)
     hits = [
-        arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)
+        arrangement.hits(start + share * (goal - start))
+        for share in np.linspace(0.0, 1.0, STRAIGHT_WAY_CONFS)
     ]
     return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
 

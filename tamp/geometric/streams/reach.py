@@ -18,7 +18,7 @@ from tamp.stream import Call, Rejection, RejectionKind
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-PAD = 0.02
+FINGERTIP_MARGIN_M = 0.02
 """How far the fingers reach beyond the tool's origin, metres."""
 
 
@@ -94,7 +94,7 @@ def arm_length(robot: Robot) -> float:
         for low, high, slides in zip(robot.lower, robot.upper, robot.prismatic, strict=True)
         if slides
     )
-    return sum(math.hypot(*piece.position) for piece in pieces) + slides + PAD
+    return sum(math.hypot(*piece.position) for piece in pieces) + slides + FINGERTIP_MARGIN_M
 
 
 def _shoulder(robot: Robot) -> Array:

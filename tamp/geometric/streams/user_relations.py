@@ -17,7 +17,7 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
 from tamp.geometric.streams.movable_supports import stood_on
-from tamp.geometric.streams.proposal_stream import draw
+from tamp.geometric.streams.proposal_stream import certified_poses
 from tamp.stream import Call, Rejection, RejectionKind
 
 
@@ -78,7 +78,7 @@ def sample_relation(
         answer = _answer(_asked(context, classifier, names, {**at, body: pose}, call))
         return answer if isinstance(answer, Rejection) else pose
 
-    yield from draw(
+    yield from certified_poses(
         context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
     )
 
