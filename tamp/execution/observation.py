@@ -13,7 +13,7 @@ import numpy as np
 from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.scene.scene import CONTACT_GAP, Scene
 from tamp.simulation.engines import open_world
-from tamp.simulation.world import FLOOR
+from tamp.simulation.world import FLOOR_NAME
 from tamp.symbolic.pddl.structs import Fact
 from tamp.verification.support_geometry import SupportContact, Supports
 
@@ -136,7 +136,7 @@ class Observer:
                 support = support or place
             else:
                 reasons[fact] = why
-        below = sorted(stand.on - {FLOOR})
+        below = sorted(stand.on - {FLOOR_NAME})
         facts |= {("on", name.lower(), body.lower()) for body in below}
         if support is None and stand.why is None:
             support = next((body for body in below if self._scene.bodies[body].movable), None)

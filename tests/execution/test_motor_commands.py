@@ -135,7 +135,7 @@ def test_letting_go_at_once_opens_the_fingers() -> None:
     world = Noting("cup")
     player, watch = playing(world, "friction")
     player.play(close("cup"), "cup", watch)
-    world.bind("cup")
+    world.attach("cup")
     player.let_go()
     assert (world.bound, world.squeezing, world.opening) == (None, False, world.widest)
     assert world.told[-1] == ("pass", ("cup", False)) and math.isclose(world.widest, 0.08)

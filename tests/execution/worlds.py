@@ -35,7 +35,7 @@ class Noting:
         self.felt: dict[tuple[str, str], float] = {}
         self.near = True
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
+    def step_motors(self, rates: Sequence[float] = (0.0,) * 10) -> None:
         self.ticks.append((self.conf.copy(), rates))
 
     def actual(self) -> Array:
