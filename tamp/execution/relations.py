@@ -12,7 +12,7 @@ from tamp.execution.expected import Expected
 from tamp.execution.observation import Truth
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.registry import STREAMS
 from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
@@ -67,7 +67,7 @@ class Own:
             for name, (relation, _, _) in self.asked.items()
             for words, answer in seen[name].answers.items()
             if not math.isnan(answer)
-            and answer < LIKELY
+            and answer < LIKELY_PROBABILITY
             and all(
                 fact in expected.state
                 for fact in relation.substitute(

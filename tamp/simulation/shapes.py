@@ -12,7 +12,7 @@ import numpy as np
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Shape, Sphere
 
-_SINGLE = 100.0
+_LARGEST_SINGLE_M = 100.0
 CIRCLE_POINTS = 48
 """Points on a circle where a round shape is described by points."""
 
@@ -97,7 +97,7 @@ def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
     pybullet tells the frame of a link in single precision, that of its centre of mass in double:
     far from the world's origin (0.06 mm at 1 km) the frame is taken from the latter.
     """
-    if max(abs(state[4][0]), abs(state[4][1])) < _SINGLE:
+    if max(abs(state[4][0]), abs(state[4][1])) < _LARGEST_SINGLE_M:
         return (*state[4], *state[5])
     frame = Pose(state[0], state[1]) @ Pose(state[2], state[3]).inverse()
     return (*frame.position, *frame.quaternion)

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from tamp.geometric.scene.classifier import LIKELY, Classifier, Unanswered, probability
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier, Unanswered, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile
@@ -162,7 +162,7 @@ class Relations:
             )
             return None
         self.answers[relation.name] += 1
-        return number >= LIKELY
+        return number >= LIKELY_PROBABILITY
 
     def _deny(self, relation: Relation, fact: Fact) -> None:
         """Note, once, that a fact of the plan does not hold."""

@@ -41,8 +41,8 @@ def at_depth(solid: ConvexUnion, point: Array, approach: Array, depth: float) ->
     surface = solid.solid_at(point, approach)
     start = point @ approach + surface.start if surface is not None else low
     thickness = (point @ approach + surface.end if surface is not None else high) - start
-    depth = min(depth, thickness - FINGERTIP_M - 0.003)
-    return point + (start + depth - point @ approach) * approach
+    inside = min(depth, thickness - FINGERTIP_M - 0.003)
+    return point + (start + inside - point @ approach) * approach
 
 
 def antipodal_grasps(

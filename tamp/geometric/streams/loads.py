@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.collisions import Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.context import Context
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.result import Failure

@@ -10,11 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from tamp.geometric.collision.collisions import Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.context import Context
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.loads import load_of, plan_loaded_pick, standing
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
@@ -38,7 +38,7 @@ class _Query:
         ends: Start and goal as configurations (10,).
     """
 
-    plan: Callable[[Arrangement, int], Planned]
+    plan: Callable[[Arrangement, int], MotionResult]
     confs: Callable[[Array], Array]
     ends: tuple[Array, Array]
 
@@ -52,7 +52,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
         context = context.loaded(held.body, load_of(call, held.body))
     opening = context.robot.opening if held is None else held.opening
 
-    def plan(arrangement: Arrangement, effort: int) -> Planned:
+    def plan(arrangement: Arrangement, effort: int) -> MotionResult:
         ends = np.array(start.array), np.array(goal.array)
         return plan_base(
             arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
@@ -129,7 +129,7 @@ def _transits(
     stand = np.array(base.array)
     out = reach.lift[-1]
 
-    def plan(arrangement: Arrangement, effort: int) -> Planned:
+    def plan(arrangement: Arrangement, effort: int) -> MotionResult:
         return plan_arm(
             arrangement,
             stand,

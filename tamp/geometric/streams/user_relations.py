@@ -12,7 +12,7 @@ from typing import Any
 from tamp.geometric.context import Context
 from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.samplers.sampler import Generator
-from tamp.geometric.scene.classifier import LIKELY, Classifier, probability
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
@@ -131,7 +131,7 @@ def fails_relation(
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
         return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
-    if number < LIKELY:
+    if number < LIKELY_PROBABILITY:
         return True
     return Rejection(f"likely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
@@ -139,7 +139,7 @@ def fails_relation(
 def _answer(number: float) -> bool | Rejection:
     if math.isnan(number):
         return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
-    if number >= LIKELY:
+    if number >= LIKELY_PROBABILITY:
         return True
     return Rejection(f"unlikely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
