@@ -23,6 +23,7 @@ def tolerances() -> tuple[tuple[str, str], ...]:
     air = (
         f"0 to {_mm(supports.SUPPORT_GAP_M)} (it may sink in {_mm(supports.SUPPORT_PENETRATION_M)})"
     )
+
     return (
         ("penetration of robot, held body, bodies, floor", _mm(sweep.MAX_PENETRATION_M)),
         (

@@ -47,7 +47,7 @@ class Noting:
     def near_fingers(self, body: str) -> bool:
         return self.near
 
-    def bind(self, body: str) -> None:
+    def attach(self, body: str) -> None:
         self.bound = body
         self.told.append(("bind", body))
 
@@ -55,5 +55,5 @@ class Noting:
         self.told.append(("unbind", self.bound))
         self.bound = None
 
-    def pass_through(self, body: str, through: bool) -> None:
+    def disable_collision(self, body: str, through: bool) -> None:
         self.told.append(("pass", (body, through)))

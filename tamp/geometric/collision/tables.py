@@ -98,13 +98,10 @@ class Rows:
         the part's frame, slack.
         """
         row = np.zeros(PART_COLUMNS)
-        (
-            row[KIND],
-            row[SIZE : SIZE + 3],
-            row[CENTRE : CENTRE + 3],
-            row[RADIUS],
-            row[RADIUS_OFFSET],
-        ) = _core(part.shape)
+        kind, size, centre, radius, offset = _core(part.shape)
+        row[KIND], row[RADIUS], row[RADIUS_OFFSET] = kind, radius, offset
+        row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3] = size, centre
+
         if isinstance(part.shape, Hull):
             row[VERTICES], row[VERTEX_COUNT] = self._vertex_count, len(part.shape.vertices)
             self._vertices.append(np.asarray(part.shape.vertices, dtype=np.float64))
@@ -112,11 +109,8 @@ class Rows:
         row[COVER_ERROR] = row[RADIUS]
         if cover is not None:
             leaves, slack = cover
-            row[COVER_SPHERES], row[COVER_COUNT], row[COVER_ERROR] = (
-                self._leaf_count,
-                len(leaves),
-                slack,
-            )
+            row[COVER_SPHERES], row[COVER_COUNT] = self._leaf_count, len(leaves)
+            row[COVER_ERROR] = slack
             self._leaves.append(leaves)
             self._leaf_count += len(leaves)
         return row

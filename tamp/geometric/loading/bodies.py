@@ -132,9 +132,8 @@ def read_body(name: str, node: Node, folder: Path) -> UnplacedBody:
         front=entries["front"].angle() if "front" in entries else 0.0,
     )
 
-    return UnplacedBody(
-        body, {key: entries[key] for key in PLACEMENT_KEYS if key in entries}, node, mesh
-    )
+    placement = {key: entries[key] for key in PLACEMENT_KEYS if key in entries}
+    return UnplacedBody(body, placement, node, mesh)
 
 
 def _kind(node: Node) -> str:

@@ -84,6 +84,7 @@ def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | 
     place = _place(body.support, bodies)
     if place is None:  # the floor, or a movable body
         return footing.why
+
     T_place_body = (bodies[place.body].pose @ place.pose).inverse() @ body.pose
     if isinstance(place, Cavity):
         points, half = T_place_body.apply(body_points(body)), np.array(place.size[:2]) / 2
@@ -94,6 +95,7 @@ def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | 
             if beyond > SUPPORT_PENETRATION_M - 1e-5
             else footing.why
         )
+
     if place.body not in footing.on:
         below = ", ".join(sorted(footing.on)) or "nothing within 10 mm"
         return f"under it is {below}; the surface '{place.name}' is in the air there"

@@ -113,20 +113,11 @@ def plan_base(
         if path is None:
             plane = PlaneSpace(room.x, room.y)
             found, _ = connect(
-                plane,
-                start,
-                [goal],
-                edge_free,
-                seed=seed,
-                checks=budget,
-                deadline=deadline,
+                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline,
                 reach=MAX_EDGE_M,
-            )
-            path = (
-                None
-                if found is None
-                else unwrap(np.array([start, *found[1:-1], goal]), YAW_COLUMNS)
-            )
+            )  # fmt: skip
+            if found is not None:
+                path = unwrap(np.array([start, *found[1:-1], goal]), YAW_COLUMNS)
 
         if path is not None and len(path) > 2:
             path, _ = shortcut(

@@ -122,6 +122,7 @@ class ConvexUnion:
         here = crossed[(starts[crossed] <= SEAM_WIDTH_M) & (ends[crossed] >= -SEAM_WIDTH_M)]
         if len(here) == 0:
             return None
+
         first, last = here[np.argmin(starts[here])], here[np.argmax(ends[here])]
         for _ in range(len(crossed)):  # parts that touch the stretch lengthen it, one after another
             low = crossed[
@@ -134,5 +135,6 @@ class ConvexUnion:
                 break
             first = low[np.argmin(starts[low])] if len(low) else first
             last = high[np.argmax(ends[high])] if len(high) else last
+
         normals = self._normals[start_planes[first]], self._normals[end_planes[last]]
         return Contact(float(starts[first]), float(ends[last]), *normals)

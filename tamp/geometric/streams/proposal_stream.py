@@ -150,19 +150,16 @@ class _ProposalLoop:
         refused: Counter[Rejection] = Counter()
         for index in self.ledger.order():
             source = self.sources[index]
-            batches = 1
-            if (
-                not self.alone
-                and index == 0
-                and source.account.judged + POSES_PER_BATCH < PROBATION_PROPOSALS
-            ):
-                batches = 2
+            new = source.account.judged + POSES_PER_BATCH < PROBATION_PROPOSALS
+            batches = 2 if new and index == 0 and not self.alone else 1
+
             for _ in range(batches):
                 pose = self._from(source, refused)
                 if pose is not None:
                     self.ledger.accepted(source.account, self.arguments)
                     self.dismiss()
                     return pose
+
         for index in self.ledger.order():
             source = self.sources[index]
             pose = source.take_deferred()

@@ -136,6 +136,7 @@ def _label(
     """Describe an action with the things that it and its values' sources concern; list those."""
     if number >= len(skeleton.steps):
         return "the goal", ()
+
     step = skeleton.steps[number]
     things = _things(step.arguments, names)
     text = " ".join([step.name, *things])
@@ -150,6 +151,7 @@ def _label(
                     else f" {' '.join(further)}"
                 )
                 things += further
+
     if things or number + 1 >= len(skeleton.steps):
         return text, tuple(things)
     purpose, further = _label(skeleton, number + 1, users, names)

@@ -201,6 +201,7 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[Cause]:
             failed.setdefault(kind, Counter())[instance.last.reason] += 1
             met.setdefault(kind, Counter()).update(instance.last.bodies)
             about.setdefault(kind, instance.inputs)
+
     never = [(kind, reasons) for kind, reasons in failed.items() if kind not in worked]
     never.sort(key=lambda row: -row[1].total())
     return [
