@@ -156,7 +156,7 @@ def _slip(now: Happening) -> str:
     turn = float(rng.uniform(*TILT)) * (1.0 if rng.random() < 0.5 else -1.0)
     turned = Pose((0.0, 0.0, 0.0), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
     down = float(rng.uniform(*SLIP))
-    world.unbind()
+    world.detach()
 
     for share in (1.0, 0.75, 0.5, 0.25, 0.0):
         slipped = tool @ turned @ np.linalg.inv(tool) @ T

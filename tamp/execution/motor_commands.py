@@ -74,7 +74,7 @@ class Player:
         """Open the fingers at once, whatever they hold."""
         world = self._world
         body = world.bound
-        world.unbind()
+        world.detach()
         if body is not None:
             world.disable_collision(body, False)
         world.squeezing, world.opening = False, world.widest
@@ -117,7 +117,7 @@ class Player:
         lasts = max(float(segment.times[-1]), CLOSING)
         if segment.detach is not None and world.bound is not None:
             self._passing = world.bound
-            world.unbind()
+            world.detach()
         world.opening = float(segment.opening[-1])
         world.squeezing = segment.attach is not None and self._grasp == "friction"
         self._wait(lasts, watch)

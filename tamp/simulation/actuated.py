@@ -165,7 +165,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
 
     def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
-        self.unbind()
+        self.detach()
         bullet, client, handle = self._bullet, self.client, self.solids[body][0].handle
         state = bullet.getLinkState(
             self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client
@@ -183,7 +183,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
         self.bound = body
         self.disable_collision(body, True)
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """
@@ -214,7 +214,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
         """
         for name in self.scene.bodies.keys() - scene.bodies.keys():
             if self.bound == name:
-                self.unbind()
+                self.detach()
             for solid in self.solids.pop(name):
                 self._bullet.removeBody(solid.handle, physicsClientId=self.client)
         for name, body in scene.bodies.items():

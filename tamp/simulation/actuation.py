@@ -101,7 +101,7 @@ class MotorSimulation(World):
         """Fix a body to the hand where it is; the robot passes through it from now on."""
 
     @abstractmethod
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """

@@ -201,7 +201,7 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
 
     def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
-        self.unbind()
+        self.detach()
         self._refresh()
         T_world_hand = pose_of(self._data.xpos[self._hand], self._data.xquat[self._hand])
         T_hand_body = Pose.from_matrix(np.linalg.inv(T_world_hand) @ self.pose(body))
@@ -213,7 +213,7 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         self.bound = body
         self.disable_collision(body, True)
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """

@@ -51,7 +51,7 @@ class Noting:
         self.bound = body
         self.told.append(("bind", body))
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         self.told.append(("unbind", self.bound))
         self.bound = None
 

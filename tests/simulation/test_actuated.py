@@ -61,7 +61,7 @@ def test_a_bound_body_follows_the_hand_until_unbound(world: MotorSimulation) -> 
     world.conf[:3] = [0.1, 0.1, 0.5]
     world.wait(1.0)
     assert np.linalg.inv(world.tool()) @ world.pose("held") == pytest.approx(T, abs=2e-3)
-    world.unbind()
+    world.detach()
     world.disable_collision("held", False)
     world.wait(1.0)
     assert world.pose("held")[2, 3] < 0.6
