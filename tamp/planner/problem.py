@@ -13,7 +13,7 @@ from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
 from tamp.geometric.robot.robot import Robot
-from tamp.geometric.samplers.choice import Grounding, Registry, mix
+from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
@@ -237,7 +237,7 @@ def _context(files: _Files, served: Served, steering: str | None, holding: Grasp
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
     mixtures = {
-        relation: mix(relation, served.choices[relation], made)
+        relation: make_mixture(relation, served.choices[relation], made)
         for relation, made in served.generators.items()
     }
     robot = load_robot(scene.robot.model)

@@ -17,13 +17,13 @@ from tamp.verification.trajectory_sampling import Sampler
 
 Mask = NDArray[np.bool_]
 
-TOLERANCE = 0.001
+MAX_PENETRATION_M = 0.001
 """Metres of penetration that are not yet a collision."""
-DEEPER = 0.0003
+DEEPENING_M = 0.0003
 """Metres that bodies in each other at the start may get deeper: an arm's way is not straight."""
-REACH = 0.02
+CLEARANCE_RANGE_M = 0.02
 """Metres up to which clearance is measured."""
-BLOCK = 512
+SAMPLES_PER_BLOCK = 512
 """Samples that are looked at together."""
 
 
@@ -38,7 +38,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Natural:
+class ExpectedContacts:
     """Contact that belongs to grasping and standing.
 
     Attributes:
@@ -66,7 +66,7 @@ class _Block:
 
 
 @dataclass
-class Findings:
+class CollisionFindings:
     """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
 
     It ends, somewhere in the motion, when they are more than `most`.
@@ -77,8 +77,8 @@ class Findings:
     states: int = 0
     most: float = math.inf
 
-    def met(
-        self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE
+    def record(
+        self, contact: Contact, unexpected: bool, tolerance: float = MAX_PENETRATION_M
     ) -> None:
         """Take note of a contact or near miss."""
         pair = (contact.first, contact.second)
@@ -86,9 +86,7 @@ class Findings:
             pair not in self.worst or contact.distance < self.worst[pair].distance
         ):
             self.worst[pair] = contact
-        if counts_as_clearance and (
-            self.nearest is None or contact.distance < self.nearest.distance
-        ):
+        if unexpected and (self.nearest is None or contact.distance < self.nearest.distance):
             self.nearest = contact
 
     @property
@@ -99,7 +97,7 @@ class Findings:
     @property
     def margin(self) -> float:
         """Return metres beyond which a pair is of no interest."""
-        return REACH if self.nearest is None else max(0.0, self.nearest.distance)
+        return CLEARANCE_RANGE_M if self.nearest is None else max(0.0, self.nearest.distance)
 
 
 class Sweeper:
@@ -132,8 +130,8 @@ class Sweeper:
         rows: Array,
         times: Array,
         held: Held | None,
-        findings: Findings,
-        natural: Natural = Natural(),
+        findings: CollisionFindings,
+        usual: ExpectedContacts = ExpectedContacts(),
         against: frozenset[str] | None = None,
     ) -> None:
         """Look for collisions on the polyline through some states.
@@ -143,17 +141,17 @@ class Sweeper:
             times: Seconds, shape (n,).
             held: What is in the hand; it follows it.
             findings: Receives what is met.
-            natural: Nearness that is no matter of clearance, and contact that is no collision.
+            usual: Nearness that is no matter of clearance, and contact that is no collision.
             against: Look only at these bodies, and not at the robot itself.
         """
         for some, then in self._sampler.pieces(rows, times):
             if findings.full:
                 return
-            self._sweep(some, then, held, findings, natural, against)
+            self._sweep(some, then, held, findings, usual, against)
 
     def _sweep(
-        self, rows: Array, times: Array, held: Held | None, findings: Findings, natural: Natural,
-        against: frozenset[str] | None,
+        self, rows: Array, times: Array, held: Held | None, findings: CollisionFindings,
+        usual: ExpectedContacts, against: frozenset[str] | None,
     ) -> None:  # fmt: skip
         rows, times, frames = self._sampler.sampled(rows, times, held)
         findings.states += len(rows)
@@ -161,12 +159,12 @@ class Sweeper:
         moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(
             axis=1
         )  # while only the base moves, the robot keeps its shape
-        for start in range(0, len(rows), BLOCK):
-            some = slice(start, start + BLOCK)
+        for start in range(0, len(rows), SAMPLES_PER_BLOCK):
+            some = slice(start, start + SAMPLES_PER_BLOCK)
             block = _Block(
                 rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some])
             )
-            self._against_bodies(block, held, findings, natural, against)
+            self._against_bodies(block, held, findings, usual, against)
             if against is None:
                 self._against_itself(block, held, findings, moving[some])
 
@@ -174,8 +172,8 @@ class Sweeper:
         self,
         block: _Block,
         held: Held | None,
-        findings: Findings,
-        natural: Natural,
+        findings: CollisionFindings,
+        usual: ExpectedContacts,
         against: frozenset[str] | None,
     ) -> None:
         world = self._world
@@ -212,14 +210,14 @@ class Sweeper:
             far = (centres - halves)[None, None, :, axis] - high[:, :, None, axis]
             np.maximum(gaps, np.maximum(near, far), out=gaps)
         gaps[:, 0, -1] = np.inf  # the base drives on the floor
-        candidates = np.argwhere(gaps < REACH)
+        candidates = np.argwhere(gaps < CLEARANCE_RANGE_M)
         bounds = gaps[tuple(candidates.T)]
 
         current = -1
         for (state, mover, other), bound in zip(candidates.tolist(), bounds.tolist(), strict=True):
             first, second = movers[mover], others[other]
             by_hand = first.owner in self.hand
-            if bound >= findings.margin or (by_hand and second.owner in natural.touching):
+            if bound >= findings.margin or (by_hand and second.owner in usual.touching):
                 continue
 
             if state != current:
@@ -227,17 +225,16 @@ class Sweeper:
                 current = state
             distance = world.distance(first, second, findings.margin)
 
-            if distance < REACH:
-                usual = natural.grasped if by_hand else frozenset[str]()
-                expected = second.owner in (natural.resting if first.owner in carried else usual)
+            if distance < CLEARANCE_RANGE_M:
+                allowed = usual.grasped if by_hand else frozenset[str]()
+                expected = second.owner in (usual.resting if first.owner in carried else allowed)
                 contact = Contact(first.owner, second.owner, distance, float(block.times[state]))
-                tolerance = max(
-                    TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
-                )
-                findings.met(contact, not expected, tolerance)
+                together = self.together.get(_sorted(first.owner, second.owner), 0.0)
+                tolerance = max(MAX_PENETRATION_M, together + DEEPENING_M)
+                findings.record(contact, not expected, tolerance)
 
     def _against_itself(
-        self, block: _Block, held: Held | None, findings: Findings, moving: Mask
+        self, block: _Block, held: Held | None, findings: CollisionFindings, moving: Mask
     ) -> None:
         low, high = block.low, block.high
         pairs = [
@@ -266,7 +263,7 @@ class Sweeper:
             first, second = pairs[pair][:2]
             distance = self._world.distance(first, second, 0.0)
             if distance < 0:
-                findings.met(
+                findings.record(
                     Contact(first.owner, second.owner, distance, float(block.times[state])), False
                 )
 
