@@ -15,6 +15,7 @@ from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisi
 from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.reachability import Reachability
@@ -41,6 +42,7 @@ class Context:
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car,
             "differential": turning on the spot and straight ahead.
         holding: What is in the hand at the start; the scene has that body where it was before.
+        planner: Which sampling-based planner moves arm and base, one of `planners.PLANNERS`.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
         footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
@@ -52,6 +54,7 @@ class Context:
     mixtures: Mapping[str, Mixture]
     steering: str = "se2"
     holding: Grasp | None = None
+    planner: str = COMPILED
     heights: dict[tuple[int, int], float | None] = field(
         default_factory=dict[tuple[int, int], "float | None"],
     )
@@ -178,8 +181,9 @@ class Context:
             whole = bodies[body]
             bodies[body] = replace(whole, parts=(*whole.parts, *parts))
             made = Context(
-                replace(self.scene, bodies=bodies), self.robot, self.mixtures, self.steering
-            )
+                replace(self.scene, bodies=bodies), self.robot, self.mixtures, self.steering,
+                planner=self.planner,
+            )  # fmt: skip
             self._loaded[body, load] = made
         return self._loaded[body, load]
 

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.motion.checker import Checker, Limits
+from tamp.geometric.motion.compiled_planner import Moving, Shortening, connect_compiled
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.motion.result import Failure, Planned
-from tamp.geometric.motion.sampling_based import JointSpace, connect
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
@@ -18,7 +20,9 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
 CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
-REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
+REACH = 0.6  # radians, the longest edge of the trees: short ones cost little when they are blocked
+DOMAIN = 4.0  # radians that a sample may be away from where an edge was blocked
+REACH_OMPL = 0.7  # the same for OMPL's planner
 SHORTCUTS = 30
 PATIENCE = 5
 
@@ -34,6 +38,7 @@ def plan_arm(
     *,
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
+    planner: str = COMPILED,
 ) -> Planned:
     """Plan a collision-free path of the arm from `start` to one of `goals`.
 
@@ -51,6 +56,7 @@ def plan_arm(
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
         effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
         shortcuts: Random cuts to try.
+        planner: One of `planners.PLANNERS`; checkers other than an `Arrangement` get OMPL's.
 
     Returns:
         The path (m, n), beginning with `start` and ending with one of `goals`, both exactly.
@@ -87,15 +93,30 @@ def plan_arm(
         if deadline.passed:
             return Planned(None, Failure.TIME, checks)
 
-    path, asked = connect(
-        JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
-        seed=int(rng.integers(1, 2**31)), checks=CHECKS * 4**effort, deadline=deadline, reach=REACH,
-    )  # fmt: skip
+    seed, budget = int(rng.integers(1, 2**31)), CHECKS * 4**effort
+    if planner == COMPILED and isinstance(checker, Arrangement):
+        moving = Moving(3, lower, upper, np.ones(len(lower)))
+        found, asked = connect_compiled(
+            checker, moving, conf(start), np.array([conf(goal) for goal in candidates]), seed=seed,
+            checks=budget, deadline=deadline, reach=REACH, domain=DOMAIN,
+            shortening=Shortening(shortcuts, PATIENCE),
+        )  # fmt: skip
+        path = None if found is None else found[:, 3:]
+    else:
+        from tamp.geometric.motion.sampling_based import JointSpace, connect
+
+        path, asked = connect(
+            JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free, seed=seed,
+            checks=budget, deadline=deadline, reach=REACH_OMPL,
+        )  # fmt: skip
+        if path is not None:
+            path, more = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
+            asked += more
+
     checks += asked
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
 
-    path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
-    checks += asked + len(path) - 1
+    checks += len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))
     return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)

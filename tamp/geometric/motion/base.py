@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.motion.checker import Checker
+from tamp.geometric.motion.compiled_planner import Moving, connect_compiled
 from tamp.geometric.motion.differential import turn_and_drive
 from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.motion.result import Failure, Planned
-from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
@@ -27,6 +29,7 @@ WEIGHTS = np.array([1.0, 1.0, 0.5])
 
 CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 REACH = 1.0  # the longest edge of the trees, weighted metres
+DOMAIN = 10.0  # weighted metres that a sample may be away from where an edge was blocked
 SHORTCUTS = 30
 PATIENCE = 8
 CURVE_STEP = (
@@ -53,6 +56,7 @@ def plan_base(
     turning_radius: float = 0.5,
     effort: int = 1,
     shortcuts: int = SHORTCUTS,
+    planner: str = COMPILED,
 ) -> Planned:
     """Plan a collision-free path of the base from `start` to `goal`.
 
@@ -75,6 +79,8 @@ def plan_base(
         turning_radius: For "reeds-shepp", metres.
         effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
         shortcuts: Random cuts to try (not with "reeds-shepp").
+        planner: One of `planners.PLANNERS`, for "se2"; other steerings and checkers other than an
+            `Arrangement` get OMPL's.
 
     Returns:
         The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the
@@ -109,17 +115,10 @@ def plan_base(
     if steering == "se2":
         path = _simple(start, goal, room, edge_free, deadline)
         if path is None:
-            plane = PlaneSpace(room.x, room.y)
-            found, _ = connect(
-                plane,
-                start,
-                [goal],
-                edge_free,
-                seed=seed,
-                checks=budget,
-                deadline=deadline,
-                reach=REACH,
+            found, asked = _grown(
+                checker, conf(start), conf(goal), room, edge_free, planner, seed, budget, deadline
             )
+            checks += asked
             path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
 
         if path is not None and len(path) > 2:
@@ -133,13 +132,36 @@ def plan_base(
             tries=shortcuts,
         )  # fmt: skip
     else:
-        plane = PlaneSpace(room.x, room.y, turning_radius)
-        path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
+        path = _drive(turning_radius, start, goal, room, edge_free, seed, budget, deadline)
 
     if path is None:
         return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
     certified = all(edge_free(a, b) for a, b in pairwise(path))
     return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
+
+
+def _grown(
+    checker: Checker, start: Array, goal: Array, room: Room, edge_free: EdgeTest, planner: str,
+    seed: int, budget: int, deadline: Deadline,
+) -> tuple[Array | None, int]:  # fmt: skip
+    """Search a path (n, 3) between two configurations by trees; also the edges asked for that
+    `edge_free` did not count.
+    """
+    if planner == COMPILED and isinstance(checker, Arrangement):
+        lower, upper = (np.array([room.x[k], room.y[k], (2 * k - 1) * np.pi]) for k in (0, 1))
+        found, asked = connect_compiled(
+            checker, Moving(0, lower, upper, WEIGHTS, YAW[0]), start, goal[None], seed=seed,
+            checks=budget, deadline=deadline, reach=REACH, domain=DOMAIN,
+        )  # fmt: skip
+        return None if found is None else found[:, :3], asked
+
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect
+
+    found, _ = connect(
+        PlaneSpace(room.x, room.y), start[:3], [goal[:3]], edge_free, seed=seed, checks=budget,
+        deadline=deadline, reach=REACH,
+    )  # fmt: skip
+    return found, 0
 
 
 def _simple(
@@ -186,7 +208,7 @@ def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
 
 
 def _drive(
-    plane: PlaneSpace,
+    turning_radius: float,
     start: Array,
     goal: Array,
     room: Room,
@@ -196,6 +218,9 @@ def _drive(
     deadline: Deadline,
 ) -> Array | None:
     """Compute Reeds-Shepp curves from start to goal, sampled."""
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
+
+    plane = PlaneSpace(room.x, room.y, turning_radius)
 
     def sampled(a: Array, b: Array) -> Array:
         return unwrap(curve(plane, a, b, CURVE_STEP), YAW)
