@@ -64,6 +64,9 @@ class Context:
     _loaded: dict[tuple[str, Load], Context] = field(
         default_factory=dict[tuple[str, Load], "Context"],
     )
+    _boxes: dict[tuple[str, Pose], tuple[Array, Array]] = field(
+        default_factory=dict[tuple[str, Pose], "tuple[Array, Array]"],
+    )
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(
         default_factory=dict["Grasp | None", Arrangement],
@@ -140,6 +143,12 @@ class Context:
     def stable_faces(self, body: str) -> StableFaces:
         """Return the ways in which a body can rest."""
         return stable_faces_of(self.scene.bodies[body])
+
+    def box(self, body: str, pose: Pose) -> tuple[Float[Array, " 3"], Float[Array, " 3"]]:
+        """Return low and high corner, (3,) each, of the world's box around a body, metres."""
+        if (body, pose) not in self._boxes:
+            self._boxes[body, pose] = bounds(self.scene.bodies[body].parts, pose)
+        return self._boxes[body, pose]
 
     def radius(self, body: str) -> float:
         """Return the radius of a sphere around the body's frame that contains the body, metres."""
