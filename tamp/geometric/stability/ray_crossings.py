@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.geometric.scene.pose import Array
-from tamp.geometric.scene.scene import Body
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Body, Part
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass
 from tamp.geometric.stability.ray_kernels import cross_all, stretch
 
@@ -32,6 +33,18 @@ class Contact:
     end: float
     start_normal: Array
     end_normal: Array
+
+
+def solid_of(body: Body) -> Solid:
+    """Return the solid of a body, made once for all bodies, and all scenes, of one shape."""
+    return _solid_of_shape(body.parts, body.center_of_mass)
+
+
+@lru_cache(maxsize=256)
+def _solid_of_shape(
+    parts: tuple[Part, ...], center_of_mass: tuple[float, float, float] | None
+) -> Solid:
+    return Solid(Body("", parts, Pose(), movable=True, center_of_mass=center_of_mass))
 
 
 class Solid:

@@ -12,7 +12,7 @@ import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Sphere
+from tamp.geometric.scene.scene import CONTACT_GAP, Body, Part, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
 
@@ -190,6 +190,15 @@ def fits(face: Face, size: Sequence[float]) -> bool:
 
 def stable_faces(body: Body) -> list[Face]:
     """List the ways in which a body rests and withstands a tilt of STABLE, largest facets first."""
+    return list(_faces_of_shape(body.parts, body.center_of_mass))
+
+
+@lru_cache(maxsize=256)
+def _faces_of_shape(
+    parts: tuple[Part, ...], center_of_mass: tuple[float, float, float] | None
+) -> tuple[Face, ...]:
+    """Compute `stable_faces` once for all bodies, and all scenes, of one shape."""
+    body = Body("", parts, Pose(), movable=True, center_of_mass=center_of_mass)
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []
@@ -221,7 +230,7 @@ def stable_faces(body: Body) -> list[Face]:
             Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
         )
 
-    return faces
+    return tuple(faces)
 
 
 def facets(body: Body, most: int) -> list[Face] | None:

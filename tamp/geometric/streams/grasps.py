@@ -13,7 +13,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.ray_crossings import Solid
+from tamp.geometric.stability.ray_crossings import Solid, solid_of
 from tamp.geometric.streams.firmness import FAIR, FIRM, strain
 from tamp.geometric.streams.grasp_directions import (
     LEVEL,
@@ -108,7 +108,7 @@ def sample_grasps(
         free: Whether the open hand's way to T_body_tool is free where the body stands at the start;
             in a narrow place most random grasps are such.
     """
-    solid = Solid(body)
+    solid = solid_of(body)
     fit = HandFit(body, solid, robot)
     up = body.pose.rotation[2]
 
