@@ -117,9 +117,12 @@ def moves_along(start, end):
 
 @njit(**INLINE)
 def _changes(start, end, change):
-    """Compute how far each joint goes along the edge, the base as a whole; say if any moves."""
+    """Compute how far each joint goes along the edge, the base as a whole; then with their signs,
+    the base along x and y. Say if any moves.
+    """
     moves = False
     for k in range(len(start)):
+        change[len(start) + k] = end[k] - start[k]
         change[k] = abs(end[k] - start[k])
         moves = moves or change[k] > 0.0
     change[0] = math.hypot(change[0], change[1])
@@ -186,8 +189,8 @@ def scratch(parts, joints, pairs, obstacles, size, moves):
     needs less of them.
     """
     n, moved = parts.shape[0], joints.shape[0] + 1
-    numbers, rows = np.empty(2 * size + 7), np.empty((moved + 5 + 2 * n, 12))
-    reach = np.empty((n, moved + 4))
+    numbers, rows = np.empty(3 * size + 7), np.empty((moved + 5 + 2 * n, 12))
+    reach = np.empty((n, moved + 7))
     ready = np.empty(n, dtype=np.int64)
     found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
     intervals = np.empty((INTERVALS if moves else 1, 2))
@@ -217,8 +220,8 @@ def decide(start, end, padding, known, room, geometry, work):
     joints, vertices, leaves, parts, part_poses, pairs, obstacles, obstacle_poses = geometry
     numbers, rows, reach, ready, found, intervals, lists, tasks, guesses = work
     n, size, moved = parts.shape[0], len(start), joints.shape[0] + 1
-    conf, change = numbers[:size], numbers[size : 2 * size]
-    guess, weights = numbers[2 * size : 2 * size + 3], numbers[2 * size + 3 :]
+    conf, change = numbers[:size], numbers[size : 3 * size]
+    guess, weights = numbers[3 * size : 3 * size + 3], numbers[3 * size + 3 :]
     frames, s = rows[:moved], rows[moved : moved + 4]
     placed, box = rows[moved + 4 : moved + 4 + n], rows[moved + 4 + n :]
     ready[:] = 0
