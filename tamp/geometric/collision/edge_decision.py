@@ -234,7 +234,8 @@ def decide(start, end, padding, known, room, geometry, work):
         intervals[1, 0], intervals[1, 1] = 0.0, 0.0
         intervals[2, 0], intervals[2, 1] = 0.5, 0.5
 
-    count, head, tail = 0, 0, 3 if moves else 1
+    # Typed, since a literal would have what it is given to compiled twice.
+    count, head, tail = np.int64(0), np.int64(0), np.int64(3 if moves else 1)
     while head < tail:
         if head == 1 and known:
             head += 1
@@ -245,7 +246,7 @@ def decide(start, end, padding, known, room, geometry, work):
         if head < 3:
             for k in range(n):
                 place_part(k, frames, change, joints, parts, part_poses, placed, reach)
-            first = 0
+            first = np.int64(0)
             last = _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
         else:
             first, last = lists[head, 0], lists[head, 1]

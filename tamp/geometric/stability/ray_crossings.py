@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Body, Part
+from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass
 from tamp.geometric.stability.ray_kernels import cross_all, stretch
+from tamp.geometric.stability.shapes import once_a_shape
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -33,18 +33,6 @@ class Contact:
     end: float
     start_normal: Array
     end_normal: Array
-
-
-def solid_of(body: Body) -> Solid:
-    """Return the solid of a body, made once for all bodies, and all scenes, of one shape."""
-    return _solid_of_shape(body.parts, body.center_of_mass)
-
-
-@lru_cache(maxsize=256)
-def _solid_of_shape(
-    parts: tuple[Part, ...], center_of_mass: tuple[float, float, float] | None
-) -> Solid:
-    return Solid(Body("", parts, Pose(), movable=True, center_of_mass=center_of_mass))
 
 
 class Solid:
@@ -121,3 +109,9 @@ class Solid:
             origin, direction, self._normals, self._offsets, self._first, SEAM
         )
         return Contact(start, end, self._normals[first], self._normals[last]) if found else None
+
+
+@once_a_shape
+def solid_of(body: Body) -> Solid:
+    """Return the solid of a body, made once for all bodies, and all scenes, of one shape."""
+    return Solid(body)

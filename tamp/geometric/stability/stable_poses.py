@@ -12,9 +12,10 @@ import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body, Part, Sphere
+from tamp.geometric.scene.scene import CONTACT_GAP, Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
+from tamp.geometric.stability.shapes import once_a_shape
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -190,15 +191,11 @@ def fits(face: Face, size: Sequence[float]) -> bool:
 
 def stable_faces(body: Body) -> list[Face]:
     """List the ways in which a body rests and withstands a tilt of STABLE, largest facets first."""
-    return list(_faces_of_shape(body.parts, body.center_of_mass))
+    return list(_faces(body))
 
 
-@lru_cache(maxsize=256)
-def _faces_of_shape(
-    parts: tuple[Part, ...], center_of_mass: tuple[float, float, float] | None
-) -> tuple[Face, ...]:
-    """Compute `stable_faces` once for all bodies, and all scenes, of one shape."""
-    body = Body("", parts, Pose(), movable=True, center_of_mass=center_of_mass)
+@once_a_shape
+def _faces(body: Body) -> tuple[Face, ...]:
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []
