@@ -41,7 +41,7 @@ class Moving:
 
 @dataclass(frozen=True)
 class Shortening:
-    """How a path is shortened: by so many random cuts, up to so many refused ones in a row."""
+    """The effort of shortening a path: random cuts to try, up to so many refused in a row."""
 
     tries: int
     patience: int

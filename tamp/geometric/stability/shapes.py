@@ -1,4 +1,4 @@
-"""What is the same for all bodies of one shape is computed once, in whatever scene they stand."""
+"""Computations that are the same for all bodies of one shape, done once for all scenes."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def test_bodies_of_one_shape_are_looked_at_once_wherever_they_stand_and_whatever
 
 
 def test_another_scale_place_of_a_part_or_centre_of_mass_is_another_shape() -> None:
-    asked, look = _counting()
+    _, look = _counting()
     moved = replace(_tetrahedron(), parts=(Part(_tetrahedron().parts[0].shape, Pose((0.1, 0, 0))),))
     bodies = [
         _tetrahedron(), _tetrahedron(1.5), moved,
