@@ -17,6 +17,7 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, mix
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.hulls import prepare
 from tamp.geometric.values import Grasp
 from tamp.planner.initial_state import InitialState, initial_state
 from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
@@ -246,6 +247,7 @@ def _context(
     robot = load_robot(scene.robot.model)
     usual = "differential" if robot.drive == "differential" else "se2"
     context = Context(scene, robot, mixtures, steering or usual, holding, planner)
+    prepare(scene.bodies[name] for name in scene.movable)
     if robot.drive != "fixed":
         _ = context.reachability  # read now: what is damaged is told before planning
     return context

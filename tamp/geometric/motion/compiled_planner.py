@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.collision.arrangement import PADDING, Arrangement
+from tamp.geometric.motion.tree_kernel import connected
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
@@ -82,8 +83,6 @@ def connect_compiled(
         exactly one of `goals` (up to whole turns of the coordinate that wraps); or None. And the
         number of edges asked for.
     """
-    from tamp.geometric.motion.tree_kernel import connected
-
     tries, patience = (0, 0) if shortening is None else (shortening.tries, shortening.patience)
     asked, planting = 0, 0
     while asked < checks and not deadline.passed:
