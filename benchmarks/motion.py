@@ -25,7 +25,7 @@ from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.path import length
 from tamp.geometric.motion.result import MotionResult
-from tamp.geometric.motion.timing import Timed, prefetch, time_path
+from tamp.geometric.motion.timing import Timed, time_path
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
@@ -144,7 +144,6 @@ def bases(world: World, arrangement: Arrangement, rng: np.random.Generator) -> I
 def main(arguments: Arguments) -> None:
     world = load()
     rng = np.random.default_rng(arguments.seed)
-    prefetch().join()
     rows = [
         _arm(world, arguments, rng),
         *(_base(world, arguments, rng, steering) for steering in ("se2", "reeds-shepp")),

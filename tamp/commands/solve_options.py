@@ -16,6 +16,7 @@ import tyro
 
 from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
+from tamp.geometric.motion.planners import COMPILED, PLANNERS
 from tamp.system.options import Above, Between, OneOf, changed, check_rules, read_options
 
 MOST_JOBS = 256
@@ -59,6 +60,9 @@ class SceneOptions:
     ] = None
     """How the base moves: se2 (in any direction), reeds-shepp (like a car) or differential (turns
     on the spot, drives straight)."""
+    planner: Annotated[str, tyro.conf.arg(metavar="NAME"), OneOf("planner", PLANNERS)] = COMPILED
+    """How the ways of arm and base are searched: compiled (RRT-Connect over the compiled collision
+    kernel) or ompl (OMPL's RRTConnect, the reference)."""
     robot: Annotated[
         str | None,
         tyro.conf.arg(metavar="ROBOT", help_behavior_hint="(default: the problem's)"),

@@ -78,6 +78,7 @@ def load(request: Request) -> Loaded:
         groundings=groundings,
         registry=request.registry,
         steering=options.scene.steering,
+        planner=options.scene.planner,
         robot=options.scene.robot,
     )
     shown.begin("loading")

@@ -16,6 +16,7 @@ from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.reachability import Reachability
@@ -42,6 +43,7 @@ class Context:
         steering: How the base moves: "se2" in any direction, "reeds-shepp" like a car,
             "differential": turning on the spot and straight ahead.
         holding: What is in the hand at the start; the scene has that body where it was before.
+        planner: Which sampling-based planner moves arm and base, one of `planners.PLANNERS`.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
         footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
@@ -53,6 +55,7 @@ class Context:
     mixtures: Mapping[str, Mixture]
     steering: str = "se2"
     holding: Grasp | None = None
+    planner: str = COMPILED
     heights: dict[tuple[int, int], float | None] = field(
         default_factory=dict[tuple[int, int], "float | None"],
     )
@@ -61,6 +64,9 @@ class Context:
     )
     _loaded: dict[tuple[str, Load], Context] = field(
         default_factory=dict[tuple[str, Load], "Context"],
+    )
+    _boxes: dict[tuple[str, Pose], tuple[Array, Array]] = field(
+        default_factory=dict[tuple[str, Pose], "tuple[Array, Array]"],
     )
     _radii: dict[str, float] = field(default_factory=dict[str, float])
     _fixed_only: dict[Grasp | None, Arrangement] = field(
@@ -139,6 +145,12 @@ class Context:
         """Return the ways in which a body can rest."""
         return stable_faces_of(self.scene.bodies[body])
 
+    def box(self, body: str, pose: Pose) -> tuple[Float[Array, " 3"], Float[Array, " 3"]]:
+        """Return low and high corner, (3,) each, of the world's box around a body, metres."""
+        if (body, pose) not in self._boxes:
+            self._boxes[body, pose] = bounds(self.scene.bodies[body].parts, pose)
+        return self._boxes[body, pose]
+
     def radius(self, body: str) -> float:
         """Return the radius of a sphere around the body's frame that contains the body, metres."""
         if body not in self._radii:
@@ -179,8 +191,9 @@ class Context:
             whole = bodies[body]
             bodies[body] = replace(whole, parts=(*whole.parts, *parts))
             made = Context(
-                replace(self.scene, bodies=bodies), self.robot, self.mixtures, self.steering
-            )
+                replace(self.scene, bodies=bodies), self.robot, self.mixtures, self.steering,
+                planner=self.planner,
+            )  # fmt: skip
             self._loaded[body, load] = made
         return self._loaded[body, load]
 

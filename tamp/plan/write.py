@@ -19,7 +19,7 @@ from tamp.planner.timed_trajectories import Segment
 from tamp.system.distribution import distribution_version
 from tamp.system.outputs import write_whole
 
-PACKAGES = ("numpy", "numba", "ompl", "python-fcl", "pin", "EAIK", "toppra")
+PACKAGES = ("numpy", "numba", "ompl", "python-fcl", "pin", "EAIK")
 """Those whose versions can change a plan."""
 
 DIGITS = 9

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -64,8 +63,6 @@ def solve_parallel(
     if jobs == 1:
         return _planned(settings, seed, algorithm, max_time, progress, improved)
 
-    # No fork while a thread is importing it.
-    importlib.import_module("tamp.geometric.motion.parametrization")
     prepare_loops()
     best = _Best(settings, progress, improved)
     members = [partial(_member, settings, deadline, number) for number in range(jobs)]

@@ -12,10 +12,12 @@ from tamp.geometric.context import Context
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
+from tamp.geometric.motion.planners import COMPILED, PLANNERS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
+from tamp.geometric.stability.hulls import prepare
 from tamp.geometric.values import Grasp
 from tamp.planner.initial_state import InitialState, initial_state
 from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
@@ -82,6 +84,7 @@ def load_problem(
     registry: Registry | None = None,
     functions: Mapping[str, Callable[..., Any]] | None = None,
     steering: str | None = None,
+    planner: str = COMPILED,
     robot: str | Path | None = None,
     scene: Scene | None = None,
     holding: Grasp | None = None,
@@ -106,6 +109,8 @@ def load_problem(
             compute costs, f(context, *inputs).
         steering: How the base moves: "se2", "reeds-shepp" or "differential"; by default as the
             robot drives.
+        planner: How the ways of arm and base are searched: "compiled" (RRT-Connect over the
+            compiled collision kernel) or "ompl" (OMPL's RRTConnect, the reference).
         robot: A shipped robot's name or a robot's folder, instead of the one that the file names.
         scene: Where things are by now, instead of where the file has them; and what is in the hand
             by now, `holding`.
@@ -115,13 +120,15 @@ def load_problem(
     """
     if steering is not None and steering not in STEERINGS:
         raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
+    if planner not in PLANNERS:
+        raise InputError(f"unknown planner '{planner}'", found=planner, choices=PLANNERS)
     load_compiled_loops()  # numba is loaded anyway
 
     files = _read(problem, domain, streams, scene, None if robot is None else str(robot))
     start, goal = _task(files, holding)
 
     served = Served.of(files.loaded, samplers or {}, groundings or {}, registry or {})
-    context = _context(files, served, steering, holding)
+    context = _context(files, served, steering, planner, holding)
     if scene is None:  # what is seen may touch
         check_overlaps(files.loaded)
     _check_start(files.loaded, context)
@@ -233,7 +240,9 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
     return start, goal
 
 
-def _context(files: _Files, served: Served, steering: str | None, holding: Grasp | None) -> Context:
+def _context(
+    files: _Files, served: Served, steering: str | None, planner: str, holding: Grasp | None
+) -> Context:
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
     mixtures = {
@@ -242,7 +251,8 @@ def _context(files: _Files, served: Served, steering: str | None, holding: Grasp
     }
     robot = load_robot(scene.robot.model)
     usual = "differential" if robot.drive == "differential" else "se2"
-    context = Context(scene, robot, mixtures, steering or usual, holding)
+    context = Context(scene, robot, mixtures, steering or usual, holding, planner)
+    prepare(scene.bodies[name] for name in scene.movable)
     if robot.drive != "fixed":
         _ = context.reachability  # read now: what is damaged is told before planning
     return context

@@ -70,11 +70,14 @@ class Arrangement:
     Args:
         tables: What the kernels read.
         exact: FCL on the same parts.
+
+    Attributes:
+        packed: The tables as one vector, as compiled code takes them.
     """
 
     def __init__(self, tables: Tables, exact: ExactPairs) -> None:
         self.tables = tables
-        self._packed = tables.packed()
+        self.packed = tables.packed()
         self.stats = Statistics()
         self._exact = exact
 
@@ -82,11 +85,11 @@ class Arrangement:
         """Check whether everything is at least TRANSIT_CLEARANCE_M apart at `conf`."""
         self.stats.states += 1
         try:
-            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self._packed) & 3
+            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self.packed) & 3
         except TypeError:
             # A list, or not in C order; converting always would cost a tenth of the check.
             conf = np.ascontiguousarray(conf, dtype=np.float64)
-            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self._packed) & 3
+            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self.packed) & 3
         if code != UNDECIDED:
             return code == FREE
         self.stats.states_undecided += 1
@@ -102,7 +105,7 @@ class Arrangement:
         start = np.ascontiguousarray(start, dtype=np.float64)
         end = np.ascontiguousarray(end, dtype=np.float64)
         self.stats.edges += 1
-        code = check_edge(start, end, TRANSIT_CLEARANCE_M, self._packed) & 3
+        code = check_edge(start, end, TRANSIT_CLEARANCE_M, self.packed) & 3
         if code != UNDECIDED:
             return code == FREE
         self.stats.edges_undecided += 1
@@ -113,7 +116,7 @@ class Arrangement:
         if depth == 0 or not self.free(middle):
             return False
         for a, b in ((start, middle), (middle, end)):
-            code = check_edge(a, b, TRANSIT_CLEARANCE_M, self._packed) & 3
+            code = check_edge(a, b, TRANSIT_CLEARANCE_M, self.packed) & 3
             if code != FREE and (code != UNDECIDED or not self._halves_free(a, b, depth - 1)):
                 return False
         return True
@@ -126,7 +129,7 @@ class Arrangement:
         "floor" or "room".
         """
         conf = np.ascontiguousarray(conf, dtype=np.float64)
-        answer = check_edge(conf, conf, max(padding, _TOUCHING_PADDING_M), self._packed)
+        answer = check_edge(conf, conf, max(padding, _TOUCHING_PADDING_M), self.packed)
         code = answer & 3
         if code == UNDECIDED:
             return self._scan(conf, padding)
@@ -143,7 +146,7 @@ class Arrangement:
         if len(path) == 1:
             return self.hits(path[0], padding)
         for start, end in pairwise(path):
-            if check_edge(start, end, max(2 * padding, _TIGHT_PADDING_M), self._packed) & 3 == FREE:
+            if check_edge(start, end, max(2 * padding, _TIGHT_PADDING_M), self.packed) & 3 == FREE:
                 continue
             count = max(1, math.ceil(self._motion(start, end) / step))
             for k in range(count + 1):

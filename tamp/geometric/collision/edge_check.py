@@ -1,8 +1,7 @@
-"""The compiled decision over a whole edge; see kernels.py for the proof."""
+"""The compiled decision over a whole edge, as Python calls it; see kernels.py for the proof."""
 
 from __future__ import annotations
 
-import math
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -10,50 +9,13 @@ from pathlib import Path
 import numpy as np
 from numba import types
 
-from tamp.geometric.collision.gjk import APART, CLOSE, INLINE, JIT
-from tamp.geometric.collision.kernels import (
-    FLOOR,
-    FREE,
-    HIT,
-    INTERVALS,
-    ROOM,
-    SELF,
-    TASKS,
-    UNDECIDED,
-    check,
-    demand,
-    spheres_apart,
-)
-from tamp.geometric.collision.placing import place_frames, place_part
-from tamp.geometric.collision.tables import HIGH, LOW, ON_FLOOR, SIZE
+from tamp.geometric.collision.edge_decision import decide, moves_along, pair_of, scratch
+from tamp.geometric.collision.gjk import INLINE, JIT
+from tamp.geometric.collision.kernels import UNDECIDED
 from tamp.geometric.scene.pose import Array
 from tamp.system.compilation import njit
 
-
-@njit(**INLINE)
-def encode_result(code, part, other):
-    """Pack a code and the pair that it rests on into one integer; `pair_of` reads it."""
-    return code | part << 2 | (other + 4096) << 14
-
-
-def pair_of(result: int) -> tuple[int, int]:
-    """Return the robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other
-    part.
-    """
-    return result >> 2 & 4095, (result >> 14) - 4096
-
-
-@njit(**INLINE)
-def _box(i, margin, parts, placed, reach, box):
-    """Compute the world box around robot part i, grown by `margin`: box[0:3] low, box[3:6] high."""
-    for r in range(3):
-        half = (
-            abs(placed[i, 3 * r]) * parts[i, SIZE]
-            + abs(placed[i, 3 * r + 1]) * parts[i, SIZE + 1]
-            + abs(placed[i, 3 * r + 2]) * parts[i, SIZE + 2]
-            + margin
-        )
-        box[i, r], box[i, 3 + r] = reach[i, r] - half, reach[i, r] + half
+__all__ = ["check_edge", "geometry_of", "pair_of", "sources_digest", "unpack"]
 
 
 @njit(**{**JIT, "_nrt": True})
@@ -67,186 +29,24 @@ def unpack(packed, index):
     return packed[start : start + rows * columns].reshape((rows, columns))
 
 
-@njit(**INLINE)
-def _overlap(box, i, obstacles, j):
+@njit(**{**INLINE, "_nrt": True})
+def geometry_of(packed):
+    """Return all tables of `Tables.packed` after the room's, in their order."""
     return (
-        obstacles[j, LOW] <= box[i, 3] and obstacles[j, HIGH] >= box[i, 0]
-        and obstacles[j, LOW + 1] <= box[i, 4] and obstacles[j, HIGH + 1] >= box[i, 1]
-        and obstacles[j, LOW + 2] <= box[i, 5] and obstacles[j, HIGH + 2] >= box[i, 2]
+        unpack(packed, np.int64(1)), unpack(packed, np.int64(2)), unpack(packed, np.int64(3)),
+        unpack(packed, np.int64(4)), unpack(packed, np.int64(5)), unpack(packed, np.int64(6)),
+        unpack(packed, np.int64(7)), unpack(packed, np.int64(8)),
     )  # fmt: skip
 
 
-@njit(**JIT)
-def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found):
-    """Find all pairs whose bounding spheres or boxes, grown by what the pair needs, overlap (broad
-    phase): rows (part, other) of `found`.
-
-    All parts are placed. The last row of `box` is the box around the whole robot.
-    """
-    n, count = parts.shape[0], 0
-    for r in range(3):
-        box[n, r], box[n, 3 + r] = math.inf, -math.inf
-
-    for i in range(n):
-        _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
-        for r in range(3):
-            box[n, r], box[n, 3 + r] = min(box[n, r], box[i, r]), max(box[n, 3 + r], box[i, 3 + r])
-        if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
-            found[count, 0], found[count, 1] = i, FLOOR
-            count += 1
-
-    for p in range(pairs.shape[0]):
-        i, k = int(pairs[p, 0]), int(pairs[p, 1])
-        if not spheres_apart(i, k, demand(i, SELF - k, half, padding, parts, reach), parts, reach):
-            found[count, 0], found[count, 1] = i, SELF - k
-            count += 1
-
-    for j in range(obstacles.shape[0]):
-        if _overlap(box, n, obstacles, j):
-            for i in range(n):
-                if _overlap(box, i, obstacles, j):
-                    found[count, 0], found[count, 1] = i, j
-                    count += 1
-
-    return count
-
-
-@njit(**INLINE)
-def _leaves_the_room(start, end, room):
-    """Check whether the base is outside of the room at one of the ends."""
-    for conf in (start, end):
-        if not (room[0] <= conf[0] <= room[1] and room[2] <= conf[1] <= room[3]):
-            return True
-    return False
-
-
-@njit(**INLINE)
-def _changes(start, end, change):
-    """Compute how far each joint goes along the edge, the base as a whole; say if any moves."""
-    moves = False
-    for k in range(len(start)):
-        change[k] = abs(end[k] - start[k])
-        moves = moves or change[k] > 0.0
-    change[0] = math.hypot(change[0], change[1])
-    return moves
-
-
-@njit(**INLINE)
-def _halve(head, tail, first, last, intervals, lists):
-    """Append the halves of an interval; each has the tasks first..last-1 to decide."""
-    for side in (-0.5, 0.5):
-        intervals[tail, 0] = intervals[head, 0] + side * intervals[head, 1]
-        intervals[tail, 1] = 0.5 * intervals[head, 1]
-        lists[tail, 0], lists[tail, 1] = first, last
-        tail += 1
-
-
-@njit(**INLINE)
-def _decide_pairs(
-    head, first, last, count, half, padding, frames, change, joints, parts, part_poses, placed,
-    reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks, guesses, guess, s,
-    weights,
-):  # fmt: skip
-    """Decide the pairs first..last-1 of interval `head` at its middle, where the frames are.
-
-    Those that remain open are appended to `tasks`. Returns FREE and the number of tasks then, or
-    how the edge ends and the number so far.
-    """
-    fresh = head < 3
-    for t in range(first, last):
-        if fresh:
-            i, other = found[t, 0], found[t, 1]
-            guess[0] = guess[1] = guess[2] = 0.0
-        else:
-            i, other = tasks[t, 0], tasks[t, 1]
-            guess[0], guess[1], guess[2] = guesses[t, 0], guesses[t, 1], guesses[t, 2]
-            for p in (i, SELF - other):
-                if p >= 0 and ready[p] != head:
-                    place_part(p, frames, change, joints, parts, part_poses, placed, reach)
-                    ready[p] = head
-
-        far = demand(i, other, half, padding, parts, reach)
-        answer = check(
-            i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
-            vertices, leaves, guess, s, weights,
-        )  # fmt: skip
-        if answer == APART:
-            continue
-        if answer == CLOSE:
-            return encode_result(np.int64(HIT), i, other), count
-        if far <= padding or count == TASKS:
-            return encode_result(np.int64(UNDECIDED), i, other), count
-
-        tasks[count, 0], tasks[count, 1] = i, other
-        guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
-        count += 1
-    return np.int64(FREE), count
-
-
 @njit(**{**JIT, "_nrt": True, "inline": "always"})
-def _decided(start, end, padding, tables):
-    """Decide an edge, interval by interval; see kernels.py."""
-    if _leaves_the_room(start, end, unpack(tables, np.int64(0))[0]):
-        return encode_result(np.int64(HIT), np.int64(0), np.int64(ROOM))
-    joints, vertices = unpack(tables, np.int64(1)), unpack(tables, np.int64(2))
-    leaves, parts = unpack(tables, np.int64(3)), unpack(tables, np.int64(4))
-    part_poses, pairs = unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
-    obstacles, obstacle_poses = unpack(tables, np.int64(7)), unpack(tables, np.int64(8))
-    n = parts.shape[0]
-
-    # A few allocations, cut into pieces: each costs as much as a pair.
-    size, moved = len(start), joints.shape[0] + 1
-    numbers, rows = np.empty(2 * size + 7), np.empty((moved + 5 + 2 * n, 12))
-    conf, change = numbers[:size], numbers[size : 2 * size]
-    guess, weights = numbers[2 * size : 2 * size + 3], numbers[2 * size + 3 :]
-    frames, s = rows[:moved], rows[moved : moved + 4]
-    placed, box = rows[moved + 4 : moved + 4 + n], rows[moved + 4 + n :]
-    reach = np.empty((n, moved + 4))
-    ready = np.zeros(n, dtype=np.int64)
-    found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
-
-    # Each interval: middle, half length, and the rows of `tasks` that it has to decide. The
-    # first three, the ends (of no length) and the whole, find theirs themselves.
-    moves = _changes(start, end, change)
-    intervals = np.empty((INTERVALS if moves else 1, 2))
-    lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
-    tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
-    guesses = np.empty((TASKS if moves else 0, 3))
-    intervals[0, 0], intervals[0, 1] = 1.0, 0.0
-    if moves:
-        intervals[1, 0], intervals[1, 1] = 0.0, 0.0
-        intervals[2, 0], intervals[2, 1] = 0.5, 0.5
-
-    # Typed, since a literal would have what it is given to compiled twice.
-    count, head, tail = np.int64(0), np.int64(0), np.int64(3 if moves else 1)
-    while head < tail:
-        middle, half = intervals[head, 0], intervals[head, 1]
-        for k in range(size):
-            conf[k] = start[k] + middle * (end[k] - start[k])
-        place_frames(conf, joints, frames)
-        if head < 3:
-            for k in range(n):
-                place_part(k, frames, change, joints, parts, part_poses, placed, reach)
-            first = np.int64(0)
-            last = _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, found)
-        else:
-            first, last = lists[head, 0], lists[head, 1]
-
-        before = count
-        answer, count = _decide_pairs(
-            head, first, last, count, half, padding, frames, change, joints, parts, part_poses,
-            placed, reach, ready, obstacles, obstacle_poses, vertices, leaves, found, tasks,
-            guesses, guess, s, weights,
-        )  # fmt: skip
-        if answer != FREE:
-            return answer
-        if count > before:
-            if tail + 2 > INTERVALS:
-                return encode_result(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
-            _halve(head, tail, before, count, intervals, lists)
-            tail += 2
-        head += 1
-    return np.int64(FREE)
+def _decided(start, end, padding, packed):
+    """Decide an edge; see `decide`."""
+    geometry = geometry_of(packed)
+    joints, parts, pairs, obstacles = geometry[0], geometry[3], geometry[5], geometry[6]
+    work = scratch(parts, joints, pairs, obstacles, len(start), moves_along(start, end))
+    room = unpack(packed, np.int64(0))[0]
+    return decide(start, end, padding, False, room, geometry, work)
 
 
 def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
@@ -260,22 +60,23 @@ def _compiled(sources: int) -> Callable[[Array, Array, float, Array], int]:
     signature = types.int64(conf, conf, types.float64, vector)
 
     @njit(signature, cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)
-    def decide(start, end, padding, tables):
+    def decided(start, end, padding, tables):
         if sources < 0:  # never: so that the number is a part of what is compiled
             return np.int64(UNDECIDED)
         return _decided(start, end, padding, tables)
 
-    return decide  # pyright: ignore[reportReturnType]  # a numba dispatcher
+    return decided  # pyright: ignore[reportReturnType]  # a numba dispatcher
+
+
+_SOURCES = ("tables", "gjk", "placing", "kernels", "edge_decision", "edge_check")
+"""What the kernel is compiled from."""
 
 
 def sources_digest() -> int:
     """Return a number that changes with any file that the kernel is compiled from; numba itself
     looks at one file only.
     """
-    files = (
-        Path(__file__).parent / f"{name}.py"
-        for name in ("tables", "gjk", "placing", "kernels", "edge_check")
-    )
+    files = (Path(__file__).parent / f"{name}.py" for name in _SOURCES)
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 

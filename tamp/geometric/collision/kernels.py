@@ -12,6 +12,14 @@ so |T(s) p - T(m) p| <= sum_j |q_j(s) - q_j(m)| rho_j, with rho_j the distance o
 at the middle m, from axis j (1 for a translation), bounded by the part's bounding sphere. Steps may
 have any length; for two parts of the robot only the joints between them count.
 
+For a body that stands still there is a second bound, which is better in short intervals: with
+p' = sum_j q_j' J_j at the middle and p'' = sum_j q_j' (2 sum_(i<j) q_i' a_i + q_j' a_j) x J_j (a_j
+the axes of joints that turn, J_j = a_j x (p - o_j), or a_j of one that slides), by Taylor
+    |T(s) p - T(m) p| <= h |p'| + h^2 / 2 max |p''|,
+where |p'| is at most that of the sphere's centre and its radius times the angular velocity (SPEED),
+and |J_j| in the interval at most rho_j + h times the first bound, so that |p''| <= BEND + h * first
+bound * TURN^2, with BEND from the rho_j at the middle and TURN the sum of the |q_j'| that turn.
+
 With distance d at the middle, half the interval's motion h and padding p, d >= max(p, h + p / 2)
 proves that the pair stays p / 2 apart in the whole interval, and d < p rejects the edge: a pair
 whose motion in the interval is below p is always decided.
@@ -239,7 +247,10 @@ def demand(i, other, half, padding, parts, reach):
         low, high = int(parts[a, FRAME]), int(parts[b, FRAME])
         motion = reach[b, 3 + high] - reach[b, 3 + low]
     else:
-        motion = reach[i, reach.shape[1] - 1]
+        last = reach.shape[1] - 1
+        motion, turn = reach[i, last], reach[i, last - 1]
+        bend = reach[i, last - 2] + half * motion * turn * turn
+        motion = min(motion, reach[i, last - 3] + 0.5 * half * bend)
     return max(padding, half * motion + 0.5 * padding)
 
 

@@ -42,7 +42,9 @@ def place_frames(conf, joints, frames):
 def place_part(i, frames, change, joints, parts, part_poses, placed, reach):
     """Place part i in the world; reach[i] gets its centre (0..2) and its motion per unit of edge.
 
-    reach[i, 3 + k]: at most by joints 1..k, k = 0..n; its last: with the base's motion too.
+    reach[i, 3 + k]: at most by joints 1..k, k = 0..n; then SPEED, BEND and TURN (see kernels.py);
+    its last: at most with the base's motion too. `change` has magnitudes first, then signed
+    changes.
     """
     frame = int(parts[i, FRAME])
     _compose(frames, frame, part_poses, i, placed, i)
@@ -50,18 +52,40 @@ def place_part(i, frames, change, joints, parts, part_poses, placed, reach):
     x, y, z = centre(parts, i, placed)
     reach[i, 0], reach[i, 1], reach[i, 2] = x, y, z
     radius = parts[i, RADIUS]
+    last, size = reach.shape[1] - 1, len(change) // 2
     total = 0.0
     reach[i, 3] = 0.0
+    # Of the centre's velocity, of the angular velocity, and of the bound of the acceleration.
+    vx, vy, vz = change[size], change[size + 1], 0.0
+    wx, wy, wz = 0.0, 0.0, change[size + 2]
+    bend, turned = 0.0, change[2]
+    if change[2] > 0.0:
+        dx, dy = x - frames[0, 9], y - frames[0, 10]
+        lever = change[2] * (math.sqrt(dx * dx + dy * dy) + radius)
+        vx, vy = vx - wz * dy, vy + wz * dx
+        bend = lever * change[2]
     for j in range(1, frame + 1):
         if change[2 + j] > 0.0 and joints[j - 1, SLIDES] > 0.0:
+            step = change[size + 2 + j]
+            vx, vy = vx + step * frames[j, 2], vy + step * frames[j, 5]
+            vz += step * frames[j, 8]
             total += change[2 + j]
+            bend += change[2 + j] * 2.0 * turned
         elif change[2 + j] > 0.0:
             ax, ay, az = frames[j, 2], frames[j, 5], frames[j, 8]
             dx, dy, dz = x - frames[j, 9], y - frames[j, 10], z - frames[j, 11]
             cx, cy, cz = ay * dz - az * dy, az * dx - ax * dz, ax * dy - ay * dx
-            total += change[2 + j] * (math.sqrt(cx * cx + cy * cy + cz * cz) + radius)
+            lever = change[2 + j] * (math.sqrt(cx * cx + cy * cy + cz * cz) + radius)
+            total += lever
+            step = change[size + 2 + j]
+            vx, vy, vz = vx + step * cx, vy + step * cy, vz + step * cz
+            wx, wy, wz = wx + step * ax, wy + step * ay, wz + step * az
+            bend += lever * (2.0 * turned + change[2 + j])
+            turned += change[2 + j]
         reach[i, 3 + j] = total
     if change[2] > 0.0:
         dx, dy = x - frames[0, 9], y - frames[0, 10]
         total += change[2] * (math.sqrt(dx * dx + dy * dy) + radius)
-    reach[i, reach.shape[1] - 1] = total + change[0]
+    speed = math.sqrt(vx * vx + vy * vy + vz * vz) + radius * math.sqrt(wx * wx + wy * wy + wz * wz)
+    reach[i, last - 3], reach[i, last - 2], reach[i, last - 1] = speed, bend, turned
+    reach[i, last] = total + change[0]

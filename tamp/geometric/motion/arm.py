@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.motion.checker import Checker, Limits
+from tamp.geometric.motion.compiled_planner import Moving, Shortening, connect_compiled
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.motion.result import Failure, MotionResult
-from tamp.geometric.motion.sampling_based import JointSpace, connect
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
@@ -21,8 +23,10 @@ MAX_EDGE_CHECKS = (
     250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 )
 MAX_EDGE_RAD = (
-    0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
+    0.6  # radians, the longest edge of the trees: short ones cost little when they are blocked
 )
+DOMAIN = 4.0  # radians that a sample may be away from where an edge was blocked
+REACH_OMPL = 0.7  # the same for OMPL's planner
 SHORTCUT_TRIES = 30
 SHORTCUT_PATIENCE = 5
 
@@ -38,6 +42,7 @@ def plan_arm(
     *,
     effort: int = 1,
     shortcuts: int = SHORTCUT_TRIES,
+    planner: str = COMPILED,
 ) -> MotionResult:
     """Plan a collision-free path of the arm from `start` to one of `goals`.
 
@@ -55,6 +60,7 @@ def plan_arm(
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
         effort: 0, 1, 2, ...: RRTConnect may check MAX_EDGE_CHECKS * 4**effort edges.
         shortcuts: Random cuts to try.
+        planner: One of `planners.PLANNERS`; checkers other than an `Arrangement` get OMPL's.
 
     Returns:
         The path (m, n), beginning with `start` and ending with one of `goals`, both exactly.
@@ -91,17 +97,31 @@ def plan_arm(
         if deadline.passed:
             return MotionResult(None, Failure.TIME, checks)
 
-    path, asked = connect(
-        JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
-        seed=int(rng.integers(1, 2**31)), checks=MAX_EDGE_CHECKS * 4**effort,
-        deadline=deadline, reach=MAX_EDGE_RAD,
-    )  # fmt: skip
+    seed, budget = int(rng.integers(1, 2**31)), MAX_EDGE_CHECKS * 4**effort
+    if planner == COMPILED and isinstance(checker, Arrangement):
+        moving = Moving(3, lower, upper, np.ones(len(lower)))
+        found, asked = connect_compiled(
+            checker, moving, conf(start), np.array([conf(goal) for goal in candidates]), seed=seed,
+            checks=budget, deadline=deadline, reach=MAX_EDGE_RAD, domain=DOMAIN,
+            shortening=Shortening(shortcuts, SHORTCUT_PATIENCE),
+        )  # fmt: skip
+        path = None if found is None else found[:, 3:]
+    else:
+        from tamp.geometric.motion.sampling_based import JointSpace, connect
+
+        path, asked = connect(
+            JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free, seed=seed,
+            checks=budget, deadline=deadline, reach=REACH_OMPL,
+        )  # fmt: skip
+        if path is not None:
+            path, more = shortcut(path, edge_free, rng, tries=shortcuts, patience=SHORTCUT_PATIENCE)
+            asked += more
+
     checks += asked
     if path is None:
         return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
 
-    path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=SHORTCUT_PATIENCE)
-    checks += asked + len(path) - 1
+    checks += len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))
     return (
         MotionResult(path, None, checks)

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.motion.checker import Checker
+from tamp.geometric.motion.compiled_planner import Moving, connect_compiled
 from tamp.geometric.motion.differential import turn_and_drive
 from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
+from tamp.geometric.motion.planners import COMPILED
 from tamp.geometric.motion.result import Failure, MotionResult
-from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
@@ -29,6 +31,7 @@ MAX_EDGE_CHECKS = (
     200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
 )
 MAX_EDGE_M = 1.0  # the longest edge of the trees, weighted metres
+DOMAIN = 10.0  # weighted metres that a sample may be away from where an edge was blocked
 SHORTCUT_TRIES = 30
 SHORTCUT_PATIENCE = 8
 CURVE_STEP = (
@@ -55,6 +58,7 @@ def plan_base(
     turning_radius: float = 0.5,
     effort: int = 1,
     shortcuts: int = SHORTCUT_TRIES,
+    planner: str = COMPILED,
 ) -> MotionResult:
     """Plan a collision-free path of the base from `start` to `goal`.
 
@@ -77,6 +81,8 @@ def plan_base(
         turning_radius: For "reeds-shepp", metres.
         effort: 0, 1, 2, ...: RRTConnect may check MAX_EDGE_CHECKS * 4**effort edges.
         shortcuts: Random cuts to try (not with "reeds-shepp").
+        planner: One of `planners.PLANNERS`, for "se2"; other steerings and checkers other than an
+            `Arrangement` get OMPL's.
 
     Returns:
         The path (n, 3) from exactly `start`; its last row is `goal`, the yaw up to whole turns; the
@@ -111,13 +117,15 @@ def plan_base(
     if steering == "se2":
         path = _simple(start, goal, room, edge_free, deadline)
         if path is None:
-            plane = PlaneSpace(room.x, room.y)
-            found, _ = connect(
-                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline,
-                reach=MAX_EDGE_M,
-            )  # fmt: skip
-            if found is not None:
-                path = unwrap(np.array([start, *found[1:-1], goal]), YAW_COLUMNS)
+            found, asked = _grown(
+                checker, conf(start), conf(goal), room, edge_free, planner, seed, budget, deadline
+            )
+            checks += asked
+            path = (
+                None
+                if found is None
+                else unwrap(np.array([start, *found[1:-1], goal]), YAW_COLUMNS)
+            )
 
         if path is not None and len(path) > 2:
             path, _ = shortcut(
@@ -131,8 +139,7 @@ def plan_base(
             tries=shortcuts,
         )  # fmt: skip
     else:
-        plane = PlaneSpace(room.x, room.y, turning_radius)
-        path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
+        path = _drive(turning_radius, start, goal, room, edge_free, seed, budget, deadline)
 
     if path is None:
         return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
@@ -142,6 +149,30 @@ def plan_base(
         if certified
         else MotionResult(None, Failure.EXHAUSTED, checks)
     )
+
+
+def _grown(
+    checker: Checker, start: Array, goal: Array, room: Room, edge_free: EdgeTest, planner: str,
+    seed: int, budget: int, deadline: Deadline,
+) -> tuple[Array | None, int]:  # fmt: skip
+    """Search a path (n, 3) between two configurations by trees; also the edges asked for that
+    `edge_free` did not count.
+    """
+    if planner == COMPILED and isinstance(checker, Arrangement):
+        lower, upper = (np.array([room.x[k], room.y[k], (2 * k - 1) * np.pi]) for k in (0, 1))
+        found, asked = connect_compiled(
+            checker, Moving(0, lower, upper, DISTANCE_WEIGHTS, YAW_COLUMNS[0]), start, goal[None],
+            seed=seed, checks=budget, deadline=deadline, reach=MAX_EDGE_M, domain=DOMAIN,
+        )  # fmt: skip
+        return None if found is None else found[:, :3], asked
+
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect
+
+    found, _ = connect(
+        PlaneSpace(room.x, room.y), start[:3], [goal[:3]], edge_free, seed=seed, checks=budget,
+        deadline=deadline, reach=MAX_EDGE_M,
+    )  # fmt: skip
+    return found, 0
 
 
 def _simple(
@@ -188,7 +219,7 @@ def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
 
 
 def _drive(
-    plane: PlaneSpace,
+    turning_radius: float,
     start: Array,
     goal: Array,
     room: Room,
@@ -198,6 +229,9 @@ def _drive(
     deadline: Deadline,
 ) -> Array | None:
     """Compute Reeds-Shepp curves from start to goal, sampled."""
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
+
+    plane = PlaneSpace(room.x, room.y, turning_radius)
 
     def sampled(a: Array, b: Array) -> Array:
         return unwrap(curve(plane, a, b, CURVE_STEP), YAW_COLUMNS)

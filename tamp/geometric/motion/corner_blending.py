@@ -8,6 +8,7 @@ fast each node may be passed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -230,12 +231,13 @@ def _straight(
     """Return the part of an edge that belongs to neither corner, with nodes at both ends."""
     u, zero = first.after, np.zeros_like(first.after)
     begin, end = first.blend_length, extent - last.blend_length
-    parts = int(np.clip(np.ceil((end - begin) / STEP), 1, MOST))
-    for i, offset in enumerate(np.linspace(begin, end, parts + 1)):
+    parts, max_derivative = min(max(math.ceil((end - begin) / STEP), 1), MOST), np.abs(u)
+    for i in range(parts + 1):
+        offset = end if i == parts else begin + i * ((end - begin) / parts)
         at_end = i == parts and not last.blend_length
         position = last.vertex if at_end else first.vertex + offset * u
         bends = (first.bend if i == 0 else zero, last.bend if i == parts else zero)
-        yield position, station + offset, u, np.abs(u), *bends, edge
+        yield position, station + offset, u, max_derivative, *bends, edge
 
 
 def _covered(first: Corner, last: Corner, extent: float) -> bool:

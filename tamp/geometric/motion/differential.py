@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.motion.path import nearest, unwrap
-from tamp.geometric.motion.sampling_based import PlaneSpace, connect
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
@@ -66,6 +65,8 @@ def turn_and_drive(
         found = _through([start, *via, goal], legs)
         if found is not None:
             return found
+
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect
 
     plane = PlaneSpace(room.x, room.y)
     tree, _ = connect(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,6 +11,7 @@ import numpy as np
 
 from tamp.geometric.motion.corner_blending import TICK, BlendedPath, Corner, blend, corners
 from tamp.geometric.motion.path import without_repeats
+from tamp.geometric.motion.retiming import speeds
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
@@ -70,22 +69,9 @@ def time_path(
     return _joined([_piece(passed[i : j + 1], velocity, acceleration) for i, j in pairwise(rests)])
 
 
-def prefetch() -> threading.Thread:
-    """Import what `time_path` needs in the background, so that it is there when the plan is."""
-
-    def load() -> None:
-        importlib.import_module("tamp.geometric.motion.parametrization")
-
-    thread = threading.Thread(target=load, name="import toppra", daemon=True)
-    thread.start()
-    return thread
-
-
 def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
     """Time a path through corners that are passed without resting, from rest to rest."""
     if len(passed) > 2:
-        from tamp.geometric.motion.parametrization import speeds  # toppra takes 0.75 s to import
-
         rail = blend(passed)
         rates = speeds(rail, velocity, acceleration)
         if rates is not None:

@@ -146,13 +146,12 @@ def _reach(origins: Array) -> tuple[float, float]:
     and 6), metres.
     """
     upper = origins[2, :3, 3]
-    distances = []
-    for angle in np.linspace(-math.pi, math.pi, 721):
-        cos, sin = math.cos(angle), math.sin(angle)
-        turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        elbow = origins[3, :3, 3] + origins[3, :3, :3] @ turn @ origins[4, :3, 3]
-        distances.append(np.linalg.norm(origins[2, :3, :3].T @ upper + elbow))
-    return min(distances) - 1e-4, max(distances) + 1e-4
+    angles = np.linspace(-math.pi, math.pi, 721)
+    cos, sin, (x, y, z) = np.cos(angles), np.sin(angles), origins[4, :3, 3]
+    turned = np.column_stack([cos * x - sin * y, sin * x + cos * y, np.full_like(cos, z)])
+    elbows = origins[3, :3, 3] + turned @ origins[3, :3, :3].T
+    distances = np.linalg.norm(origins[2, :3, :3].T @ upper + elbows, axis=1)
+    return float(distances.min()) - 1e-4, float(distances.max()) + 1e-4
 
 
 def _van_der_corput(index: int) -> float:

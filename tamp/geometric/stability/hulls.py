@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +21,12 @@ CYLINDER_SIDES = 32
 """Sides of the prism that stands for a cylinder."""
 
 Triangles = NDArray[np.int64]
+
+
+def prepare(bodies: Iterable[Body]) -> None:
+    """Import what the hulls of bodies need, so that it is there before planning begins."""
+    if any(len(body.parts) > 1 for body in bodies):
+        importlib.import_module("scipy.spatial")
 
 
 def body_hull(body: Body) -> tuple[Float[Array, "n 3"], Triangles]:

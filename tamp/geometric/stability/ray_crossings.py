@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.ray_kernels import cross_all, stretch
+from tamp.geometric.stability.shapes import once_a_shape
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -54,16 +56,7 @@ class ConvexUnion:
             corners.append(np.stack([a, b, c], axis=1)[kept])
 
         self._normals, self._offsets = np.concatenate(normals), np.concatenate(offsets)
-        self._first = np.array(first)
-        last = np.append(self._first[1:], len(self._normals))
-        # The planes of each part, (p, most), the first one repeated behind the last: one look for
-        # all parts.
-        places = np.arange((last - self._first).max())
-        self._planes = np.where(
-            places < (last - self._first)[:, None],
-            self._first[:, None] + places,
-            self._first[:, None],
-        )
+        self._first = np.array([*first, len(self._normals)], dtype=np.int64)
         self._corners = np.concatenate(corners)
         self._cumulative = np.cumsum(np.concatenate(areas))
         self.centre = centre_of_mass(body)
@@ -95,17 +88,14 @@ class ConvexUnion:
             Starts and ends (k, p) in metres along the lines, an end before its start where a line
             misses the part; and the indices (k, p) of the planes there, for `normals`.
         """
-        slope = np.atleast_2d(directions) @ self._normals.T
-        room = self._offsets - origins @ self._normals.T
-        with np.errstate(divide="ignore", invalid="ignore"):
-            t = room / slope
-        outside = (np.abs(slope) < 1e-12) & (room < 0)
-        enter = np.where(outside, np.inf, np.where(slope < -1e-12, t, -np.inf))
-        leave = np.where(slope > 1e-12, t, np.inf)
-        start_plane = self._first + np.argmax(enter[:, self._planes], axis=2)
-        end_plane = self._first + np.argmin(leave[:, self._planes], axis=2)
-        rows = np.arange(len(origins))[:, None]
-        return enter[rows, start_plane], leave[rows, end_plane], start_plane, end_plane
+        shape = len(origins), len(self._first) - 1
+        starts, ends = np.empty(shape), np.empty(shape)
+        start_planes, end_planes = np.empty(shape, dtype=np.intp), np.empty(shape, dtype=np.intp)
+        cross_all(
+            origins, np.atleast_2d(directions), self._normals, self._offsets, self._first, starts,
+            ends, start_planes, end_planes,
+        )  # fmt: skip
+        return starts, ends, start_planes, end_planes
 
     def normals(self, planes: Planes) -> Float[Array, "... 3"]:
         """Return outward normals (..., 3) of planes."""
@@ -115,26 +105,13 @@ class ConvexUnion:
         """Find the stretch of solid that contains, or begins at, the origin of a line; None where
         there is none.
         """
-        starts, ends, start_planes, end_planes = (
-            row[0] for row in self.crossings(origin[None], direction)
+        found, start, end, first, last = stretch(
+            origin, direction, self._normals, self._offsets, self._first, SEAM_WIDTH_M
         )
-        crossed = np.flatnonzero(ends > starts)
-        here = crossed[(starts[crossed] <= SEAM_WIDTH_M) & (ends[crossed] >= -SEAM_WIDTH_M)]
-        if len(here) == 0:
-            return None
+        return Contact(start, end, self._normals[first], self._normals[last]) if found else None
 
-        first, last = here[np.argmin(starts[here])], here[np.argmax(ends[here])]
-        for _ in range(len(crossed)):  # parts that touch the stretch lengthen it, one after another
-            low = crossed[
-                (starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM_WIDTH_M)
-            ]
-            high = crossed[
-                (ends[crossed] > ends[last]) & (starts[crossed] <= ends[last] + SEAM_WIDTH_M)
-            ]
-            if len(low) == 0 and len(high) == 0:
-                break
-            first = low[np.argmin(starts[low])] if len(low) else first
-            last = high[np.argmax(ends[high])] if len(high) else last
 
-        normals = self._normals[start_planes[first]], self._normals[end_planes[last]]
-        return Contact(float(starts[first]), float(ends[last]), *normals)
+@once_a_shape
+def solid_of(body: Body) -> ConvexUnion:
+    """Return the solid of a body, made once for all bodies, and all scenes, of one shape."""
+    return ConvexUnion(body)

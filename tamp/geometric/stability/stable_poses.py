@@ -15,6 +15,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
+from tamp.geometric.stability.shapes import once_a_shape
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -192,6 +193,11 @@ def stable_faces(body: Body) -> list[Face]:
     """List the ways in which a body rests and withstands a tilt of STABLE_TILT_RAD, the largest
     facets first.
     """
+    return list(_faces(body))
+
+
+@once_a_shape
+def _faces(body: Body) -> tuple[Face, ...]:
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []
@@ -223,7 +229,7 @@ def stable_faces(body: Body) -> list[Face]:
             Face(rotation, -low, extent, outline(turned[:, :2]), base, angle, centre[:2].copy())
         )
 
-    return faces
+    return tuple(faces)
 
 
 def facets(body: Body, most: int) -> list[Face] | None:

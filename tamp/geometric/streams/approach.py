@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.context import Context
-from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection
@@ -64,17 +63,15 @@ def test_approach_clear(
 
 def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
     """Name first a body so flat that fingers meet what it lies on before they hold it."""
-    low, high = bounds(context.scene.bodies[body].parts, pose)
+    low, high = context.box(body, pose)
     tall = float(high[2] - low[2])
-    below = bounds(context.scene.bodies[hit].parts, context.scene.bodies[hit].pose)
+    if tall >= FLAT_BODY_HEIGHT_M:
+        return ""
+    below = context.box(hit, context.scene.bodies[hit].pose)
     carries = (
         (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
     )
-    return (
-        f"too flat to be grasped ({1000 * tall:.0f} mm tall): "
-        if tall < FLAT_BODY_HEIGHT_M and carries
-        else ""
-    )
+    return f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if carries else ""
 
 
 def approach_hits(

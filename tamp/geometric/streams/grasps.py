@@ -12,7 +12,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.ray_crossings import ConvexUnion
+from tamp.geometric.stability.ray_crossings import ConvexUnion, solid_of
 from tamp.geometric.streams.antipodal import GRASP_DEPTHS_M, antipodal_grasps, at_depth, tool_pose
 from tamp.geometric.streams.firmness import FAIR_STRAIN, FIRM_STRAIN, strain
 from tamp.geometric.streams.grasp_directions import (
@@ -92,7 +92,7 @@ def sample_grasps(
         free: Whether the open hand's way to T_body_tool is free where the body stands at the start;
             in a narrow place most random grasps are such.
     """
-    solid = ConvexUnion(body)
+    solid = solid_of(body)
     fit = GraspChecker(body, solid, robot)
     up = body.pose.rotation[2]
 

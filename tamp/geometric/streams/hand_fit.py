@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.fcl_bodies import FclBody, touch
+from tamp.geometric.collision.tables import Rows, pose_rows
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
 from tamp.geometric.stability.ray_crossings import ConvexUnion
+from tamp.geometric.streams.hand_kernels import closed
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -38,6 +39,9 @@ PAD_GIVE_M = 1.5e-3
 CLEAR_APPROACH = 0.10
 """The open hand must be free of the body while it draws back this far, metres."""
 
+BACK = 0.02
+"""Steps in which it is looked at there, metres."""
+
 PAD_POINTS_M = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
 """Sample points of a pad (9, 3) around the tool's origin: it is 17 mm wide and high."""
 
@@ -53,20 +57,34 @@ class Closed:
     patches: tuple[Array, Array]
 
 
+def _row(T: Array) -> Float[Array, " 12"]:
+    """Return a pose (4, 4) as the kernels take it."""
+    return np.concatenate([T[:3, :3].ravel(), T[:3, 3]])
+
+
 class GraspChecker:
-    """The hand and one body, as FCL objects in the body's frame."""
+    """The hand and one body, as the compiled kernels take them."""
 
     def __init__(self, body: Body, solid: ConvexUnion, robot: Robot) -> None:
         self._solid, self._robot = solid, robot
-        self._body = FclBody(body.parts)
-        self._parts = [self._body.place(index, np.eye(4)) for index in range(len(body.parts))]
-        hand, (left, right) = robot.link(robot.hand), robot.finger_links
-        self._hand, self._left, self._right = (
-            FclBody(hand.parts),
-            FclBody(left.parts),
-            FclBody(right.parts),
-        )
-        self._T_tool_hand = robot.T_hand_tool.inverse().matrix
+        rows = Rows()
+        T_tool_hand = robot.T_hand_tool.inverse().matrix
+        groups, parts, poses, along = [0], [], [], []
+        fingers = zip(robot.finger_links, robot.fingers, strict=True)
+        links = [(link, joint.origin.matrix, np.array(joint.axis)) for link, joint in fingers]
+        for link, T_hand_link, axis in [*links, (robot.link(robot.hand), np.eye(4), np.zeros(3))]:
+            T_tool_link = T_tool_hand @ T_hand_link
+            parts += [rows.row(part) for part in link.parts]
+            poses += [T_tool_link @ part.pose.matrix for part in link.parts]
+            along += [T_tool_link[:3, :3] @ axis for _ in link.parts]
+            groups.append(len(parts))
+
+        body_rows = np.array([rows.row(part) for part in body.parts])
+        body_poses = pose_rows(np.array([part.pose.matrix for part in body.parts]))
+        self._tables = (
+            np.array(groups), np.array(parts), pose_rows(np.array(poses)), np.array(along),
+            body_rows, body_poses, rows.vertices(),
+        )  # fmt: skip
 
     @property
     def widest(self) -> float:
@@ -80,65 +98,18 @@ class GraspChecker:
         fingers meet nothing, or when the contacts do not oppose each other within the friction
         cone.
         """
-        widest = self._robot.opening / 2
-        if self._hits(T_body_tool, widest):
+        opening = self._robot.opening
+        fits, left, right = closed(_row(T_body_tool), opening, 0.0, BACK, *self._tables)
+        if not fits or left + right > self.widest:
             return None
-        left, right = (self._first_contact(T_body_tool, finger) for finger in (0, 1))
-        if left is None or right is None or left + right > self.widest:
-            return None
+
         T = T_body_tool.copy()
         T[:3, 3] += T[:3, 1] * (left - right) / 2
-        opening = left + right + OPENING_SLACK_M
-        patches = self._opposed(T, opening)
-        if patches is None:
+        width = left + right + OPENING_SLACK_M
+        patches = self._opposed(T, width)
+        if patches is None or not closed(_row(T), opening, CLEAR_APPROACH, BACK, *self._tables)[0]:
             return None
-        for back in np.arange(0.0, CLEAR_APPROACH + 1e-9, 0.02):
-            moved = T.copy()
-            moved[:3, 3] -= back * T[:3, 2]
-            if self._hits(moved, widest):
-                return None
-        return Closed(T, opening, patches)
-
-    def _hits(self, T_body_tool: Array, finger: float) -> bool:
-        """Check whether the hand with both fingers at `finger` metres from the middle touches the
-        body.
-        """
-        if self._touches(self._hand, T_body_tool @ self._T_tool_hand):
-            return True
-        return any(self._finger_touches(T_body_tool, index, finger) for index in (0, 1))
-
-    def _finger_touches(self, T_body_tool: Array, index: int, position: float) -> bool:
-        joint = self._robot.fingers[index]
-        T_hand_finger = joint.origin.matrix.copy()
-        T_hand_finger[:3, 3] += T_hand_finger[:3, :3] @ np.array(joint.axis) * position
-        return self._touches(
-            (self._left, self._right)[index], T_body_tool @ self._T_tool_hand @ T_hand_finger
-        )
-
-    def _touches(self, link: FclBody, T_body_link: Array) -> bool:
-        items = (link.place(index, T_body_link) for index in range(len(link.objects)))
-        return any(touch(item, part, 0.0) for item in items for part in self._parts)
-
-    def _first_contact(self, T_body_tool: Array, index: int) -> float | None:
-        """Find how far from the middle a closing finger meets the body, to 0.1 mm; None when it
-        does not.
-        """
-        free, blocked = self._robot.opening / 2, -0.02
-        # Walk first: a thin wall could be jumped over.
-        for position in np.arange(free, blocked, -0.005):
-            if self._finger_touches(T_body_tool, index, position):
-                blocked = position
-                break
-            free = position
-        else:
-            return None
-        while free - blocked > 1e-4:
-            middle = (free + blocked) / 2
-            if self._finger_touches(T_body_tool, index, middle):
-                blocked = middle
-            else:
-                free = middle
-        return free
+        return Closed(T, width, patches)
 
     def _opposed(self, T_body_tool: Array, opening: float) -> tuple[Array, Array] | None:
         """Return where both pads touch the body, opposite each other and squarely enough not to

@@ -120,7 +120,10 @@ def plan_loaded_pick(
         empty = planned.path
         confs = [context.conf(stand, arm) for arm in empty]
         if not all(among.edge_free(a, b) for a, b in pairwise(confs)):
-            free = plan_arm(among, stand, context.home, out, context.robot, call.rng, call.deadline)
+            free = plan_arm(
+                among, stand, context.home, out, context.robot, call.rng, call.deadline,
+                planner=context.planner,
+            )  # fmt: skip
             if free.path is None:
                 yield Rejection("no motion found", kind=RejectionKind.NO_MOTION)
                 continue

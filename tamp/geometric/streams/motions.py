@@ -24,6 +24,10 @@ MAX_EFFORT = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
 before."""
 
+TELLING = 2
+"""The effort from which on a base that finds no way is told why: looking for a narrow gap takes
+longer than the tries before."""
+
 STRAIGHT_WAY_CONFS = 33
 """Configurations on the straight way that are looked at to say what is in it."""
 
@@ -56,7 +60,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
         ends = np.array(start.array), np.array(goal.array)
         return plan_base(
             arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
-            effort=effort, steering=context.steering,
+            effort=effort, steering=context.steering, planner=context.planner,
         )  # fmt: skip
 
     stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)
@@ -139,6 +143,7 @@ def _transits(
             call.rng,
             call.deadline,
             effort=effort,
+            planner=context.planner,
         )
 
     reached = context.conf(stand, context.home), context.conf(stand, out)
@@ -186,11 +191,8 @@ def _diagnosed(
         ahead = _straight_ahead(context, held, query)
         where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
         ends = [end[:2] for end in query.ends]
-        gap = (
-            context.passage.narrow(ends[1])
-            if failure is Failure.EXHAUSTED and (ends[0] != ends[1]).any()
-            else None
-        )
+        asked = failure is Failure.EXHAUSTED and effort >= TELLING and (ends[0] != ends[1]).any()
+        gap = context.passage.narrow(ends[1]) if asked else None
         failed = failure.value if gap is None else gap.text
         what = f"no motion even without the movable bodies: {failed}{where}"
         bodies = dict.fromkeys((*ahead, *(() if gap is None else gap.bodies)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion.corner_blending import TICK
-from tamp.geometric.motion.timing import Timed, prefetch, time_path
+from tamp.geometric.motion.timing import Timed, time_path
 from tamp.geometric.scene.pose import Array
 
 VELOCITY = np.array([2.175] * 4 + [2.61] * 3)
@@ -145,9 +145,3 @@ def test_uneven_and_nearly_repeated_vertices() -> None:
             assert _respects_limits(timed)
             looked += 1
     assert looked == 8
-
-
-def test_prefetch_ends() -> None:
-    thread = prefetch()
-    thread.join(timeout=60.0)
-    assert not thread.is_alive()

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion.corner_blending import BlendedPath, blend, corners
-from tamp.geometric.motion.parametrization import speeds
+from tamp.geometric.motion.retiming import speeds
+from tests.geometric.motion import toppra_reference as reference
 
 FAST = np.array([1e3, 1e3])
 
@@ -77,3 +78,21 @@ def test_through_a_rounding_it_goes_no_faster_than_the_bend_allows() -> None:
     assert rates[bent].min() > 0.5 * math.sqrt(
         1.0 / np.abs(passed[1].bend).max()
     )  # and not needlessly slow
+
+
+def test_random_rails_take_as_long_as_with_toppra(rng: np.random.Generator) -> None:
+    compared = 0
+    for _ in range(40):
+        d = int(rng.integers(2, 8))
+        path = np.cumsum(rng.normal(0.0, 0.5, (int(rng.integers(3, 7)), d)), axis=0)
+        velocity, acceleration = rng.uniform(0.3, 2.0, d), rng.uniform(0.5, 5.0, d)
+        rail = corners(corners(path, acceleration, lambda _a, _b: True))
+        ours, theirs = (f(rail, velocity, acceleration) for f in (speeds, reference.speeds))
+        if theirs is None:
+            continue
+        compared += 1
+        assert ours is not None
+        gaps = np.diff(rail.stations)
+        lasted = [float((2.0 * gaps / (r[:-1] + r[1:])).sum()) for r in (ours, theirs)]
+        assert lasted[0] == pytest.approx(lasted[1], rel=1e-4)
+    assert compared >= 30

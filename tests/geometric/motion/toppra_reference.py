@@ -1,5 +1,4 @@
-"""Time-optimal path parameterization of a rail: toppra's reachability analysis. The only file that
-imports toppra, 0.75 s.
+"""Time-optimal path parametrization of a rail by toppra: the reference for `retiming`, 0.75 s to import.
 
 Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
 analysis", T-RO 2018.
@@ -12,20 +11,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tamp.geometric.motion.corner_blending import BlendedPath
-from tamp.geometric.motion.without_pyplot import without_pyplot
 from tamp.geometric.scene.pose import Array
+from tests.geometric.motion.without_pyplot import without_pyplot
 
 if TYPE_CHECKING:
-    from jaxtyping import Float
+    pass
 
 with without_pyplot():
     from toppra.algorithm import TOPPRA
     from toppra.constraint import LinearConstraint
 
 
-def speeds(
-    rail: BlendedPath, velocity: Float[Array, " d"], acceleration: Float[Array, " d"]
-) -> Float[Array, " m"] | None:
+def speeds(rail: BlendedPath, velocity: Array, acceleration: Array) -> Array | None:
     """Compute the fastest rate of the station at each node, from rest to rest.
 
     Args:
