@@ -69,8 +69,10 @@ def near_still(
         State, mover and piece, in this order, and the metres between the boxes on the worst axis,
         below which no distance of the two can be.
     """
-    swept = _gaps(motion.low.min(axis=1)[:, None], motion.high.max(axis=1)[:, None], still)
-    pairs = np.argwhere(swept < within)
+    low, high = motion.swept
+    pairs = np.argwhere(_gaps(low[:, None], high[:, None], still) < within)
+    if not len(pairs):
+        return
     movers, pieces = pairs.T
     chosen = Still([], still.low[pieces][:, None], still.high[pieces][:, None])
     gaps = _gaps(motion.low[movers], motion.high[movers], chosen).T
@@ -83,7 +85,7 @@ def near_still(
 
 def near_itself(motion: Motion, pairs: Pairs) -> Iterator[tuple[int, int]]:
     """Yield states and pairs (k, 2) of movers whose boxes meet, where the robot's shape changes."""
-    low, high = motion.low.min(axis=1), motion.high.max(axis=1)
+    low, high = motion.swept
     first, second = pairs.T
     numbers = np.flatnonzero(_meet(low[first], high[first], low[second], high[second]))
     first, second = first[numbers], second[numbers]

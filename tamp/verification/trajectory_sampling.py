@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +60,11 @@ class Motion:
     low: Array
     high: Array
     ways: Array
+
+    @cached_property
+    def swept(self) -> tuple[Array, Array]:
+        """Box all that each mover sweeps: corners, each (movers, 3)."""
+        return self.low.min(axis=1), self.high.max(axis=1)
 
     def part(self, some: slice) -> Motion:
         """Take some of the states."""
