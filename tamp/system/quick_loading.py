@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from numba.core.caching import Cache
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 
 REPLACED = frozenset({"refresh", "_guard_against_spurious_io_errors", "_load_overload"})
 """What numba's own way to load a kernel calls."""
