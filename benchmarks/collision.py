@@ -2,9 +2,9 @@
 
     python -m benchmarks.collision [--states 100000] [--edges 10000] [--scenes 100] [--seed 0]
 
-False free states: `free`, although FCL finds a pair nearer than PADDING. False free edges: `edge_free`, although FCL
+False free states: `free`, although FCL finds a pair nearer than 2 mm. False free edges: `edge_free`, although FCL
 finds an intersection in one of the states sampled along them, no more than 1 cm apart. False hits: the other way round;
-an edge counts as one only when no sampled state comes closer than PADDING + 5 mm. Tolerance 1e-6 m. Appends to
+an edge counts as one only when no sampled state comes closer than the clearance + 5 mm. Tolerance 1e-6 m. Appends to
 benchmarks/results/collision.jsonl. The full run takes about half an hour, nearly all of it plain FCL.
 """
 
@@ -21,7 +21,8 @@ import numpy as np
 
 from benchmarks.collision_reference import PlainFcl, random_confs, random_pose, random_scene
 from benchmarks.common import record, table
-from tamp.geometric.collision.collisions import PADDING, Arrangement, Attachment, Collisions
+from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M, Arrangement
+from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.pose import Array
@@ -62,8 +63,8 @@ def compare(
     for conf, answer in zip(confs, free, strict=True):
         distance = plain.distance(conf)
         count["free states"] += bool(answer)
-        count["false free states"] += bool(answer) and distance < PADDING - TOLERANCE
-        count["false hit states"] += not answer and distance > PADDING + TOLERANCE
+        count["false free states"] += bool(answer) and distance < TRANSIT_CLEARANCE_M - TOLERANCE
+        count["false hit states"] += not answer and distance > TRANSIT_CLEARANCE_M + TOLERANCE
     if free.sum() < 2:
         return count
     asked = random_edges(rng, confs[free], edges)
@@ -76,7 +77,9 @@ def compare(
         if answer:
             count["false free edges"] += any(plain.collides(conf) is not None for conf in samples(*edge))
         else:
-            count["false hit edges"] += all(plain.distance(conf) > PADDING + 0.005 for conf in samples(*edge))
+            count["false hit edges"] += all(
+                plain.distance(conf) > TRANSIT_CLEARANCE_M + 0.005 for conf in samples(*edge)
+            )
     return count
 
 

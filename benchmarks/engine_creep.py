@@ -18,7 +18,7 @@ from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import RATE
+from tamp.simulation.actuation import COMMANDS_PER_SECOND
 from tamp.simulation.engines import ENGINES, installed, open_actuated
 from tamp.system.files import find_problem
 
@@ -57,11 +57,11 @@ def creep(engine: str, body: str, seconds: float) -> tuple[float, float]:
     alone = Scene("held", bodies, scene.robot, scene.room)
     with open_actuated(alone, robot, name=engine) as world:
         T_tool_body = HELD[body].matrix
-        world.attend(body)
+        world.wake(body)
         world.squeezing = True
-        for _ in range(RATE):  # until the fingers have closed
-            world.put(body, world.tool() @ T_tool_body)
-            world.tick()
+        for _ in range(COMMANDS_PER_SECOND):  # until the fingers have closed
+            world.set_pose(body, world.tool() @ T_tool_body)
+            world.step_motors()
         world.wait(1.0)
         before = np.linalg.inv(world.tool()) @ world.pose(body)
         world.wait(seconds)

@@ -17,13 +17,14 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table, times
-from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
+from tamp.geometric.collision.arrangement import Arrangement
+from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.path import length
-from tamp.geometric.motion.result import Planned
+from tamp.geometric.motion.result import MotionResult
 from tamp.geometric.motion.timing import Timed, prefetch, time_path
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
@@ -211,7 +212,7 @@ class Measured:
         arguments: Arguments,
         kind: str,
         k: int,
-        planned: Planned,
+        planned: MotionResult,
         spent: Array,
         arrangement: Arrangement,
         rest: tuple[Array | None, Array | None],

@@ -107,7 +107,7 @@ class Player(BulletWorld):
             bullet.resetJointState(self._mover, joint, self.opening / 2, physicsClientId=client)
         self.held = False
 
-    def tick(self, rates: Array | None = None) -> None:
+    def step_motors(self, rates: Array | None = None) -> None:
         """One step towards `conf` and `opening`; `rates` (10,) are the trajectory's speeds there."""
         bullet, client = self._bullet, self.client
         bullet.setJointMotorControlArray(
@@ -124,7 +124,7 @@ class Player(BulletWorld):
 
     def wait(self, seconds: float) -> None:
         for _ in range(round(seconds * RATE)):
-            self.tick()
+            self.step_motors()
 
     def actual(self) -> Array:
         """The configuration (10,) as it is."""
@@ -210,7 +210,7 @@ def _run(player: Player, segment: Segment, options: Options) -> set[str]:
     for t in np.linspace(1.0 / count, 1.0, count) * times[-1]:
         for column, joint in enumerate(range(*joints.indices(10))):
             player.conf[joint] = np.interp(t, times, segment.positions[:, column])
-        player.tick((player.conf - before) * RATE)
+        player.step_motors((player.conf - before) * RATE)
         before[:] = player.conf
         touched |= player.touched()
     player.wait(options.pause)

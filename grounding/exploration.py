@@ -33,7 +33,7 @@ from grounding.scenes import LabelledScene, SampledScene, Scenes, free
 from grounding.supports import Support, household_supports
 from grounding.weights import read_weights
 from tamp.errors import InputError
-from tamp.geometric.samplers.placements import GROWTH
+from tamp.geometric.samplers.placements import BOX_GROWTH_SHARE
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.drops import Drops
 from tamp.simulation.engines import open_drops
@@ -247,7 +247,7 @@ def uniform(scene: SampledScene, rng: Random) -> Array:
     extent, turned in any way; (4, 4).
     """
     low, high = scene.support.region.box
-    margin = GROWTH * float((high - low).max()) / 2
+    margin = BOX_GROWTH_SHARE * float((high - low).max()) / 2
     pose = random_turn(rng)
     pose[:3, 3] = rng.uniform(low - margin, high + margin)
     return scene.stand.matrix @ pose

@@ -14,7 +14,7 @@ from grounding.model import Model
 from grounding.runtime import Grounding, Proposer
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
-from tamp.geometric.samplers.choice import ANY
+from tamp.geometric.samplers.choice import ANY_RELATION
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
 
@@ -227,7 +227,7 @@ GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
         }
         for relation in RELATIONS
     },
-    ANY: {".safetensors": file_grounding},
+    ANY_RELATION: {".safetensors": file_grounding},
 }
 """Relation to name to what makes the grounding: what `--sampler on=transfer` and `--sampler
 on=FILE.safetensors` mean.

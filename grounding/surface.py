@@ -15,7 +15,7 @@ from tamp.geometric.samplers.placements import KEEP_FACE, position_inside
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
 from tamp.geometric.stability.placement import SNAP_HEIGHT, resting_pose
-from tamp.geometric.stability.stable_poses import SLACK, SNAP_TILT, Face
+from tamp.geometric.stability.stable_poses import SNAP_TILT, WIDTH_SLACK_M, Face
 
 DEPTH = 0.001
 """Bodies may lie this deep in each other, metres."""
@@ -55,7 +55,7 @@ class SurfaceModel:
         low, high = points.min(axis=1), points.max(axis=1)
         half = region.size[:2] / 2
         if region.hollow:
-            above = (low[:, :2] >= -half - SLACK) & (high[:, :2] <= half + SLACK)
+            above = (low[:, :2] >= -half - WIDTH_SLACK_M) & (high[:, :2] <= half + WIDTH_SLACK_M)
         else:
             above = (
                 np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
@@ -63,7 +63,7 @@ class SurfaceModel:
         downs = np.array([-face.rotation[2] for face in form.faces]).reshape(-1, 3)
         upright = (-inner[:, 2, :3] @ downs.T > math.cos(SNAP_TILT)).any(axis=1)
         free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
-        fits = (np.abs(low[:, 2]) <= SNAP_HEIGHT) & (high[:, 2] <= region.size[2] + SLACK)
+        fits = (np.abs(low[:, 2]) <= SNAP_HEIGHT) & (high[:, 2] <= region.size[2] + WIDTH_SLACK_M)
         return (above.all(axis=1) & upright & free & fits).astype(np.float64)
 
 

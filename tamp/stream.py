@@ -19,7 +19,7 @@ def _unheard(message: str) -> None:
     pass
 
 
-def _unseen(value: Any, reason: str) -> None:
+def _unseen(value: Any, why: Rejection | str) -> None:
     pass
 
 
@@ -38,8 +38,8 @@ class Call:
         ahead: Whether values are drawn ahead of their use, so that being asked for another one says
             nothing about the last; else it was tried, and did not serve.
         warn: Tells the user something, once.
-        refused: Told of each proposal that the stream looked at and did not take, and why; for
-            recordings.
+        refused: Told of each proposal that the stream looked at and did not take, and why: a
+            Rejection, or a few words; for recordings.
     """
 
     rng: Any
@@ -48,7 +48,7 @@ class Call:
     memory: dict[str, Any] = field(default_factory=dict[str, Any])
     ahead: bool = False
     warn: Callable[[str], None] = _unheard
-    refused: Callable[[Any, str], None] = _unseen
+    refused: Callable[[Any, Rejection | str], None] = _unseen
 
 
 class RejectionKind(Enum):

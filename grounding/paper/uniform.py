@@ -12,7 +12,7 @@ from grounding.paper.runtime import Network, classified, features_in, judged, un
 from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
-from tamp.geometric.samplers.placements import GROWTH
+from tamp.geometric.samplers.placements import BOX_GROWTH_SHARE
 from tamp.geometric.scene.pose import Array
 
 TRIES = (20, 60, 120, 300)
@@ -83,7 +83,7 @@ def _drawn(seen: Observation, count: int, rng: Random) -> tuple[Array, Array]:
     features.
     """
     low, high = seen.arguments[0, 3:6], seen.arguments[0, 6:9]
-    margin = GROWTH * float((high - low).max()) / 2
+    margin = BOX_GROWTH_SHARE * float((high - low).max()) / 2
     positions = rng.uniform(low - margin, high + margin, size=(count, 3))
     turns = unit(rng.normal(size=(count, 4)))
     return positions, np.where(turns[:, 3:] < 0, -turns, turns)

@@ -13,7 +13,7 @@ from typing import Any
 
 from grounding.relations.demonstration_file import Label
 from tamp.errors import InputError
-from tamp.geometric.loading.bodies import PLACEMENT
+from tamp.geometric.loading.bodies import PLACEMENT_KEYS
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.meshes import find_mesh
 from tamp.geometric.loading.yaml_file import read_yaml
@@ -115,7 +115,9 @@ def read_entries(path: Path) -> dict[str, BodyEntry]:
 
 
 def _shape(node: Node, folder: Path) -> dict[str, Any]:
-    entries = {key: _plain(value) for key, value in node.mapping().items() if key not in PLACEMENT}
+    entries = {
+        key: _plain(value) for key, value in node.mapping().items() if key not in PLACEMENT_KEYS
+    }
     if "mesh" in entries:
         entries["mesh"] = os.path.abspath(find_mesh(str(entries["mesh"]), folder))
     return entries

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.geometric.samplers.choice import ANY, Registry, maker, parse_choice
-from tamp.geometric.samplers.python_file import SUFFIX, parted, python_grounding
+from tamp.geometric.samplers.choice import ANY_RELATION, Registry, maker, parse_choice
+from tamp.geometric.samplers.python_file import PYTHON_SUFFIX, parted, python_grounding
 from tamp.system.files import find_problem, shipped
 from tamp.system.python_object import python_source
 from tamp.system.reading import read_bytes
@@ -141,7 +141,7 @@ def labelled(sampler: str, chosen: Mapping[str, str]) -> tuple[str, dict[str, st
             continue
         content = read_bytes(Path(file), MOST_BYTES)
         label = label.replace(name, f"{name}#{sha256(content).hexdigest()[:8]}", 1)
-        if Path(file).suffix == SUFFIX:
+        if Path(file).suffix == PYTHON_SUFFIX:
             sources[file] = python_source(Path(file))
     return label, sources
 
@@ -172,7 +172,7 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
         served: dict[str, str] = {}
         for relation, text in _pairs(sampler):
             file, mode = parted(text)
-            if Path(file).suffix == SUFFIX:
+            if Path(file).suffix == PYTHON_SUFFIX:
                 python_grounding(Path(file))
                 served[relation] = f"{Path(file).resolve()}{mode}"
                 continue
@@ -185,7 +185,7 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
     able = [relation for relation in known if name in known[relation]]
     if not able:
         names = dict.fromkeys(
-            name for other, makers in known.items() if other != ANY for name in makers
+            name for other, makers in known.items() if other != ANY_RELATION for name in makers
         )
         remedy = (
             f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""

@@ -1,4 +1,7 @@
-"""The paper's comparison of samplers, its figure 8, with ours beside."""
+"""The paper's comparison of samplers, its figure 8, with ours beside.
+
+It stays a command and no script of `benchmarks/`: whoever installs tamp can repeat the figure.
+"""
 
 from __future__ import annotations
 

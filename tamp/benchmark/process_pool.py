@@ -1,4 +1,7 @@
-"""Runs side by side in processes of this machine."""
+"""Runs side by side in processes of this machine.
+
+Our own and not joblib's, which does not end a run that hangs.
+"""
 
 from __future__ import annotations
 

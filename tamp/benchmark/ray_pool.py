@@ -1,6 +1,7 @@
 """Runs on a Ray cluster (`pip install 'tamp-planner[ray]'`).
 
-Every machine of it needs this environment, tamp installed.
+Every machine of it needs this environment, tamp installed. It stays beside the process pool, which
+knows one machine only, because it costs one file, an extra, and nothing where it is not asked for.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from typing import Any
 from tamp.benchmark.case import Case
 from tamp.benchmark.provenance import provenance
 from tamp.geometric.samplers.choice import Registry
-from tamp.geometric.samplers.mixture import Account
+from tamp.geometric.samplers.mixture import SamplerRecord
 from tamp.geometric.samplers.python_file import given_by_files
 from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
@@ -120,7 +120,7 @@ def parts(solution: Solution) -> dict[str, float]:
     return times
 
 
-def _account(account: Account) -> dict[str, Any]:
+def _account(account: SamplerRecord) -> dict[str, Any]:
     return {
         "name": account.name,
         "judged": account.judged,

@@ -1,7 +1,8 @@
 """The command line of tamp-solve: options of all problems, of those with a scene, of those in PDDL.
 
 What an option refuses stands beside it, in its annotation; what hangs on several is in
-`_check_together`.
+`_check_together`. Reasons, statistics, recordings and pictures stay options here: where there is no
+plan there is no plan file that another command could read them from.
 """
 
 from __future__ import annotations

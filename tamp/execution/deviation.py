@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, pose_difference
 from tamp.symbolic.pddl.structs import Fact
-from tamp.verification.initial_state import apart
 
 FAR = 0.01
 """Metres by which a body may stand elsewhere than expected, or be elsewhere in the hand."""
@@ -91,7 +90,7 @@ def deviations(
         elif T is not None and name == seen.held:
             yield Deviation("stuck", name, f"{name} is still in the hand")
         elif T is not None:
-            moved, turned = apart(T, seen.poses[name])
+            moved, turned = pose_difference(T, seen.poses[name])
             if moved > FAR or turned > TURNED:
                 told.add(name)
                 yield _elsewhere(name, T, seen.poses[name], name == active)
@@ -109,7 +108,7 @@ def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:
     if seen.held != name:
         yield Deviation("lost", name, f"{name} is not in the hand")
         return
-    moved, turned = apart(T_tool_body, np.linalg.inv(seen.tool) @ seen.poses[name])
+    moved, turned = pose_difference(T_tool_body, np.linalg.inv(seen.tool) @ seen.poses[name])
     if moved > FAR or turned > TURNED:
         yield Deviation(
             "slipped",
@@ -121,7 +120,7 @@ def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:
 
 
 def _elsewhere(name: str, T_expected: Array, T_seen: Array, active: bool) -> Deviation:
-    moved, turned = apart(T_expected, T_seen)
+    moved, turned = pose_difference(T_expected, T_seen)
     up = float(
         np.clip(
             (T_expected[:3, :3].T @ [0.0, 0.0, 1.0]) @ (T_seen[:3, :3].T @ [0.0, 0.0, 1.0]),

@@ -19,7 +19,7 @@ from tamp.execution.motor_commands import Player
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part
 from tamp.plan.read import PlanFile, Segment
-from tamp.simulation.actuation import Actuated
+from tamp.simulation.actuation import MotorSimulation
 
 OBSTACLE = "obstacle"
 """What a blocking body is called."""
@@ -43,7 +43,7 @@ class Happening:
     randomness, and the engine's name.
     """
 
-    world: Actuated
+    world: MotorSimulation
     player: Player
     expected: Expected
     rng: Generator
@@ -131,7 +131,7 @@ def _move(now: Happening) -> str:
                     Pose.from_xyz_yaw(0, 0, 0, rng.uniform(-1.0, 1.0)).rotation @ T[:3, :3]
                 )
                 if room.fits(name, moved):
-                    world.put(name, moved)
+                    world.set_pose(name, moved)
                     return f"{name} is moved by {100 * way:.0f} cm"
     return "nothing could be moved"
 
@@ -156,17 +156,17 @@ def _slip(now: Happening) -> str:
     turn = float(rng.uniform(*TILT)) * (1.0 if rng.random() < 0.5 else -1.0)
     turned = Pose((0.0, 0.0, 0.0), (0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2))).matrix
     down = float(rng.uniform(*SLIP))
-    world.unbind()
+    world.detach()
 
     for share in (1.0, 0.75, 0.5, 0.25, 0.0):
         slipped = tool @ turned @ np.linalg.inv(tool) @ T
         slipped[2, 3] -= share * down
-        world.put(held, slipped)
+        world.set_pose(held, slipped)
         if world.near_fingers(held):  # else it would be a drop
             break
 
     if bound:
-        world.bind(held)
+        world.attach(held)
     far = f"{1000 * share * down:.0f} mm and {math.degrees(abs(turn)):.0f}°"
     return f"{held} slips by {far} in the hand"
 
@@ -179,7 +179,7 @@ def _remove(now: Happening) -> str:
     if not choices:
         return "nothing could be taken away"
     name = choices[int(now.rng.integers(len(choices)))]
-    world.become(replace(world.scene, bodies=MappingProxyType(
+    world.reset_scene(replace(world.scene, bodies=MappingProxyType(
         {other: body for other, body in world.scene.bodies.items() if other != name}
     )))  # fmt: skip
     return f"{name} is taken away"
@@ -227,7 +227,7 @@ def _block(now: Happening) -> str:
 
                 if room.free(box):
                     bodies = MappingProxyType({**world.scene.bodies, OBSTACLE: box})
-                    world.become(replace(world.scene, bodies=bodies))
+                    world.reset_scene(replace(world.scene, bodies=bodies))
                     return f"a box is put where {body} should go"
 
     return "there was no room for a box"

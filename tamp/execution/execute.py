@@ -21,15 +21,14 @@ from tamp.execution.pauses import without_pauses
 from tamp.execution.relations import own_relations
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Displaced, Done, Execution
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, pose_difference
 from tamp.plan.open import Stored
 from tamp.plan.read import PlanFile, TimedAction
 from tamp.plan.sources import plan_hashes, source_file, unquoted
-from tamp.simulation.actuation import Actuated
+from tamp.simulation.actuation import MotorSimulation
 from tamp.simulation.engines import default_engine, open_actuated
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
-from tamp.verification.initial_state import apart
 from tamp.verification.limits import check_ranges
 
 SETTLE = 0.5
@@ -80,7 +79,7 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
 
 class _Run:
     def __init__(
-        self, stored: Stored, chosen: Circumstances, world: Actuated, observer: Observer
+        self, stored: Stored, chosen: Circumstances, world: MotorSimulation, observer: Observer
     ) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
@@ -146,7 +145,7 @@ class _Run:
         world, began = self._world, self._world.time
         active, load = self._active(action), self._expected.load
         before = {name: world.pose(name) for name in world.scene.movable}
-        world.attend(active)
+        world.wake(active)
         watch = Watch(world, active)
         due = self._scheduled
         if due is not None and due.action != len(self._done):
@@ -198,7 +197,7 @@ class _Run:
         found: list[Displaced] = []
         for name, T in before.items():
             if name not in handled and name in self._world.solids:
-                moved, turned = apart(T, self._world.pose(name))
+                moved, turned = pose_difference(T, self._world.pose(name))
                 if moved > MOVED[0] or turned > MOVED[1]:
                     found.append(Displaced(name, moved, turned))
         return found

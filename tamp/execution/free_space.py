@@ -9,7 +9,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
-from tamp.simulation.actuation import Actuated
+from tamp.simulation.actuation import MotorSimulation
 from tamp.simulation.engines import open_world
 from tamp.simulation.shapes import body_points
 from tamp.verification.support_geometry import Supports
@@ -23,7 +23,7 @@ class Room:
     manager.
     """
 
-    def __init__(self, world: Actuated, engine: str | None = None) -> None:
+    def __init__(self, world: MotorSimulation, engine: str | None = None) -> None:
         self._scene, self._engine = world.scene, engine
         self._copy = open_world(world.scene, name=engine)
         touched = {second for first, second in world.touches() if first in world.robot_links}

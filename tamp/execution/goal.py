@@ -11,13 +11,13 @@ from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.observation import Truth
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
-from tamp.geometric.samplers.choice import ANY, Registry
+from tamp.geometric.samplers.choice import ANY_RELATION, Registry
 from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.classifier import Unanswered, probability
+from tamp.geometric.scene.pose import pose_difference
 from tamp.symbolic.pddl.relations import POSE
 from tamp.symbolic.pddl.structs import Atom, Formula, Not
 from tamp.verification.formulas import flat, show
-from tamp.verification.initial_state import apart
 from tamp.verification.semantics import Semantics, State
 
 NONE = Own({})
@@ -82,7 +82,7 @@ def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
     """
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
-        if relation == ANY:
+        if relation == ANY_RELATION:
             continue
         for name, make in makers.items():
             classifier = _made(make)
@@ -136,7 +136,9 @@ def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tu
         value = expected.plan.values.get(terms[-1])
         if len(terms) != 2 or terms[0] not in bodies or value is None or value.type != "pose":
             continue
-        moved, turned = apart(value.data, truth.scene.bodies[bodies[terms[0]]].pose.matrix)
+        moved, turned = pose_difference(
+            value.data, truth.scene.bodies[bodies[terms[0]]].pose.matrix
+        )
         if moved < FAR and turned < TURNED:
             yield terms[0], terms[1]
 

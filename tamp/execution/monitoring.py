@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tamp.simulation.actuation import Actuated
-from tamp.simulation.world import FLOOR
+from tamp.simulation.actuation import MotorSimulation
+from tamp.simulation.world import FLOOR_NAME
 
 EVERY = 4
 """Steps between two looks."""
@@ -38,7 +38,7 @@ class Watch:
         touches: The most that was felt of each pair, newtons.
     """
 
-    world: Actuated
+    world: MotorSimulation
     active: str | None
     base: float = 0.0
     arm: float = 0.0
@@ -72,7 +72,7 @@ class Watch:
                     self.world.hand_link,
                 )
             else:
-                fine = (first, second) in resting or first == FLOOR == second
+                fine = (first, second) in resting or first == FLOOR_NAME == second
             if not fine and force >= FELT:
                 found.append(Touch(first, second, force))
         return tuple(found)

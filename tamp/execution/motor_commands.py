@@ -12,7 +12,7 @@ from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.monitoring import EVERY, Watch
 from tamp.plan.read import Segment
-from tamp.simulation.actuation import RATE, Actuated
+from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 
 CLOSING = 0.9
 """The least that closing or opening takes, seconds: the fingers meet the body and come to rest."""
@@ -34,7 +34,7 @@ class Player:
         InputError: Another grasp.
     """
 
-    def __init__(self, world: Actuated, grasp: str) -> None:
+    def __init__(self, world: MotorSimulation, grasp: str) -> None:
         if grasp not in GRASPS:
             raise InputError(f"unknown grasp '{grasp}'", found=grasp, choices=GRASPS)
         self._world, self._grasp = world, grasp
@@ -67,16 +67,16 @@ class Player:
         """Finish an action: a body that was let go is felt again."""
         if self._passing is not None:
             if self._passing in self._world.solids and self._world.bound != self._passing:
-                self._world.pass_through(self._passing, False)
+                self._world.disable_collision(self._passing, False)
             self._passing = None
 
     def let_go(self) -> None:
         """Open the fingers at once, whatever they hold."""
         world = self._world
         body = world.bound
-        world.unbind()
+        world.detach()
         if body is not None:
-            world.pass_through(body, False)
+            world.disable_collision(body, False)
         world.squeezing, world.opening = False, world.widest
 
     def _follow(
@@ -87,7 +87,7 @@ class Player:
         columns = range(first, first + segment.positions.shape[1])
 
         lasts = float(segment.times[-1])
-        count = max(1, math.ceil(lasts * RATE))
+        count = max(1, math.ceil(lasts * COMMANDS_PER_SECOND))
         moments = np.linspace(1 / count, 1.0, count) * lasts
         rows = np.stack(
             [np.interp(moments, segment.times, segment.positions[:, k - first]) for k in columns],
@@ -101,7 +101,7 @@ class Player:
             if event is not None and step == happens:
                 event()
             world.conf[first : columns[-1] + 1] = row
-            world.tick(((world.conf - before) * RATE).tolist())
+            world.step_motors(((world.conf - before) * COMMANDS_PER_SECOND).tolist())
             before[:] = world.conf
             if step % EVERY == 0:
                 watch.look()
@@ -117,12 +117,12 @@ class Player:
         lasts = max(float(segment.times[-1]), CLOSING)
         if segment.detach is not None and world.bound is not None:
             self._passing = world.bound
-            world.unbind()
+            world.detach()
         world.opening = float(segment.opening[-1])
         world.squeezing = segment.attach is not None and self._grasp == "friction"
         self._wait(lasts, watch)
         if segment.attach is not None and self._grasp == "constraint" and self._between(body):
-            world.bind(body)
+            world.attach(body)
 
     def _between(self, body: str | None) -> TypeGuard[str]:
         """Check whether the body is where the fingers close: what is not there is not held by a
@@ -131,7 +131,7 @@ class Player:
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 
     def _wait(self, seconds: float, watch: Watch) -> None:
-        for step in range(round(seconds * RATE)):
-            self._world.tick()
+        for step in range(round(seconds * COMMANDS_PER_SECOND)):
+            self._world.step_motors()
             if step % EVERY == 0:
                 watch.look()

@@ -10,13 +10,12 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.scene.scene import CONTACT_GAP, Scene
 from tamp.simulation.engines import open_world
-from tamp.simulation.world import FLOOR
+from tamp.simulation.world import FLOOR_NAME
 from tamp.symbolic.pddl.structs import Fact
-from tamp.verification.initial_state import apart
-from tamp.verification.support_geometry import Stand, Supports
+from tamp.verification.support_geometry import SupportContact, Supports
 
 STILL = 0.0005
 """Metres, and 5 times as many radians, within which a body counts as where it was seen before."""
@@ -103,7 +102,10 @@ class Observer:
         for name in standing:
             T = poses[name]
             before = self._seen.get(name)
-            if before is not None and max(apart(before, T)[0], apart(before, T)[1] / 5) < STILL:
+            if (
+                before is not None
+                and max(pose_difference(before, T)[0], pose_difference(before, T)[1] / 5) < STILL
+            ):
                 continue
             self._seen[name] = T.copy()
             moved.append(name)
@@ -115,7 +117,7 @@ class Observer:
                 self._world.place(name, _raised(self._world.pose(name), rise))
 
     def _feel(
-        self, name: str, stand: Stand, facts: set[Fact], reasons: dict[Fact, str]
+        self, name: str, stand: SupportContact, facts: set[Fact], reasons: dict[Fact, str]
     ) -> str | None:
         """Add what is so about a body; what it stands on as the scene has it, None for the floor
         and for nothing.
@@ -134,7 +136,7 @@ class Observer:
                 support = support or place
             else:
                 reasons[fact] = why
-        below = sorted(stand.on - {FLOOR})
+        below = sorted(stand.on - {FLOOR_NAME})
         facts |= {("on", name.lower(), body.lower()) for body in below}
         if support is None and stand.why is None:
             support = next((body for body in below if self._scene.bodies[body].movable), None)

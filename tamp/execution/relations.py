@@ -10,9 +10,9 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
 from tamp.execution.observation import Truth
-from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry, maker, parse_choice
+from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.registry import STREAMS
 from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
@@ -67,7 +67,7 @@ class Own:
             for name, (relation, _, _) in self.asked.items()
             for words, answer in seen[name].answers.items()
             if not math.isnan(answer)
-            and answer < LIKELY
+            and answer < LIKELY_PROBABILITY
             and all(
                 fact in expected.state
                 for fact in relation.substitute(
@@ -145,7 +145,7 @@ def named_classifiers(
     found: dict[str, tuple[str, Classifier]] = {}
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
     for relation, text in {**planned, **names}.items():
-        if relation in SAMPLERS or text.partition(":")[0] == GIVEN:
+        if relation in SAMPLERS or text.partition(":")[0] == USER_OBJECT:
             continue
         try:
             choice = parse_choice(relation, text, registry)

@@ -16,8 +16,8 @@ from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.observation import Truth
-from tamp.geometric.samplers.choice import GIVEN, Grounding, Registry
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry
+from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.values import Grasp
 from tamp.plan.open import Stored
 from tamp.plan.read import PlanFile, TimedAction, read_plan
@@ -27,7 +27,6 @@ from tamp.planner.problem import Problem, load_problem
 from tamp.planner.solve import solve
 from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.structs import Formula
-from tamp.verification.initial_state import apart
 
 SAME = (0.003, 0.04)
 """Metres and radians by which a body that is still to be grasped may stand elsewhere for the old
@@ -225,10 +224,10 @@ def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
 
 
 def _same(first: Array, second: Array) -> bool:
-    moved, turned = apart(first, second)
+    moved, turned = pose_difference(first, second)
     return moved <= SAME[0] and turned <= SAME[1]
 
 
 def is_given(sampler: str) -> bool:
     """Check whether a plan's sampler was an object, which no file keeps."""
-    return sampler.partition(":")[0] == GIVEN
+    return sampler.partition(":")[0] == USER_OBJECT

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.collisions import Arrangement, Attachment, Collisions
+from tamp.geometric.collision.arrangement import Arrangement
+from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage

@@ -91,7 +91,12 @@ def _sample(sample: Sample, used: bool) -> dict[str, Any]:
         **_value(sample.value),
         "used": used,
         "refusals": [
-            {"stream": stream, "reason": reason, "count": count}
+            {
+                "stream": stream,
+                "reason": reason,
+                "bodies": list(sample.met.get((stream, reason), ())),
+                "count": count,
+            }
             for (stream, reason), count in sample.refusals.most_common()
         ],
     }
@@ -132,6 +137,7 @@ def summary_document(solution: Solution) -> dict[str, Any]:
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
         "explanation": list(solution.explanation),
+        "causes": [cause.document() for cause in solution.causes],
         "tried": [
             {
                 "action": tally.action,

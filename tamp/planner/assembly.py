@@ -13,6 +13,7 @@ from tamp.planner.problem import Problem
 from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import TimingCache, trajectories
+from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.result import Outcome, Result
 
 
@@ -86,9 +87,13 @@ def build_solution(
         certified=result.certified,
         statistics=result.statistics,
         effort=result.effort,
-        explanation=result.explanation,
+        causes=result.causes,
         tallies=result.tallies,
-        warnings=(*problem.warnings, *result.warnings, *contradictions(problem, result)),
+        warnings=(
+            *problem.warnings,
+            *result.warnings,
+            *(cause.text for cause in contradictions(problem, result)),
+        ),
         seconds={
             "total": seconds["total"],
             "search": result.effort.search_seconds,
@@ -111,10 +116,11 @@ def interrupted_solution(
     recorder: Recorder | None = None,
 ) -> Solution:
     """Make the solution when time or user end it before the first round or in a plan's timing."""
-    why = ("it ended before the first plan was tried, or before its motions were timed",)
+    why = "it ended before the first plan was tried, or before its motions were timed"
+    causes = (Cause(why, CauseKind.SEARCHED),)
     record = None if recorder is None else recorder.record(())
     return Solution(
-        problem, outcome, seed, algorithm, explanation=why, seconds={"total": total}, record=record
+        problem, outcome, seed, algorithm, causes=causes, seconds={"total": total}, record=record
     )
 
 

@@ -9,6 +9,7 @@ from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.pose import Pose
 from tamp.planner.problem import Problem
 from tamp.relations.observed import moved, observe
+from tamp.symbolic.algorithms.cause import Cause, CauseKind, distinct_causes
 from tamp.symbolic.algorithms.result import Result
 from tamp.symbolic.pddl.relations import Relation
 from tamp.symbolic.pddl.structs import Action, And, Domain, Fact
@@ -25,7 +26,7 @@ class _State:
     at: Mapping[str, str]
 
 
-def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
+def contradictions(problem: Problem, result: Result) -> tuple[Cause, ...]:
     """List what classifiers say in a plan's states and said otherwise when its poses were drawn.
 
     One that looks at its arguments alone never does; one that looks at what is around them may.
@@ -34,7 +35,7 @@ def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
         return ()
 
     task = problem.stream_task.task
-    found: dict[str, None] = {}
+    found: list[Cause] = []
     for name, classifier in problem.classifiers.items():
         relation = problem.relations[name]
         for state in _states(task.domain, task.initial, result):
@@ -44,13 +45,15 @@ def contradictions(problem: Problem, result: Result) -> tuple[str, ...]:
             for words in _otherwise(
                 problem, relation, classifier, state, stated, result.objects.values
             ):
-                found[
+                text = (
                     f"after {state.number} actions ({' '.join((name, *words))}) is not what it "
                     f"was when its pose was drawn: the classifier of '{name}' looks at "
                     "bodies that it is not asked about"
-                ] = None
+                )
+                objects = problem.stream_task.named(words)
+                found.append(Cause(text, CauseKind.CONTRADICTED, objects))
 
-    return tuple(found)[:MOST]
+    return distinct_causes(found)[:MOST]
 
 
 def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_State]:

@@ -15,7 +15,7 @@ from functools import partial
 from tamp.errors import InputError
 from tamp.geometric.context import Context
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.geometric.scene.classifier import LIKELY, Classifier
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.user_relations import fails_relation
 from tamp.planner.served import Served
 from tamp.relations.observed import Observation, moved, observe, refuse_silent
@@ -212,7 +212,11 @@ def _odd(relation: Relation, seen: Observation) -> list[str]:
         by_body: dict[str, list[float]] = {}
         for (body, _), answer in seen.answers.items():
             by_body.setdefault(body, []).append(answer)
-        same = [body for body, answers in by_body.items() if answers[1:] and min(answers) >= LIKELY]
+        same = [
+            body
+            for body, answers in by_body.items()
+            if answers[1:] and min(answers) >= LIKELY_PROBABILITY
+        ]
         if same:
             found.append(
                 f"'{relation.name}' holds of {same[0]} at the start "

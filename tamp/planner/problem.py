@@ -13,7 +13,7 @@ from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
 from tamp.geometric.robot.robot import Robot
-from tamp.geometric.samplers.choice import Grounding, Registry, mix
+from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
@@ -195,9 +195,14 @@ def _read(
     if carries(parsed):
         loaded = replace(loaded, scene=with_tops(loaded.scene))
 
-    streams_path = (
-        Path(streams) if streams is not None else domain_path.with_suffix(".streams.pddl")
-    )
+    beside = domain_path.with_suffix(".streams.pddl")
+    streams_path = Path(streams) if streams is not None else beside
+    if streams is None and not beside.exists():
+        raise InputError(
+            f"no such file: the streams of '{domain_path.name}' are looked for beside it",
+            file=beside,
+            remedy="--streams FILE names others",
+        )
     declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
     return _Files(loaded, parsed, domain_path, declared, streams_path)
 
@@ -232,7 +237,7 @@ def _context(files: _Files, served: Served, steering: str | None, holding: Grasp
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
     mixtures = {
-        relation: mix(relation, served.choices[relation], made)
+        relation: make_mixture(relation, served.choices[relation], made)
         for relation, made in served.generators.items()
     }
     robot = load_robot(scene.robot.model)

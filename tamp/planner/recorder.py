@@ -32,12 +32,22 @@ class Sample:
         arguments: Names of the objects that it was drawn for, the body first.
         value: T_world_body, or a grasp.
         refusals: Who said no to it, and why: (stream, reason), counted.
+        met: The objects that each of these reasons names.
     """
 
     stream: str
     arguments: tuple[str, ...]
     value: Pose | Grasp
     refusals: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
+    met: dict[tuple[str, str], tuple[str, ...]] = field(
+        default_factory=dict[tuple[str, str], tuple[str, ...]]
+    )
+
+    def refuse(self, stream: str, rejection: Rejection) -> None:
+        """Count a refusal."""
+        key = (stream, rejection.reason)
+        self.refusals[key] += 1
+        self.met[key] = tuple(dict.fromkeys((*self.met.get(key, ()), *rejection.bodies)))
 
 
 @dataclass(frozen=True)
@@ -113,13 +123,15 @@ class Recorder:
                     else self._by_value.get(subject) or self._dropped_by_value.get(subject)
                 )
                 if sample is not None:
-                    sample.refusals[stream, value.reason] += 1
+                    sample.refuse(stream, value)
 
-    def _refused(self, stream: str, inputs: tuple[Any, ...], pose: Pose, reason: str) -> None:
+    def _refused(
+        self, stream: str, inputs: tuple[Any, ...], pose: Pose, why: Rejection | str
+    ) -> None:
         """Note a generator's own proposal that its stream did not take."""
         sample = self._sample(stream, inputs, pose, refused=True)
         if sample is not None:
-            sample.refusals[stream, reason] += 1
+            sample.refuse(stream, Rejection(why) if isinstance(why, str) else why)
 
     def _sample(
         self, stream: str, inputs: tuple[Any, ...], value: Pose | Grasp, *, refused: bool

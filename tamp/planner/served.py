@@ -9,7 +9,14 @@ from typing import Any
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem
-from tamp.geometric.samplers.choice import GIVEN, Choice, Grounding, Registry, maker, parse_choice
+from tamp.geometric.samplers.choice import (
+    USER_OBJECT,
+    Grounding,
+    Registry,
+    SamplerSpec,
+    maker,
+    parse_choice,
+)
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.classifier import Classifier, Undecided
@@ -32,7 +39,7 @@ class Served:
         undecided: Why an object does not judge yet, where it says so.
     """
 
-    choices: Mapping[str, Choice]
+    choices: Mapping[str, SamplerSpec]
     generators: Mapping[str, Generator]
     classifiers: Mapping[str, Classifier]
     undecided: Mapping[str, str]
@@ -51,13 +58,15 @@ class Served:
             InputError: An unknown relation or sampler; one of `on` or `inside` that cannot propose.
         """
         known: dict[str, dict[str, Callable[..., Grounding]]] = {}
-        given = {relation: {GIVEN: partial(_same, item)} for relation, item in groundings.items()}
+        given = {
+            relation: {USER_OBJECT: partial(_same, item)} for relation, item in groundings.items()
+        }
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
                 known.setdefault(relation, {}).update(makers)
 
         choices = {
-            relation: Choice(next(iter(makers)), alone=True)
+            relation: SamplerSpec(next(iter(makers)), alone=True)
             for relation, makers in SAMPLERS.items()
         }
         for relation, text in loaded.samplers.items():
@@ -72,9 +81,9 @@ class Served:
         for relation, item in groundings.items():
             if (
                 isinstance(item, Generator)
-                and choices.get(relation, Choice("", False)).name != GIVEN
+                and choices.get(relation, SamplerSpec("", False)).name != USER_OBJECT
             ):
-                choices[relation] = Choice(GIVEN, alone=False)
+                choices[relation] = SamplerSpec(USER_OBJECT, alone=False)
 
         made: dict[str, Grounding] = {
             name: maker(name, choice, known)() for name, choice in choices.items()

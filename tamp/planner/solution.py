@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tamp.geometric.samplers.mixture import Account
+from tamp.geometric.samplers.mixture import SamplerRecord
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Record
 from tamp.planner.timed_trajectories import Trajectory
+from tamp.symbolic.algorithms.cause import Cause
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.algorithms.result import Outcome, SearchStatistics
@@ -62,7 +63,7 @@ class Solution:
         values: The value of every name in the plan: poses, grasps, base configurations, reaches,
             motions.
         certified: The facts that streams certified and the plan rests on.
-        explanation: Why there is no plan, a line a cause.
+        causes: Why there is no plan; `explanation` has their texts.
         tallies: What was tried for which action, where there is no plan.
         seconds: Wall-clock time: "total", "search", "timing", and by stream.
         record: What was tried, when `solve` was asked to record it.
@@ -80,13 +81,13 @@ class Solution:
     certified: tuple[Fact, ...] = ()
     statistics: Mapping[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: SearchStatistics = field(default_factory=SearchStatistics)
-    explanation: tuple[str, ...] = ()
+    causes: tuple[Cause, ...] = ()
     tallies: tuple[FailureCount, ...] = ()
     warnings: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     record: Record | None = None
-    samplers: Mapping[str, tuple[Account, ...]] = field(
-        default_factory=dict[str, "tuple[Account, ...]"]
+    samplers: Mapping[str, tuple[SamplerRecord, ...]] = field(
+        default_factory=dict[str, "tuple[SamplerRecord, ...]"]
     )
     improvements: tuple[Improvement, ...] = ()
     bound: float | None = None
@@ -95,6 +96,11 @@ class Solution:
     def solved(self) -> bool:
         """Tell whether there is a plan."""
         return self.outcome is Outcome.SOLVED
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Return why there is no plan, a line a cause."""
+        return tuple(cause.text for cause in self.causes)
 
     @property
     def cost(self) -> float:

@@ -106,11 +106,7 @@ def _borne_out(
             break
         result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)
         wrong = contradictions(problem, result)
-    return (
-        replace(result, outcome=Outcome.EXHAUSTED, actions=(), explanation=wrong)
-        if wrong
-        else result
-    )
+    return replace(result, outcome=Outcome.EXHAUSTED, actions=(), causes=wrong) if wrong else result
 
 
 def _renamed(make_rng: Callable[[str], Any], again: int, key: str) -> Any:

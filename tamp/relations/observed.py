@@ -12,7 +12,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from tamp.errors import InputError
-from tamp.geometric.scene.classifier import LIKELY, Classifier, Unanswered, probability
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier, Unanswered, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.symbolic.pddl.relations import Relation, instances
@@ -69,7 +69,9 @@ def observe(
             unanswered[words] = str(error)
             continue
         if not math.isnan(answers[words]):
-            (holds if answers[words] >= LIKELY else fails).update(relation.substitute(bound, at))
+            (holds if answers[words] >= LIKELY_PROBABILITY else fails).update(
+                relation.substitute(bound, at)
+            )
     return Observation(frozenset(holds), frozenset(fails), unanswered, answers)
 
 

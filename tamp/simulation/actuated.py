@@ -10,7 +10,12 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import BASE_FORCE, NEAR, RATE, Actuated
+from tamp.simulation.actuation import (
+    BASE_FORCE,
+    BETWEEN_FINGERS_M,
+    COMMANDS_PER_SECOND,
+    MotorSimulation,
+)
 from tamp.simulation.fingers import Fingers, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import BulletWorld
@@ -18,18 +23,18 @@ from tamp.simulation.shapes import link_frame
 from tamp.simulation.silence import silence
 from tamp.system.scratch import scratch_folder
 
-ROLLING = 0.001
+ROLLING_FRICTION_M = 0.001
 """Metres: rolling and spinning friction of bodies, without which a can that lies would never come
 to rest.
 """
 
-SLEEPY = 0.003
+SLEEPING_SPEED = 0.003
 """Metres and radians a second: a body that was slower for two seconds is left out of the
 computation until something touches it. With seven bodies at rest a step costs a quarter of what it
 costs otherwise."""
 
 
-class BulletActuated(BulletWorld, Actuated):
+class BulletMotors(BulletWorld, MotorSimulation):
     """A world with gravity and a robot on motors in pybullet."""
 
     def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
@@ -83,9 +88,9 @@ class BulletActuated(BulletWorld, Actuated):
 
     # Time
 
-    def tick(self, rates: Sequence[float] | None = None) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
-        trajectory's speeds there.
+    def step_motors(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / COMMANDS_PER_SECOND s towards `conf` and `opening`; `rates`
+        (3 + n,) are the trajectory's speeds there.
         """
         bullet, client = self._bullet, self.client
         count = len(self._driven)
@@ -94,7 +99,7 @@ class BulletActuated(BulletWorld, Actuated):
             targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
             positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
-        self._fingers.drive(self.opening, self.squeezing, RATE)
+        self._fingers.drive(self.opening, self.squeezing, COMMANDS_PER_SECOND)
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
 
@@ -103,7 +108,7 @@ class BulletActuated(BulletWorld, Actuated):
     @property
     def time(self) -> float:
         """Return the simulated time, seconds since the beginning."""
-        return self._steps / RATE
+        return self._steps / COMMANDS_PER_SECOND
 
     def actual(self) -> Array:
         """Return the actual configuration (3 + n,)."""
@@ -146,7 +151,7 @@ class BulletActuated(BulletWorld, Actuated):
             found[first, second] = found.get((first, second), 0.0) + float(point[9])
         return found
 
-    def near_fingers(self, body: str, reach: float = NEAR) -> bool:
+    def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
         """Check whether both fingers are this near to a body, metres."""
         handle = self.solids[body][0].handle
         return all(
@@ -158,9 +163,9 @@ class BulletActuated(BulletWorld, Actuated):
 
     # What happens to bodies
 
-    def bind(self, body: str) -> None:
+    def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
-        self.unbind()
+        self.detach()
         bullet, client, handle = self._bullet, self.client, self.solids[body][0].handle
         state = bullet.getLinkState(
             self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client
@@ -176,9 +181,9 @@ class BulletActuated(BulletWorld, Actuated):
             T_hand_body.position, [0, 0, 0], T_hand_body.quaternion, physicsClientId=client,
         )  # fmt: skip
         self.bound = body
-        self.pass_through(body, True)
+        self.disable_collision(body, True)
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """
@@ -186,7 +191,7 @@ class BulletActuated(BulletWorld, Actuated):
             self._bullet.removeConstraint(self._constraint, physicsClientId=self.client)
             self.bound = None
 
-    def pass_through(self, body: str, passes: bool) -> None:
+    def disable_collision(self, body: str, passes: bool) -> None:
         """Switch collisions between the robot and a body: whether they do not feel each other."""
         for link in range(-1, self._bullet.getNumJoints(self._mover, physicsClientId=self.client)):
             self._bullet.setCollisionFilterPair(
@@ -194,22 +199,22 @@ class BulletActuated(BulletWorld, Actuated):
                 physicsClientId=self.client,
             )  # fmt: skip
 
-    def put(self, body: str, T_world_body: Array) -> None:
+    def set_pose(self, body: str, T_world_body: Array) -> None:
         """Move a body somewhere at once, at rest."""
         self.place(body, T_world_body)
-        self.attend(body)
+        self.wake(body)
         for solid in self.solids[body]:
             self._bullet.resetBaseVelocity(
                 solid.handle, [0.0] * 3, [0.0] * 3, physicsClientId=self.client
             )
 
-    def become(self, scene: Scene) -> None:
+    def reset_scene(self, scene: Scene) -> None:
         """Take bodies away that a scene does not have, and add those that only it has, where it
         says.
         """
         for name in self.scene.bodies.keys() - scene.bodies.keys():
             if self.bound == name:
-                self.unbind()
+                self.detach()
             for solid in self.solids.pop(name):
                 self._bullet.removeBody(solid.handle, physicsClientId=self.client)
         for name, body in scene.bodies.items():
@@ -218,9 +223,9 @@ class BulletActuated(BulletWorld, Actuated):
                 if body.movable:
                     self._let_roll(name)
         self.scene = scene
-        self.attend(self.bound)
+        self.wake(self.bound)
 
-    def attend(self, body: str | None) -> None:
+    def wake(self, body: str | None) -> None:
         """Wake all bodies; this one, which is handled, stays awake when it is at rest
         in the hand.
         """
@@ -238,6 +243,7 @@ class BulletActuated(BulletWorld, Actuated):
 
     def _let_roll(self, body: str) -> None:
         self._bullet.changeDynamics(
-            self.solids[body][0].handle, -1, rollingFriction=ROLLING, spinningFriction=ROLLING,
-            sleepThreshold=SLEEPY, physicsClientId=self.client,
+            self.solids[body][0].handle, -1,
+            rollingFriction=ROLLING_FRICTION_M, spinningFriction=ROLLING_FRICTION_M,
+            sleepThreshold=SLEEPING_SPEED, physicsClientId=self.client,
         )  # fmt: skip

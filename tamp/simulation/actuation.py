@@ -9,20 +9,20 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.world import World
 
-RATE = 240
+COMMANDS_PER_SECOND = 240
 """Commands to the motors a second."""
 
 BASE_FORCE = 2e4
 """The most with which the base is driven, newtons and newton metres."""
 
-NEAR = 0.004
+BETWEEN_FINGERS_M = 0.004
 """Metres from both fingers within which a body counts as between them."""
 
 FINGER_SPEED = 0.05
 """Metres a second of each finger."""
 
 
-class Actuated(World):
+class MotorSimulation(World):
     """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
     have mass and fall.
 
@@ -49,15 +49,15 @@ class Actuated(World):
     # Time
 
     @abstractmethod
-    def tick(self, rates: Sequence[float] | None = None) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
-        trajectory's speeds there.
+    def step_motors(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / COMMANDS_PER_SECOND s towards `conf` and `opening`; `rates`
+        (3 + n,) are the trajectory's speeds there.
         """
 
     def wait(self, seconds: float) -> None:
         """Stand still and let time pass."""
-        for _ in range(round(seconds * RATE)):
-            self.tick()
+        for _ in range(round(seconds * COMMANDS_PER_SECOND)):
+            self.step_motors()
 
     @property
     @abstractmethod
@@ -91,34 +91,34 @@ class Actuated(World):
         """
 
     @abstractmethod
-    def near_fingers(self, body: str, reach: float = NEAR) -> bool:
+    def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
         """Check whether both fingers are this near to a body, metres."""
 
     # What happens to bodies
 
     @abstractmethod
-    def bind(self, body: str) -> None:
+    def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
 
     @abstractmethod
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """
 
     @abstractmethod
-    def pass_through(self, body: str, passes: bool) -> None:
+    def disable_collision(self, body: str, passes: bool) -> None:
         """Switch collisions between the robot and a body: whether they do not feel each other."""
 
     @abstractmethod
-    def put(self, body: str, T_world_body: Array) -> None:
+    def set_pose(self, body: str, T_world_body: Array) -> None:
         """Move a body somewhere at once, at rest."""
 
     @abstractmethod
-    def become(self, scene: Scene) -> None:
+    def reset_scene(self, scene: Scene) -> None:
         """Take bodies away that a scene does not have, and add those that only it has, where it
         says.
         """
 
-    def attend(self, body: str | None) -> None:
+    def wake(self, body: str | None) -> None:
         """Keep a body awake that is handled, where an engine lets bodies at rest sleep."""

@@ -15,7 +15,7 @@ import numpy as np
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Sphere
-from tamp.simulation.drops import STEP, Contact, Drops, Item
+from tamp.simulation.drops import ENGINE_STEP_S, Contact, Drops, Item
 from tamp.simulation.physics import HULL_PAD, load_bullet
 from tamp.simulation.shapes import centre_of_mass, obj
 from tamp.system.scratch import scratch_folder
@@ -85,7 +85,7 @@ class BulletDrops(Drops):
         """
         handle, item = self._placed(T_world_body)
         bullet, client = self._bullet, self.client
-        for step in range(math.ceil(seconds / STEP)):
+        for step in range(math.ceil(seconds / ENGINE_STEP_S)):
             bullet.stepSimulation(physicsClientId=client)
             if step % 60 == 59:
                 linear, angular = bullet.getBaseVelocity(handle, physicsClientId=client)

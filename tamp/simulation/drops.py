@@ -10,7 +10,7 @@ from typing import Self
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Part
 
-STEP = 1 / 240
+ENGINE_STEP_S = 1 / 240
 """Seconds of one step of the engine."""
 
 

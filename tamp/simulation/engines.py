@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import Actuated
+from tamp.simulation.actuation import MotorSimulation
 from tamp.simulation.drops import Drops
 from tamp.simulation.world import World
 
 MakesWorld = Callable[[Scene, Robot | None, bool], World]
-MakesActuated = Callable[[Scene, Robot, float | None], Actuated]
+MakesActuated = Callable[[Scene, Robot, float | None], MotorSimulation]
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,10 @@ def _bullet_world(scene: Scene, robot: Robot | None, dynamic: bool) -> World:
     return BulletWorld(scene, robot, dynamic=dynamic)
 
 
-def _bullet_actuated(scene: Scene, robot: Robot, force: float | None) -> Actuated:
-    from tamp.simulation.actuated import BulletActuated
+def _bullet_actuated(scene: Scene, robot: Robot, force: float | None) -> MotorSimulation:
+    from tamp.simulation.actuated import BulletMotors
 
-    return BulletActuated(scene, robot, force)
+    return BulletMotors(scene, robot, force)
 
 
 def _bullet_drops() -> Drops:
@@ -52,10 +52,10 @@ def _mujoco_world(scene: Scene, robot: Robot | None, dynamic: bool) -> World:
     return MujocoWorld(scene, robot, dynamic=dynamic)
 
 
-def _mujoco_actuated(scene: Scene, robot: Robot, force: float | None) -> Actuated:
-    from tamp.simulation.mujoco_actuated import MujocoActuated
+def _mujoco_actuated(scene: Scene, robot: Robot, force: float | None) -> MotorSimulation:
+    from tamp.simulation.mujoco_actuated import MujocoMotors
 
-    return MujocoActuated(scene, robot, force)
+    return MujocoMotors(scene, robot, force)
 
 
 def _mujoco_drops() -> Drops:
@@ -78,10 +78,10 @@ ENGINES: dict[str, Engine] = {
 }  # fmt: skip
 """The engines by name; the first that is installed is asked where none is named."""
 
-BOTH = "both"
+BOTH_ENGINES = "both"
 """What `tamp-verify` is asked for two opinions with."""
 
-DECIDES = "mujoco"
+DECIDING_ENGINE = "mujoco"
 """Whose opinion counts of two: its distances are the more exact."""
 
 
@@ -107,9 +107,11 @@ def asked_engines(name: str | None) -> tuple[str, ...]:
     """
     if name is None:
         return (default_engine(),)
-    named = sorted(ENGINES, key=lambda one: one != DECIDES) if name == BOTH else [name]
-    if name not in (*ENGINES, BOTH):
-        raise InputError(f"unknown engine '{name}'", found=name, choices=(*ENGINES, BOTH))
+    named = (
+        sorted(ENGINES, key=lambda one: one != DECIDING_ENGINE) if name == BOTH_ENGINES else [name]
+    )
+    if name not in (*ENGINES, BOTH_ENGINES):
+        raise InputError(f"unknown engine '{name}'", found=name, choices=(*ENGINES, BOTH_ENGINES))
     for one in named:
         engine(one)
     return tuple(named)
@@ -124,7 +126,7 @@ def default_engine() -> str:
     for name in ENGINES:
         if installed(name):
             return name
-    raise InputError("no engine is installed", remedy=ENGINES[DECIDES].remedy)
+    raise InputError("no engine is installed", remedy=ENGINES[DECIDING_ENGINE].remedy)
 
 
 def installed(name: str) -> bool:
@@ -141,8 +143,8 @@ def open_world(
 
 def open_actuated(
     scene: Scene, robot: Robot, force: float | None = None, *, name: str | None = None
-) -> Actuated:
-    """Open a world with gravity and motors in the engine of a name: see `Actuated`."""
+) -> MotorSimulation:
+    """Open a world with gravity and motors in the engine of a name: see `MotorSimulation`."""
     return engine(name).actuated(scene, robot, force)
 
 

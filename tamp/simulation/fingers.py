@@ -15,14 +15,14 @@ import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 
-CORNER = 0.007
+PAD_CORNER_M = 0.007
 """Metres from the pad's middle to its points of contact along both its sides: it is 17 mm wide and
 high."""
 
-BALL = 0.003
+BALL_RADIUS_M = 0.003
 """Radius of the balls, metres, by which a pad touches at its corners."""
 
-BACK = 0.002
+FINGER_SETBACK_M = 0.002
 """Metres by which the finger's hull stands back, 1 mm of which Bullet pads it with: a body that
 finds no room between the balls meets it, as thin and strongly curved ones do."""
 
@@ -33,13 +33,13 @@ PRESSING_SPEED = 1.0
 """That a finger's motor asks for once it stands, metres a second: so high that its whole force is
 reached in the first of the solver's iterations."""
 
-STALLED = 0.004
+STALLED_SPEED = 0.004
 """Metres a second, both fingers together, below which a hand that closes has met something,"""
 
 STALLED_FOR = 24
 """after so many steps."""
 
-ITERATIONS = 50
+SOLVER_ITERATIONS = 50
 """Of the solver, as is usual;"""
 
 HOLDING_ITERATIONS = 120
@@ -64,15 +64,15 @@ def with_pads(urdf: str, robot: Robot) -> str:
             if origin is None:
                 origin = ElementTree.SubElement(collision, "origin")
             at = np.array([float(word) for word in origin.get("xyz", "0 0 0").split()])
-            origin.set("xyz", _words(at + BACK * opens))
+            origin.set("xyz", _words(at + FINGER_SETBACK_M * opens))
 
         T_finger_tool = (finger.origin.inverse() @ robot.T_hand_tool).matrix
-        for x, z in itertools.product((-CORNER, CORNER), repeat=2):
-            centre = (T_finger_tool @ [x, 0.0, z, 1.0])[:3] + BALL * opens
+        for x, z in itertools.product((-PAD_CORNER_M, PAD_CORNER_M), repeat=2):
+            centre = (T_finger_tool @ [x, 0.0, z, 1.0])[:3] + BALL_RADIUS_M * opens
             collision = ElementTree.SubElement(element, "collision")
             ElementTree.SubElement(collision, "origin", xyz=_words(centre))
             geometry = ElementTree.SubElement(collision, "geometry")
-            ElementTree.SubElement(geometry, "sphere", radius=str(BALL))
+            ElementTree.SubElement(geometry, "sphere", radius=str(BALL_RADIUS_M))
 
     return ElementTree.tostring(root, encoding="unicode")
 
@@ -131,7 +131,7 @@ class Fingers:
             self._stick(pressing)
 
         bullet.setPhysicsEngineParameter(
-            numSolverIterations=HOLDING_ITERATIONS if pressing else ITERATIONS,
+            numSolverIterations=HOLDING_ITERATIONS if pressing else SOLVER_ITERATIONS,
             physicsClientId=self._client,
         )
 
@@ -154,7 +154,7 @@ class Fingers:
             self._stands = 0
         elif self._stands < STALLED_FOR:
             width = self.width()
-            slow = abs(width - self._last) * rate < STALLED
+            slow = abs(width - self._last) * rate < STALLED_SPEED
             self._stands, self._last = self._stands + 1 if slow else 0, width
         return self._stands >= STALLED_FOR
 

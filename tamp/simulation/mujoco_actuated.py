@@ -13,13 +13,19 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.simulation.actuation import BASE_FORCE, FINGER_SPEED, NEAR, RATE, Actuated
+from tamp.simulation.actuation import (
+    BASE_FORCE,
+    BETWEEN_FINGERS_M,
+    COMMANDS_PER_SECOND,
+    FINGER_SPEED,
+    MotorSimulation,
+)
 from tamp.simulation.mobile_urdf import BASE_JOINTS
 from tamp.simulation.mujoco_model import (
+    CONTACT_SOFTNESS,
     FELT,
     PASSED,
-    SOFTNESS,
-    TIMESTEP,
+    TIMESTEP_S,
     Model,
     body_name,
     link_body,
@@ -34,20 +40,20 @@ BASE_GAINS = (2e5, 1.5e4)
 ARM_GAINS = {True: (4500.0, 450.0), False: (2000.0, 200.0)}
 """The same of the arm's, newton metres and radians: of strong joints, and of the others."""
 
-STRONG = 50.0
+STRONG_JOINT_NM = 50.0
 """Newton metres from which a joint is strong."""
 
-ARMATURE = 0.1
+ROTOR_INERTIA_KG_M2 = 0.1
 """Inertia of the rotors of the arm's motors, kg m2."""
 
 FINGER_GAINS = (2e4, 200.0)
 """The same of the fingers', newtons and metres."""
 
-DEEP = -0.01
+SQUEEZE_AIM_M = -0.01
 """Metres at which squeezing fingers aim: past each other, so that they press."""
 
 
-class MujocoActuated(MujocoWorld, Actuated):
+class MujocoMotors(MujocoWorld, MotorSimulation):
     """A world with gravity and a robot on motors in MuJoCo."""
 
     def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
@@ -72,10 +78,10 @@ class MujocoActuated(MujocoWorld, Actuated):
         spec, mujoco, robot = model.spec, self._mujoco, self._robot
 
         for joint in robot.joints:
-            spec.joint(joint.name).armature = ARMATURE
+            spec.joint(joint.name).armature = ROTOR_INERTIA_KG_M2
         driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
         gains = [BASE_GAINS] * len(BASE_JOINTS)
-        gains += [ARM_GAINS[effort >= STRONG] for effort in robot.effort]
+        gains += [ARM_GAINS[effort >= STRONG_JOINT_NM] for effort in robot.effort]
         forces = (*(BASE_FORCE,) * len(BASE_JOINTS), *robot.effort)
         for name, (kp, kv), most in zip(driven, gains, forces, strict=True):
             self._add_motor(model, name, kp, kv, most)
@@ -88,7 +94,7 @@ class MujocoActuated(MujocoWorld, Actuated):
                 objtype=mujoco.mjtObj.mjOBJ_BODY, name1=link_body(self.hand_link),
                 name2=body_name(name),
             )  # fmt: skip
-            weld.active, (weld.solref, weld.solimp) = False, SOFTNESS
+            weld.active, (weld.solref, weld.solimp) = False, CONTACT_SOFTNESS
         return model
 
     def _add_motor(self, model: Model, joint: str, kp: float, kv: float, most: float) -> None:
@@ -118,23 +124,23 @@ class MujocoActuated(MujocoWorld, Actuated):
         self._hand = model.body(link_body(self.hand_link)).id
         self._welds = {name: model.equality(body_name(name)).id for name in self.scene.movable}
         for name in self._passed & self.scene.bodies.keys():
-            self.pass_through(name, True)
+            self.disable_collision(name, True)
 
     # Time
 
-    def tick(self, rates: Sequence[float] | None = None) -> None:
-        """Step the simulation by 1 / RATE s towards `conf` and `opening`; `rates` (3 + n,) are the
-        trajectory's speeds there.
+    def step_motors(self, rates: Sequence[float] | None = None) -> None:
+        """Step the simulation by 1 / COMMANDS_PER_SECOND s towards `conf` and `opening`; `rates`
+        (3 + n,) are the trajectory's speeds there.
         """
-        control, steps = self._data.ctrl, round(1 / RATE / TIMESTEP)
+        control, steps = self._data.ctrl, round(1 / COMMANDS_PER_SECOND / TIMESTEP_S)
         control[: self._motors] = self.conf
         if rates is not None:
             control[: self._motors] += self._lead * rates
-        wanted = DEEP if self.squeezing else self.opening / 2
+        wanted = SQUEEZE_AIM_M if self.squeezing else self.opening / 2
         if not self.squeezing:  # the force ends at once, not when the target has come back
             self._aims = max(self._aims, min(self.width() / 2, wanted))
         for _ in range(steps):
-            most = FINGER_SPEED * TIMESTEP
+            most = FINGER_SPEED * TIMESTEP_S
             self._aims += float(np.clip(wanted - self._aims, -most, most))
             control[self._motors :] = self._aims
             self._mujoco.mj_step(self._model, self._data)
@@ -144,7 +150,7 @@ class MujocoActuated(MujocoWorld, Actuated):
     @property
     def time(self) -> float:
         """Return the simulated time, seconds since the beginning."""
-        return self._ticks / RATE
+        return self._ticks / COMMANDS_PER_SECOND
 
     # What is
 
@@ -183,7 +189,7 @@ class MujocoActuated(MujocoWorld, Actuated):
             found[first, second] = found.get((first, second), 0.0) + float(forces[row])
         return found
 
-    def near_fingers(self, body: str, reach: float = NEAR) -> bool:
+    def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
         """Check whether both fingers are this near to a body, metres."""
         return all(
             self.distance(self.links[finger], solid, reach) < reach
@@ -193,9 +199,9 @@ class MujocoActuated(MujocoWorld, Actuated):
 
     # What happens to bodies
 
-    def bind(self, body: str) -> None:
+    def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
-        self.unbind()
+        self.detach()
         self._refresh()
         T_world_hand = pose_of(self._data.xpos[self._hand], self._data.xquat[self._hand])
         T_hand_body = Pose.from_matrix(np.linalg.inv(T_world_hand) @ self.pose(body))
@@ -205,9 +211,9 @@ class MujocoActuated(MujocoWorld, Actuated):
         self._model.eq_data[weld, 3:10] = at
         self._data.eq_active[weld] = 1
         self.bound = body
-        self.pass_through(body, True)
+        self.disable_collision(body, True)
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         """Undo `bind`; the robot still passes through the body until `pass_through`
         says otherwise.
         """
@@ -215,7 +221,7 @@ class MujocoActuated(MujocoWorld, Actuated):
             self._data.eq_active[self._welds[self.bound]] = 0
             self.bound = None
 
-    def pass_through(self, body: str, passes: bool) -> None:
+    def disable_collision(self, body: str, passes: bool) -> None:
         """Switch collisions between the robot and a body: whether they do not feel each other."""
         (self._passed.add if passes else self._passed.discard)(body)
         model, geoms = self._model, self._geoms[self._numbers[body]]
@@ -225,11 +231,11 @@ class MujocoActuated(MujocoWorld, Actuated):
         mine &= self._is_link[model.pair_geom1] | self._is_link[model.pair_geom2]
         model.pair_margin[mine] = -1.0 if passes else 0.0
 
-    def put(self, body: str, T_world_body: Array) -> None:
+    def set_pose(self, body: str, T_world_body: Array) -> None:
         """Move a body somewhere at once, at rest."""
         self.place(body, T_world_body)
 
-    def become(self, scene: Scene) -> None:
+    def reset_scene(self, scene: Scene) -> None:
         """Take bodies away that a scene does not have, and add those that only it has, where it
         says.
         """

@@ -10,10 +10,10 @@ from types import MappingProxyType
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, RobotStart, Room, Scene
-from tamp.simulation.drops import STEP, Contact, Drops, Item
+from tamp.simulation.drops import ENGINE_STEP_S, Contact, Drops, Item
 from tamp.simulation.mujoco_world import MujocoWorld
 
-FALLING = "falling"
+FALLING_BODY = "falling"
 """The name of the body that falls; obstacles have numbers."""
 
 _ROOM = Room((-50.0, 50.0), (-50.0, 50.0))
@@ -41,7 +41,7 @@ class MujocoDrops(Drops):
             str(number): _body(str(number), item, pose, movable=False)
             for number, ((item, _), pose) in enumerate(zip(obstacles, poses, strict=True))
         }
-        bodies[FALLING] = _body(FALLING, body, Pose(), movable=True)
+        bodies[FALLING_BODY] = _body(FALLING_BODY, body, Pose(), movable=True)
         scene = Scene("drop", MappingProxyType(bodies), _ROBOT, _ROOM)
         self._world, self._item = MujocoWorld(scene, dynamic=True), body
         self._boxes = [
@@ -58,7 +58,7 @@ class MujocoDrops(Drops):
         for number, box in enumerate(self._boxes):
             if (box[0] > high + reach).any() or (low - reach > box[1]).any():
                 continue
-            distance = world.body_distance(FALLING, str(number), reach)
+            distance = world.body_distance(FALLING_BODY, str(number), reach)
             if distance < reach:
                 found.append(Contact(number, distance))
         return found
@@ -68,21 +68,21 @@ class MujocoDrops(Drops):
         rest.
         """
         world, _ = self._placed(T_world_body)
-        for step in range(math.ceil(seconds / STEP)):
-            world.step(STEP)
+        for step in range(math.ceil(seconds / ENGINE_STEP_S)):
+            world.step(ENGINE_STEP_S)
             if step % 60 == 59 and _still(world):
                 break
-        return world.pose(FALLING)
+        return world.pose(FALLING_BODY)
 
     def _placed(self, T_world_body: Array) -> tuple[MujocoWorld, Item]:
         if self._world is None or self._item is None:
             raise ValueError("no scene has been set up")
-        self._world.place(FALLING, T_world_body)
+        self._world.place(FALLING_BODY, T_world_body)
         return self._world, self._item
 
 
 def _still(world: MujocoWorld) -> bool:
-    speed = world.speed(FALLING)
+    speed = world.speed(FALLING_BODY)
     return speed[0] < 1e-4 and speed[1] < 1e-3
 
 

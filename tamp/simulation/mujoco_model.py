@@ -26,18 +26,18 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Scene, Sphere
 from tamp.simulation.mobile_urdf import mobile_urdf
 from tamp.simulation.shapes import floor_under, inertia, mass_centre
-from tamp.simulation.world import FLOOR
+from tamp.simulation.world import FLOOR_NAME
 
-TIMESTEP = 1 / 480
+TIMESTEP_S = 1 / 480
 """Seconds of a step."""
 
-FRICTION = 0.5
+DEFAULT_FRICTION = 0.5
 """Coulomb's coefficient of the floor, and of links whose file does not say."""
 
 SPIN, ROLL = 0.005, 0.0001
 """Metres: friction against spinning, and against rolling, where a round body touches."""
 
-SOFTNESS = ((0.004, 1.0), (0.95, 0.99, 0.001, 0.5, 2.0))
+CONTACT_SOFTNESS = ((0.004, 1.0), (0.95, 0.99, 0.001, 0.5, 2.0))
 """solref and solimp of contacts: with MuJoCo's own, what is held creeps five times as fast."""
 
 PASSED, FELT, ROBOT = (2, 2), (2, 3), (1, 0)
@@ -108,7 +108,7 @@ def new_model(robot: Robot | None) -> Model:
             raise refused(f"the description of the robot '{robot.name}'", error) from None
 
     option = spec.option
-    option.timestep = TIMESTEP
+    option.timestep = TIMESTEP_S
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio, option.noslip_iterations = 10.0, 3
@@ -128,7 +128,10 @@ def _name_robot(model: Model, robot: Robot) -> None:
         for number, geom in enumerate(body.geoms):
             geom.name = f"{body.name}/{number}"
             _describe(
-                model, geom, frictions.get(body.name.removeprefix("link:"), FRICTION), moves=True
+                model,
+                geom,
+                frictions.get(body.name.removeprefix("link:"), DEFAULT_FRICTION),
+                moves=True,
             )
             geom.contype, geom.conaffinity = ROBOT
 
@@ -139,22 +142,22 @@ def _link_frictions(robot: Robot) -> dict[str, float]:
     for link in read_xml(robot.urdf).iter("link"):
         said = link.find("contact/lateral_friction")
         if said is not None:
-            found[link.get("name", "")] = float(said.get("value", FRICTION))
+            found[link.get("name", "")] = float(said.get("value", DEFAULT_FRICTION))
     return found
 
 
 def add_floor(model: Model, scene: Scene, *, plane: bool) -> None:
     """Add the floor: a plane for what falls, a thick plate for rays and distances."""
     centre, half = floor_under(scene)
-    body = model.spec.worldbody.add_body(name=FLOOR)
+    body = model.spec.worldbody.add_body(name=FLOOR_NAME)
     kinds = model.mujoco.mjtGeom
     if plane:
-        geom = body.add_geom(name=f"{FLOOR}/0", type=kinds.mjGEOM_PLANE, size=[*half[:2], 1.0])
+        geom = body.add_geom(name=f"{FLOOR_NAME}/0", type=kinds.mjGEOM_PLANE, size=[*half[:2], 1.0])
         body.pos = [*centre[:2], 0.0]
     else:
-        geom = body.add_geom(name=f"{FLOOR}/0", type=kinds.mjGEOM_BOX, size=half)
+        geom = body.add_geom(name=f"{FLOOR_NAME}/0", type=kinds.mjGEOM_BOX, size=half)
         body.pos = centre
-    _describe(model, geom, FRICTION, moves=False)
+    _describe(model, geom, DEFAULT_FRICTION, moves=False)
 
 
 def add_body(model: Model, body: Body, *, free: bool, placed: bool) -> None:
@@ -207,7 +210,7 @@ def _describe(model: Model, geom: Any, friction: float, *, moves: bool) -> None:
     )  # fmt: skip
     geom.condim = 6 if round_ else 4
     geom.friction = [friction**2, SPIN, ROLL]
-    geom.solref, geom.solimp = SOFTNESS
+    geom.solref, geom.solimp = CONTACT_SOFTNESS
     geom.contype, geom.conaffinity = FELT
     model.frictions[geom.name] = (friction, moves)
 
@@ -230,7 +233,7 @@ def _add_pair(model: Model, first: str, second: str, friction: float) -> None:
     condim = max(model.spec.geom(name).condim for name in (first, second))
     pair = model.spec.add_pair(geomname1=first, geomname2=second, condim=condim)
     pair.friction = [friction, friction, SPIN, ROLL, ROLL]
-    pair.solref, pair.solimp = SOFTNESS
+    pair.solref, pair.solimp = CONTACT_SOFTNESS
 
 
 def body_name(body: str) -> str:
@@ -250,7 +253,7 @@ def owner_of(geom: str) -> str:
 
 def is_link(geom: str) -> bool:
     """Tell whether a shape is one of the robot's."""
-    return not geom.startswith(("body:", f"{FLOOR}/"))
+    return not geom.startswith(("body:", f"{FLOOR_NAME}/"))
 
 
 def _owner(geom: str) -> str:

@@ -30,7 +30,7 @@ from tamp.simulation.mujoco_model import (
     wxyz,
 )
 from tamp.simulation.solid import Solid
-from tamp.simulation.world import FLOOR, World
+from tamp.simulation.world import FLOOR_NAME, World
 
 
 class MujocoWorld(World):
@@ -100,11 +100,11 @@ class MujocoWorld(World):
         self.links: dict[str, Solid] = {}
 
     def _floor_solid(self) -> Solid:
-        number = self._model.body(FLOOR).id
+        number = self._model.body(FLOOR_NAME).id
         if self.dynamic:
-            return Solid(FLOOR, number, -1, np.eye(4), np.zeros(3), np.full(3, np.inf))
+            return Solid(FLOOR_NAME, number, -1, np.eye(4), np.zeros(3), np.full(3, np.inf))
         half = self._model.geom_size[self._geoms[number][0]].copy()
-        return Solid(FLOOR, number, -1, np.eye(4), self._model.body_pos[number].copy(), half)
+        return Solid(FLOOR_NAME, number, -1, np.eye(4), self._model.body_pos[number].copy(), half)
 
     def _index_robot(self, robot: Robot) -> None:
         model = self._model

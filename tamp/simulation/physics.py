@@ -22,7 +22,7 @@ from tamp.geometric.scene.scene import Body, Hull, Part, Scene
 from tamp.simulation.shapes import floor_under, half_extents, link_frame, mass_centre, obj
 from tamp.simulation.silence import silence
 from tamp.simulation.solid import Solid, arrays, described
-from tamp.simulation.world import FLOOR, World
+from tamp.simulation.world import FLOOR_NAME, World
 from tamp.system.scratch import scratch_folder
 
 HULL_PAD = 0.001
@@ -133,8 +133,8 @@ class BulletWorld(World):
         handle = self._bullet.createMultiBody(
             0.0, shape, -1, centre.tolist(), physicsClientId=self.client
         )
-        self._owners[handle, -1] = FLOOR
-        return Solid(FLOOR, handle, -1, np.eye(4), centre, half)
+        self._owners[handle, -1] = FLOOR_NAME
+        return Solid(FLOOR_NAME, handle, -1, np.eye(4), centre, half)
 
     def _add_body(self, body: Body) -> None:
         if self.dynamic and body.movable:

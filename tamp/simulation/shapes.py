@@ -12,8 +12,8 @@ import numpy as np
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Scene, Shape, Sphere
 
-_SINGLE = 100.0
-ROUND = 48
+_LARGEST_SINGLE_M = 100.0
+CIRCLE_POINTS = 48
 """Points on a circle where a round shape is described by points."""
 
 
@@ -40,8 +40,8 @@ def points(shape: Shape) -> Array:
     if isinstance(shape, Box):
         signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
         return signs * np.array(shape.size) / 2
-    turn = np.linspace(0.0, 2 * np.pi, ROUND, endpoint=False)
-    circle = np.stack([np.cos(turn), np.sin(turn), np.zeros(ROUND)], axis=1)
+    turn = np.linspace(0.0, 2 * np.pi, CIRCLE_POINTS, endpoint=False)
+    circle = np.stack([np.cos(turn), np.sin(turn), np.zeros(CIRCLE_POINTS)], axis=1)
     if isinstance(shape, Cylinder):
         return np.concatenate(
             [circle * shape.radius + [0.0, 0.0, z * shape.height / 2] for z in (-1.0, 1.0)]
@@ -97,7 +97,7 @@ def link_frame(state: Sequence[Any]) -> tuple[float, ...]:
     pybullet tells the frame of a link in single precision, that of its centre of mass in double:
     far from the world's origin (0.06 mm at 1 km) the frame is taken from the latter.
     """
-    if max(abs(state[4][0]), abs(state[4][1])) < _SINGLE:
+    if max(abs(state[4][0]), abs(state[4][1])) < _LARGEST_SINGLE_M:
         return (*state[4], *state[5])
     frame = Pose(state[0], state[1]) @ Pose(state[2], state[3]).inverse()
     return (*frame.position, *frame.quaternion)

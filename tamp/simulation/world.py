@@ -13,7 +13,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.solid import Solid
 
-FLOOR = "floor"
+FLOOR_NAME = "floor"
 """The floor's name among bodies."""
 
 

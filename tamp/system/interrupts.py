@@ -1,4 +1,8 @@
-"""Hard timeouts: an alarm ends computations that do not look at the clock."""
+"""Hard timeouts: an alarm ends computations that do not look at the clock.
+
+Not by a worker process that is killed: values of streams, users' functions and what a run has
+learned would have to be pickled, and the best plan so far would be lost with the process.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,8 @@
 """Validation of a JSON document whose shape is not to be trusted: every surprise is an InputError
 that says where.
+
+Not one reader with the YAML's (`tamp.geometric.loading.yaml_nodes`): a place is a path here and a
+line there, numbers have units and tags there, and what the two share is `InputError`.
 """
 
 from __future__ import annotations

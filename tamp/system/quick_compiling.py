@@ -102,11 +102,11 @@ def generate_code_when_called() -> None:
         names = defined(library)
         return not names or any(name.startswith(WRAPPERS) for name in names)
 
-    def set_environment_if_there(self: Any, name: str, environment: Any) -> None:
-        if self._engine.get_global_value_address(name):
-            set_environment(self, name, environment)
+    def set_environment_if_there(self: Any, env_name: str, env: Any) -> None:
+        if self._engine.get_global_value_address(env_name):
+            set_environment(self, env_name, env)
         else:
-            environments[name] = environment
+            environments[env_name] = env
 
     def generate_now(self: Any) -> None:
         generate(self)

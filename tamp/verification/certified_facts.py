@@ -9,28 +9,28 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile
 from tamp.plan.violation import Violation
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain, Fact
-from tamp.verification.collision_sweep import TOLERANCE, Findings, Sweeper
+from tamp.verification.collision_sweep import MAX_PENETRATION_M, CollisionFindings, Sweeper
 from tamp.verification.execution_state import Held
-from tamp.verification.initial_state import apart, base_apart, owner_of
-from tamp.verification.limits import SLACK
+from tamp.verification.initial_state import owner_of
+from tamp.verification.limits import RANGE_TOLERANCE
 from tamp.verification.makers_limits import limits_of
 
-CLOSE = 0.001
+POSE_DIFFERENCE_M = 0.001
 """Metres by which two poses that should be one may differ."""
-ALIKE = math.radians(0.5)
+POSE_DIFFERENCE_RAD = math.radians(0.5)
 """Radians by which they may be turned."""
-PRESSED = 0.002
+FINGER_PENETRATION_M = 0.002
 """Metres by which fingers may be in what they hold."""
-LOOSE = 0.003
+FINGER_GAP_M = 0.003
 """Metres by which a finger may be off what it holds."""
-PAD = 0.008
+PAD_HALF_SIDE_M = 0.008
 """Metres from the tool frame's origin to the pads' edges along its x and z."""
-ASIDE = (0.0, -300.0)
+EMPTY_PLACE_M = (0.0, -300.0)
 """Metres x, y: where nothing else is."""
 
 
@@ -81,7 +81,7 @@ class Certified:
         }
 
     @property
-    def known(self) -> set[str]:
+    def checkable(self) -> set[str]:
         """Return the predicates that can be checked in this domain."""
         declared = self._domain.predicates
         return {
@@ -96,7 +96,7 @@ class Certified:
         }
         changed |= self._domain.derived_predicates
 
-        known = self.known
+        checkable = self.checkable
         for fact in sorted(set(facts)):
             predicate, *terms = fact
             text = f"({' '.join(fact)})"
@@ -105,7 +105,7 @@ class Certified:
                     "certified",
                     f"{text}: actions and rules decide about {predicate}, streams do not",
                 )
-            elif predicate not in known:
+            elif predicate not in checkable:
                 trusted[predicate] += 1
             else:
                 kinds, check = self._checks[predicate]
@@ -119,36 +119,40 @@ class Certified:
         world, robot = self._world, self._robot
         if not 0.0 <= opening <= robot.opening + 1e-6:
             return f"the fingers cannot open to {1000 * opening:.1f} mm"
-        T_world_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *robot.home, opening]))
+        T_world_tool = self._sweeper.tool(np.array([*EMPTY_PLACE_M, 0.0, *robot.home, opening]))
         T_before = world.pose(body)
         world.place(body, T_world_tool @ T_tool_body)
         try:
-            return self._why_loose(body) or self._why_beside(body, T_world_tool, opening)
+            return self._why_not_tight(body) or self._why_not_between(body, T_world_tool, opening)
         finally:
             world.place(body, T_before)
 
-    def _why_loose(self, body: str) -> str | None:
+    def _why_not_tight(self, body: str) -> str | None:
         """Say why the hand as it stands does not touch a body as it should; None when it does."""
         hand = self._world.links[self._robot.hand]
         fingers = (self._world.links[link.name] for link in self._robot.finger_links)
         for name, link, loosest in (
             ("palm", hand, math.inf),
-            *(("finger", finger, LOOSE) for finger in fingers),
+            *(("finger", finger, FINGER_GAP_M) for finger in fingers),
         ):
             distance = min(
                 self._world.distance(link, solid, 0.05) for solid in self._world.solids[body]
             )
-            if distance < -PRESSED:
+            if distance < -FINGER_PENETRATION_M:
                 return f"the {name} is {-1000 * distance:.1f} mm in it"
             if distance > loosest:
                 far = f"{1000 * distance:.1f} mm" if math.isfinite(distance) else "far"
                 return f"a {name} is {far} off it"
         return None
 
-    def _why_beside(self, body: str, T_world_tool: Array, opening: float) -> str | None:
+    def _why_not_between(self, body: str, T_world_tool: Array, opening: float) -> str | None:
         """Say why a body is not between the pads; it is when a line from pad to pad meets it."""
         reach = max(opening / 2 - 2e-4, 1e-4)
-        at = [(x, z) for x in np.linspace(-PAD, PAD, 5) for z in np.linspace(-PAD, PAD, 5)]
+        at = [
+            (x, z)
+            for x in np.linspace(-PAD_HALF_SIDE_M, PAD_HALF_SIDE_M, 5)
+            for z in np.linspace(-PAD_HALF_SIDE_M, PAD_HALF_SIDE_M, 5)
+        ]
         ends = []
         for side in (-reach, reach):
             points = np.array([(x, side, z) for x, z in at])
@@ -171,8 +175,8 @@ class Certified:
 
     def _shifted(self, terms: list[str]) -> str | None:
         pose, was, now, shifted = (self._plan.values[terms[at]].data for at in (1, 3, 4, 5))
-        moved, turned = apart(now @ np.linalg.inv(was) @ pose, shifted)
-        if moved > CLOSE or turned > ALIKE:
+        moved, turned = pose_difference(now @ np.linalg.inv(was) @ pose, shifted)
+        if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
             return f"carried along it would be {off} from there"
         return None
@@ -210,8 +214,8 @@ class Certified:
             return "the path leaves the joints' limits"
         for joints in (approach[-1], lift[0]):
             T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
-            moved, turned = apart(T_world_tool @ hold.T_tool_body, pose)
-            if moved > CLOSE or turned > ALIKE:
+            moved, turned = pose_difference(T_world_tool @ hold.T_tool_body, pose)
+            if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 return f"the hand would hold it {off} from there"
         return None
@@ -219,13 +223,14 @@ class Certified:
     def _beyond(self, *paths: Array) -> bool:
         """Check whether joint positions (n, joints) are out of the limits."""
         limits = limits_of(self._robot)
-        lower, upper = np.array(limits.lower) - SLACK, np.array(limits.upper) + SLACK
+        lower = np.array(limits.lower) - RANGE_TOLERANCE
+        upper = np.array(limits.upper) + RANGE_TOLERANCE
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
 
     def _base_motion(self, terms: list[str]) -> str | None:
         paths = [path for path in self._plan.values[terms[1]].data or () if path[0] == "base"]
         target = self._plan.values[terms[0]].data
-        if paths and base_apart(paths[-1][1][-1], target) > CLOSE:
+        if paths and base_difference(paths[-1][1][-1], target) > POSE_DIFFERENCE_M:
             return "it ends elsewhere"
         return None
 
@@ -236,7 +241,9 @@ class Certified:
         for body, term in ((first, terms[1]), (second, terms[3])):
             self._world.place(body, self._plan.values[term].data)
         distance = self._world.body_distance(first, second)
-        return f"they penetrate by {-1000 * distance:.1f} mm" if distance < -TOLERANCE else None
+        if distance >= -MAX_PENETRATION_M:
+            return None
+        return f"they penetrate by {-1000 * distance:.1f} mm"
 
     def _approach(self, terms: list[str]) -> str | None:
         pose, hold = (self._plan.values[term].data for term in terms[1:3])
@@ -267,7 +274,9 @@ class Certified:
         links = [world.links[name] for name in self._sweeper.hand]
         depth = max(-world.distance(link, solid) for link in links for solid in world.solids[other])
         world.place(other, T_before)
-        return f"the hand is {1000 * depth:.1f} mm in {other}" if depth > TOLERANCE else None
+        if depth <= MAX_PENETRATION_M:
+            return None
+        return f"the hand is {1000 * depth:.1f} mm in {other}"
 
     def _reach_clear(self, terms: list[str]) -> str | None:
         other = self._bodies[terms[5]]

@@ -9,7 +9,7 @@ from tamp.errors import InputError
 from tamp.geometric.scene.classifier import Classifier, Undecided
 from tamp.system.python_object import python_object
 
-MODES = (":mixed", ":alone")
+SAMPLER_MODES = (":mixed", ":alone")
 """What tamp-solve reads after a sampler's name, and the judge may read as well: it says nothing of
 the classifier.
 """
@@ -29,7 +29,7 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
             remedy = "For example: --sampler upright=upright.py"
             raise InputError(f"--sampler wants RELATION=FILE, not '{pair}'", remedy=remedy)
 
-        for mode in MODES:
+        for mode in SAMPLER_MODES:
             name = name.removesuffix(mode)
         made = _made(relation, Path(name))
 

@@ -21,13 +21,13 @@ from tamp.verification.broad_phase import (
 from tamp.verification.execution_state import Held
 from tamp.verification.trajectory_sampling import Motion, Sampler
 
-TOLERANCE = 0.001
+MAX_PENETRATION_M = 0.001
 """Metres of penetration that are not yet a collision."""
-DEEPER = 0.0003
+DEEPENING_M = 0.0003
 """Metres that bodies in each other at the start may get deeper: an arm's way is not straight."""
-REACH = 0.02
+CLEARANCE_RANGE_M = 0.02
 """Metres up to which clearance is measured."""
-BLOCK = 512
+SAMPLES_PER_BLOCK = 512
 """Samples that are looked at together."""
 
 
@@ -42,7 +42,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Natural:
+class ExpectedContacts:
     """Contact that belongs to grasping and standing.
 
     Attributes:
@@ -59,7 +59,7 @@ class Natural:
 
 
 @dataclass
-class Findings:
+class CollisionFindings:
     """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
 
     It ends, somewhere in the motion, when they are more than `most`. Without `clearance` nobody
@@ -72,8 +72,8 @@ class Findings:
     most: float = math.inf
     clearance: bool = True
 
-    def met(
-        self, contact: Contact, counts_as_clearance: bool, tolerance: float = TOLERANCE
+    def record(
+        self, contact: Contact, unexpected: bool, tolerance: float = MAX_PENETRATION_M
     ) -> None:
         """Take note of a contact or near miss."""
         pair = (contact.first, contact.second)
@@ -81,9 +81,7 @@ class Findings:
             pair not in self.worst or contact.distance < self.worst[pair].distance
         ):
             self.worst[pair] = contact
-        if counts_as_clearance and (
-            self.nearest is None or contact.distance < self.nearest.distance
-        ):
+        if unexpected and (self.nearest is None or contact.distance < self.nearest.distance):
             self.nearest = contact
 
     @property
@@ -134,8 +132,8 @@ class Sweeper:
         rows: Array,
         times: Array,
         held: Held | None,
-        findings: Findings,
-        natural: Natural = Natural(),
+        findings: CollisionFindings,
+        usual: ExpectedContacts = ExpectedContacts(),
         against: frozenset[str] | None = None,
     ) -> None:
         """Look for collisions on the polyline through some states.
@@ -145,7 +143,7 @@ class Sweeper:
             times: Seconds, shape (n,).
             held: What is in the hand; it follows it.
             findings: Receives what is met.
-            natural: Nearness that is no matter of clearance, and contact that is no collision.
+            usual: Nearness that is no matter of clearance, and contact that is no collision.
             against: Look only at these bodies, and not at the robot itself.
         """
         carried = {one.body for one in held.all} if held else set[str]()

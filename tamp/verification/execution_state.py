@@ -22,7 +22,7 @@ class Held:
 
 
 @dataclass(eq=False)
-class Course:
+class ExecutionState:
     """The robot's row [x, y, yaw, q1..qn, opening] in m and rad, what it holds, the time in s."""
 
     row: Array

@@ -55,6 +55,15 @@ def free(formula: Formula) -> set[str]:
     return free(formula.body) - {p.name for p in formula.parameters}
 
 
+def facts(formula: Formula) -> set[Fact]:
+    """Return the facts without variables that it speaks of."""
+    if isinstance(formula, Atom):
+        return {(formula.predicate, *formula.terms)} if not free(formula) else set()
+    if isinstance(formula, And | Or):
+        return {fact for part in formula.parts for fact in facts(part)}
+    return facts(formula.body)
+
+
 def predicates(formula: Formula) -> set[str]:
     """Return the predicates that it asks for."""
     if isinstance(formula, Atom):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import base_difference, pose_difference
 from tamp.geometric.scene.scene import Body, Scene
 from tamp.plan.read import PlanFile
 from tamp.plan.violation import Violation
@@ -17,11 +17,11 @@ FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1, "ridi
 """Fluents whose geometric meaning we know."""
 KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container"})
 """Types that the scene decides about."""
-EXACT = 1e-6
+START_TOLERANCE = 1e-6
 """Metres or radians by which a start in the plan may differ from the problem's."""
 
 
-def meant(domain: Domain, predicate: str) -> bool:
+def has_standard_meaning(domain: Domain, predicate: str) -> bool:
     """Tell whether the domain's predicate is the fluent of that name whose meaning we know."""
     declared = domain.predicates.get(predicate)
     return declared is not None and len(declared.parameters) == FLUENT_ARITY[predicate]
@@ -72,7 +72,7 @@ def check_initial(
     for fact in plan.initial:
         predicate, *terms = fact
         text = f"({' '.join(fact)})"
-        known = predicate in FLUENT_ARITY and meant(domain, predicate)
+        known = predicate in FLUENT_ARITY and has_standard_meaning(domain, predicate)
         if known and len(terms) != FLUENT_ARITY[predicate]:
             yield Violation("initial", f"{text} has a wrong number of arguments")
         elif (
@@ -89,8 +89,8 @@ def check_initial(
                     "initial", f"{text}: '{terms[1]}' is not a pose", bodies=(terms[0],)
                 )
             else:
-                moved, turned = apart(value.data, bodies[terms[0]].pose.matrix)
-                if moved > EXACT or turned > 1e-4:
+                moved, turned = pose_difference(value.data, bodies[terms[0]].pose.matrix)
+                if moved > START_TOLERANCE or turned > 1e-4:
                     off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                     message = f"{text}: {terms[0]} starts {off} from there"
                     yield Violation("initial", message, bodies=(terms[0],), depth=moved)
@@ -98,12 +98,12 @@ def check_initial(
             value = plan.values.get(terms[0])
             if value is None or value.type != "base-conf":
                 yield Violation("initial", f"{text}: '{terms[0]}' is not a base-conf")
-            elif base_apart(value.data, np.array(scene.robot.base)) > EXACT:
+            elif base_difference(value.data, np.array(scene.robot.base)) > START_TOLERANCE:
                 yield Violation("initial", f"{text}: the base starts elsewhere")
         elif not (known and predicate == "hand-empty"):
             yield Violation("initial", f"the problem does not imply {text}")
 
-    if meant(domain, "at-pose"):
+    if has_standard_meaning(domain, "at-pose"):
         for name in bodies:
             if placed.count(name) != 1:
                 yield Violation(
@@ -114,7 +114,7 @@ def check_initial(
 
     for predicate in ("hand-empty", "at-base"):
         count = sum(fact[0] == predicate for fact in facts)
-        if meant(domain, predicate) and count != 1:
+        if has_standard_meaning(domain, predicate) and count != 1:
             yield Violation("initial", f"{predicate} holds {count} times at the start")
 
 
@@ -155,22 +155,3 @@ def _is_kind(fact: Fact, plan: PlanFile, scene: Scene, domain: Domain) -> bool:
         return False
     declared = fact[0] in domain.types and fact[0] in plan.objects.get(fact[1], ())
     return declared or fact[0] in kinds_of(scene, fact[1])
-
-
-def apart(T_first: Array, T_second: Array) -> tuple[float, float]:
-    """Measure metres and radians between two poses of shape (4, 4)."""
-    cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
-    skew = T_first[:3, :3].T @ T_second[:3, :3]
-    sine = (
-        np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
-        / 2
-    )
-    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(
-        float(sine), float(cosine)
-    )
-
-
-def base_apart(first: Array, second: Array) -> float:
-    """Measure the largest difference of two base configurations x, y, yaw; a full turn is none."""
-    turn = (first[2] - second[2] + math.pi) % (2 * math.pi) - math.pi
-    return float(max(np.abs(first[:2] - second[:2]).max(), abs(turn)))

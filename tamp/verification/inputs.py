@@ -15,7 +15,7 @@ from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal
 from tamp.symbolic.pddl.relations import Relation, relation_names, relation_of
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
-from tamp.verification.support_relations import RELATIONS
+from tamp.verification.support_relations import SUPPORT_PREDICATES
 from tamp.verification.trust import read_streams, streams_file
 
 
@@ -146,7 +146,7 @@ def _asked(
             )
 
         relation = relation_of(streams, domain, name)
-        if relation is not None and relation.predicates & RELATIONS.keys():
+        if relation is not None and relation.predicates & SUPPORT_PREDICATES.keys():
             raise InputError(f"'{name}' is decided by the bodies' geometry, no classifier is asked")
         if relation is None:
             what = (

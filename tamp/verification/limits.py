@@ -16,23 +16,23 @@ from tamp.geometric.scene.scene import Room
 from tamp.plan.read import PlanFile, Segment
 from tamp.verification.makers_limits import limits_of
 
-SLACK = 1e-4
+RANGE_TOLERANCE = 1e-4
 """Radians or metres by which a position may exceed its range."""
-SPEED = 1.02
+VELOCITY_LIMIT_SHARE = 1.02
 """Share of a velocity limit that is still kept."""
-HARSH = 1.2
+ACCELERATION_LIMIT_SHARE = 1.2
 """Share of an acceleration limit that is still kept: measured between samples it is coarse."""
-SIDEWAYS = 0.02
+SIDEWAYS_SHARE = 0.02
 """Share of a differential drive's way that may be sideways: samples are chords."""
-ROUNDING = 2e-6
+POSITION_ROUNDING = 2e-6
 """Metres or radians by which a written position may be rounded."""
-WINDOW = 0.02
+ACCELERATION_WINDOW_S = 0.02
 """Seconds between samples over which an acceleration is measured as well, if they are denser."""
-HARSHER = "too harsh"
+TOO_HARSH = "too harsh"
 
 
 @dataclass(frozen=True)
-class Excess:
+class LimitViolation:
     """A limit exceeded: the violation's kind, seconds from the segments' start, what, how much."""
 
     kind: str
@@ -41,7 +41,9 @@ class Excess:
     amount: float
 
 
-def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[Excess]:
+def limit_violations(
+    segments: Sequence[Segment], robot: Robot, room: Room
+) -> Iterator[LimitViolation]:
     """Yield each limit's worst excess in segments of a part that starts and ends at rest."""
     part = segments[0].part
     times, rows = _joined(segments)
@@ -49,19 +51,19 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     steps = np.diff(times)
     if (steps <= 0).any():
         at = int(np.argmax(steps <= 0))
-        yield Excess("time", float(times[at]), f"times of the {part} do not increase", 0.0)
+        yield LimitViolation("time", float(times[at]), f"times of the {part} do not increase", 0.0)
         return
 
     names, lower, upper, velocity, acceleration = _limits(part, robot, room)
     beyond = np.maximum(lower - rows, rows - upper)
-    yield from _worst("limit", beyond - SLACK, beyond, times, names, rows, "out of range")
+    yield from _worst("limit", beyond - RANGE_TOLERANCE, beyond, times, names, rows, "out of range")
     if len(rows) < 2:
         return
     if part == "base":
         yield from _driven(robot, times, rows)
 
     speed = np.abs(np.diff(rows, axis=0)) / steps[:, None]
-    allowed = SPEED * velocity + ROUNDING / steps[:, None]
+    allowed = VELOCITY_LIMIT_SHARE * velocity + POSITION_ROUNDING / steps[:, None]
     yield from _worst(
         "velocity", speed - allowed, speed - velocity, times, names, speed, "too fast"
     )
@@ -69,9 +71,12 @@ def excesses(segments: Sequence[Segment], robot: Robot, room: Room) -> Iterator[
     yield from _harsh(times, rows, acceleration, names)
 
 
-def _harsh(times: Array, rows: Array, acceleration: Array, names: list[str]) -> Iterator[Excess]:
+def _harsh(
+    times: Array, rows: Array, acceleration: Array, names: list[str]
+) -> Iterator[LimitViolation]:
     """Yield each worst acceleration, once between neighbouring samples and once between samples
-    that are WINDOW apart: of finer ones the allowance for rounding would let anything pass.
+    that are ACCELERATION_WINDOW_S apart: of finer ones the allowance for rounding would let
+    anything pass.
     """
     for kept in (np.arange(len(times)), _spread(times)):
         at, steps = times[kept], np.diff(times[kept])[:, None]
@@ -84,9 +89,11 @@ def _harsh(times: Array, rows: Array, acceleration: Array, names: list[str]) -> 
         shortest = np.concatenate([steps[:1], np.minimum(steps[:-1], steps[1:]), steps[-1:]])
 
         harsh = np.abs(np.diff(speeds, axis=0)) / apart
-        allowed = HARSH * acceleration + 2 * ROUNDING / shortest / apart
+        allowed = ACCELERATION_LIMIT_SHARE * acceleration + 2 * POSITION_ROUNDING / shortest / apart
         excess = list(
-            _worst("acceleration", harsh - allowed, harsh - acceleration, at, names, harsh, HARSHER)
+            _worst(
+                "acceleration", harsh - allowed, harsh - acceleration, at, names, harsh, TOO_HARSH
+            )
         )
         yield from excess
         if excess:
@@ -94,32 +101,35 @@ def _harsh(times: Array, rows: Array, acceleration: Array, names: list[str]) -> 
 
 
 def _spread(times: Array) -> NDArray[np.intp]:
-    """Select samples at least WINDOW apart, the first and the last among them."""
+    """Select samples at least ACCELERATION_WINDOW_S apart, the first and the last among them."""
     kept = [0]
     for row in range(1, len(times) - 1):
-        if times[row] - times[kept[-1]] >= WINDOW and times[-1] - times[row] >= WINDOW:
+        if (
+            times[row] - times[kept[-1]] >= ACCELERATION_WINDOW_S
+            and times[-1] - times[row] >= ACCELERATION_WINDOW_S
+        ):
             kept.append(row)
     return np.array([*kept, len(times) - 1], dtype=np.intp)
 
 
-def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[Excess]:
+def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[LimitViolation]:
     """Yield the worst motion of the base that its drive cannot make."""
     step = np.diff(rows, axis=0)
     if robot.drive == "fixed":
         moved = np.abs(rows - rows[0]).max(axis=1)
-        if moved.max() > SLACK:
+        if moved.max() > RANGE_TOLERANCE:
             by = float(moved.max())
             at = float(times[int(moved.argmax())])
-            yield Excess("limit", at, f"the base moves by {by:.2g}, and it is fixed", by)
+            yield LimitViolation("limit", at, f"the base moves by {by:.2g}, and it is fixed", by)
     elif robot.drive == "differential":
         heading = (rows[:-1, 2] + rows[1:, 2]) / 2
         sideways = np.abs(step[:, 1] * np.cos(heading) - step[:, 0] * np.sin(heading))
-        excess = sideways - SLACK - SIDEWAYS * np.linalg.norm(step[:, :2], axis=1)
+        excess = sideways - RANGE_TOLERANCE - SIDEWAYS_SHARE * np.linalg.norm(step[:, :2], axis=1)
         if excess.max() > 0:
             at = int(excess.argmax())
             by = float(sideways[at])
             message = f"the base slides sideways by {1000 * by:.2g} mm, and its wheels do not"
-            yield Excess("limit", float(times[at]), message, by)
+            yield LimitViolation("limit", float(times[at]), message, by)
 
 
 def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
@@ -132,7 +142,7 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
         offset = action.start
         for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
             segments = list(group)
-            for excess in excesses(segments, robot, room):
+            for excess in limit_violations(segments, robot, room):
                 if excess.kind == "limit":
                     where = f"{index + 1} {action.name}, {offset + excess.time:.2f} s"
                     what = f"{where}: {excess.message}: the robot cannot go there"
@@ -184,11 +194,11 @@ def _worst(
     names: list[str],
     values: Array,
     what: str,
-) -> Iterator[Excess]:
+) -> Iterator[LimitViolation]:
     for column, name in enumerate(names):
         if len(excess) and excess[:, column].max() > 0:
             row = int(excess[:, column].argmax())
             value, by = float(values[row, column]), float(amount[row, column])
-            yield Excess(
+            yield LimitViolation(
                 kind, float(times[row]), f"{name} is {what}: {value:.4g}, {by:.2g} over", by
             )

@@ -6,18 +6,18 @@ import math
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, pose_difference
 from tamp.plan.read import Hold, PlanFile
 from tamp.simulation.world import World
-from tamp.verification.certified_facts import ALIKE, CLOSE
+from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD
 from tamp.verification.collision_sweep import Sweeper
-from tamp.verification.execution_state import Course, Held
-from tamp.verification.initial_state import apart, meant
+from tamp.verification.execution_state import ExecutionState, Held
+from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
-from tamp.verification.support_relations import Standing
+from tamp.verification.support_relations import SupportRelations
 from tamp.verification.violation_log import Log
 
-LEAN = math.radians(12.0)
+LOADED_TILT_RAD = math.radians(12.0)
 """Radians by which a body may lean while others stand on it."""
 
 
@@ -25,11 +25,16 @@ class Loads:
     """Says what rides on which body, where it is, and whether it is carried level."""
 
     def __init__(
-        self, plan: PlanFile, world: World, semantics: Semantics, standing: Standing, log: Log
+        self,
+        plan: PlanFile,
+        world: World,
+        semantics: Semantics,
+        standing: SupportRelations,
+        log: Log,
     ) -> None:
         self._plan, self._world, self._standing, self._log = plan, world, standing, log
         self._bodies = {name.lower(): name for name in world.scene.bodies}
-        self._meant = meant(semantics.domain, "riding")
+        self._meant = has_standard_meaning(semantics.domain, "riding")
         self._upright: dict[str, Array] = {}
 
     def on(self, hold: Hold, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
@@ -45,8 +50,8 @@ class Loads:
         T_body_tool = np.linalg.inv(self._world.pose(body))
         for name, T_body_rider in hold.load:
             seen = T_body_tool @ self._world.pose(self._bodies[name]) if name in rides else None
-            moved, turned = (0.0, 0.0) if seen is None else apart(seen, T_body_rider)
-            if moved > CLOSE or turned > ALIKE:
+            moved, turned = (0.0, 0.0) if seen is None else pose_difference(seen, T_body_rider)
+            if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 message = f"{name} is {off} from where the plan has it on {body}"
                 self._log.add("grasp", message, name, body, depth=moved)
@@ -74,12 +79,12 @@ class Loads:
         up = self._upright[held.body]
         leans = [float((sweeper.tool(row)[2, :3] @ held.T_tool_body[:3, :3]) @ up) for row in rows]
         lean = math.acos(max(-1.0, min(1.0, min(leans))))
-        if lean > LEAN:
+        if lean > LOADED_TILT_RAD:
             others = " and ".join(one.body for one in held.load)
             message = f"{held.body} leans by {math.degrees(lean):.1f} deg with {others} on it"
             self._log.add("support", message, held.body, *(one.body for one in held.load))
 
-    def compare(self, state: State, course: Course) -> None:
+    def compare(self, state: State, course: ExecutionState) -> None:
         """Log bodies that are not where they ride by the facts: where the one below has got to."""
         for fact in state.all("riding") if self._meant else ():
             name, below = (self._bodies.get(fact[at]) for at in (0, 2))
@@ -89,8 +94,8 @@ class Loads:
                 continue
             was, carrier = (pose.data for pose in poses if pose is not None)
             there = self._world.pose(below) @ np.linalg.inv(carrier) @ was
-            moved, turned = apart(self._world.pose(name), there)
-            if moved > CLOSE or turned > ALIKE:
+            moved, turned = pose_difference(self._world.pose(name), there)
+            if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 message = f"{name} is {off} from where it rides on {below}"
                 self._log.add("state", message, name, depth=moved)

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from tamp.geometric.scene.classifier import LIKELY, Classifier, Unanswered, probability
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier, Unanswered, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile
@@ -15,7 +15,7 @@ from tamp.relations.observed import moved, scene_names
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.relations import Relation, instances
 from tamp.symbolic.pddl.structs import Domain, Fact
-from tamp.verification.initial_state import meant
+from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import State
 from tamp.verification.violation_log import Log
 
@@ -66,7 +66,7 @@ class Relations:
         facts: set[Fact] = {(name, *row) for name, rows in state.facts.items() for row in rows}
         at = (
             {row[0]: row[1] for row in state.all("at-pose")}
-            if meant(self._domain, "at-pose")
+            if has_standard_meaning(self._domain, "at-pose")
             else {}
         )
         for relation, classifier in self._asked.values():
@@ -162,7 +162,7 @@ class Relations:
             )
             return None
         self.answers[relation.name] += 1
-        return number >= LIKELY
+        return number >= LIKELY_PROBABILITY
 
     def _deny(self, relation: Relation, fact: Fact) -> None:
         """Note, once, that a fact of the plan does not hold."""

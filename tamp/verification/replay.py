@@ -9,31 +9,30 @@ from collections.abc import Sequence
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Formula
-from tamp.verification.certified_facts import ALIKE, CLOSE, Certified
-from tamp.verification.collision_sweep import Findings, Natural, Sweeper
-from tamp.verification.execution_state import Course, Held
+from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD, Certified
+from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
+from tamp.verification.execution_state import ExecutionState, Held
 from tamp.verification.formulas import show
-from tamp.verification.initial_state import apart, base_apart
-from tamp.verification.limits import excesses
+from tamp.verification.limits import limit_violations
 from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.state_agreement import Agreement
-from tamp.verification.support_relations import Standing
+from tamp.verification.support_relations import SupportRelations
 from tamp.verification.touching_pairs import forget_parted, note_touching
 from tamp.verification.violation_log import Log
 
-JUMP = 1e-4
+SEGMENT_JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""
-CLOCK = 1e-4
+TIME_TOLERANCE_S = 1e-4
 """Seconds by which times that should meet may differ."""
-BOUNDING = frozenset({"time", "limit", "velocity"})
+BOUNDING_VIOLATIONS = frozenset({"time", "limit", "velocity"})
 """Violations of an action after which its motions may be of any length."""
-LOOKS = 200_000
+MAX_STATES_AT_FIRST = 200_000
 """States of a plan that are looked at, at most, to begin with,"""
 LOOKS_A_ROW = 200
 """and for each row of its motions: tamp-solve's plans need 5 to 30 a row."""
@@ -59,16 +58,16 @@ class Replay:
         self._semantics, self._certified, self._relations = semantics, certified, relations
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self.log = log
-        self.findings = Findings()
+        self.findings = CollisionFindings()
         rows = sum(len(segment.times) for action in plan.actions for segment in action.segments)
-        self._looks, self._looks_beyond = LOOKS + LOOKS_A_ROW * rows, LOOKS_BEYOND
+        self._looks, self._looks_beyond = MAX_STATES_AT_FIRST + LOOKS_A_ROW * rows, LOOKS_BEYOND
         self._agreement = Agreement(plan, world, semantics.domain, self.log)
-        self._standing = Standing(plan, world, semantics, certified.known, self.log)
+        self._standing = SupportRelations(plan, world, semantics, certified.checkable, self.log)
         self._loads = Loads(plan, world, semantics, self._standing, self.log)
         self._state = State.of(())
         start = world.scene.robot
         arm = start.arm if start.arm is not None else robot.home
-        self.course = Course(np.array([*start.base, *arm, robot.opening]), None, 0.0)
+        self.course = ExecutionState(np.array([*start.base, *arm, robot.opening]), None, 0.0)
 
     @property
     def notes(self) -> list[str]:
@@ -94,7 +93,7 @@ class Replay:
             state = self._relations.observed(state, self.course.in_hand)
 
         self.log.action = self.log.time = None
-        if abs(self._plan.duration - self.course.time) > CLOCK:
+        if abs(self._plan.duration - self.course.time) > TIME_TOLERANCE_S:
             times = f"{self.course.time:.3f} s, not {self._plan.duration:.3f} s"
             self.log.add("time", f"the plan lasts {times}")
         cost = sum(action.cost for action in self._plan.actions)
@@ -127,16 +126,16 @@ class Replay:
 
     def _move(self, action: TimedAction) -> None:
         course = self.course
-        if action.start < course.time - CLOCK:
+        if action.start < course.time - TIME_TOLERANCE_S:
             self.log.add("time", f"it starts at {action.start:.3f} s, before {course.time:.3f} s")
         course.time = self.log.time = action.start
 
         kept = self._check_limits(action)
-        natural = self._natural(action)
+        usual = self._expected_contacts(action)
         most = self._looks if kept else self._looks_beyond
-        findings = Findings(nearest=self.findings.nearest, most=most)
+        findings = CollisionFindings(nearest=self.findings.nearest, most=most)
         for segment in action.segments:
-            self._carry_out(segment, natural, findings)
+            self._carry_out(segment, usual, findings)
         for contact in findings.worst.values():
             pair, depth = (contact.first, contact.second), -contact.distance
             message = f"{contact.first} and {contact.second} penetrate by {1000 * depth:.1f} mm"
@@ -151,12 +150,12 @@ class Replay:
         if kept and findings.full:
             self.log.add(
                 "unchecked",
-                f"its motions are longer than the judge looks at: {LOOKS} states and "
+                f"its motions are longer than the judge looks at: {MAX_STATES_AT_FIRST} states and "
                 f"{LOOKS_A_ROW} a row",
             )
 
         lasts = course.time - action.start
-        if abs(lasts - action.duration) > CLOCK:
+        if abs(lasts - action.duration) > TIME_TOLERANCE_S:
             self.log.add("time", f"it lasts {lasts:.3f} s, not {action.duration:.3f} s")
 
     def _check_limits(self, action: TimedAction) -> bool:
@@ -164,23 +163,25 @@ class Replay:
         offset, kept = action.start, True
         for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
             segments = list(group)
-            for excess in excesses(segments, self._robot, self._world.scene.room):
+            for excess in limit_violations(segments, self._robot, self._world.scene.room):
                 at = offset + excess.time
                 self.log.add(excess.kind, excess.message, time=at, depth=excess.amount)
-                kept = kept and excess.kind not in BOUNDING
+                kept = kept and excess.kind not in BOUNDING_VIOLATIONS
             offset += sum(float(segment.times[-1]) for segment in segments)
         return kept
 
-    def _carry_out(self, segment: Segment, natural: Natural, findings: Findings) -> None:
+    def _carry_out(
+        self, segment: Segment, usual: ExpectedContacts, findings: CollisionFindings
+    ) -> None:
         course = self.course
-        if abs(segment.times[0]) > CLOCK:
+        if abs(segment.times[0]) > TIME_TOLERANCE_S:
             self.log.add("time", f"the {segment.part}'s times do not start at 0")
         rows = self._rows(segment)
         if segment.detach is not None:
             self._detach(segment.detach, rows)
         touched = {segment.attach.body if segment.attach else None, segment.detach}
         touching = frozenset(name for word, name in self._bodies.items() if word in touched)
-        around = Natural(touching, natural.grasped, natural.resting)
+        around = ExpectedContacts(touching, usual.grasped, usual.resting)
         self._sweeper.sweep(rows, segment.times + course.time, course.held, findings, around)
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
@@ -201,15 +202,15 @@ class Replay:
         jump = 0.0
         if segment.part == "base":
             rows[:, :3] = segment.positions
-            jump = base_apart(rows[0, :3], course.row[:3])
+            jump = base_difference(rows[0, :3], course.row[:3])
         elif segment.part == "arm":
             rows[:, 3:-1] = segment.positions
             jump = float(np.abs(rows[0, 3:-1] - course.row[3:-1]).max())
-        if jump > JUMP:
+        if jump > SEGMENT_JUMP:
             message = f"the {segment.part} jumps by {jump:.3g} (m, rad)"
             self.log.add("continuity", message, depth=jump)
         jump = abs(float(rows[0, -1] - course.row[-1]))
-        if jump > JUMP:
+        if jump > SEGMENT_JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
 
         says = segment.holding if segment.part != "gripper" else held and held.lower()
@@ -218,7 +219,7 @@ class Replay:
             message = f"the plan says that the hand holds {told}, not {held or 'nothing'}"
             self.log.add("continuity", message)
         keeps = segment.part == "gripper" and segment.detach is None
-        if keeps and held and np.ptp(rows[:, -1]) > JUMP:
+        if keeps and held and np.ptp(rows[:, -1]) > SEGMENT_JUMP:
             self.log.add("grasp", f"the fingers move while they hold {held}", held)
         return rows
 
@@ -232,8 +233,8 @@ class Replay:
 
         T_world_body, T_world_tool = self._world.pose(body), self._sweeper.tool(course.row)
         T_tool_body = np.linalg.inv(T_world_tool) @ T_world_body
-        moved, turned = apart(T_tool_body, hold.T_tool_body)
-        if moved > CLOSE or turned > ALIKE:
+        moved, turned = pose_difference(T_tool_body, hold.T_tool_body)
+        if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
             self.log.add("grasp", f"{body} is {off} from where the hand closes", body, depth=moved)
 
@@ -250,12 +251,12 @@ class Replay:
         if course.held is None or course.held.body.lower() != name:
             self.log.add("grasp", f"the hand does not hold {name}", name)
             return
-        if rows[-1, -1] < min(rows[0, -1] + CLOSE, self._robot.opening) - JUMP:
+        if rows[-1, -1] < min(rows[0, -1] + POSE_DIFFERENCE_M, self._robot.opening) - SEGMENT_JUMP:
             self.log.add("grasp", f"the fingers do not open to let go of {name}", name)
         course.held = None
         self._standing.check(None)
 
-    def _natural(self, action: TimedAction) -> Natural:
+    def _expected_contacts(self, action: TimedAction) -> ExpectedContacts:
         """Find what an action is near by nature: bodies it grasps, what they stand on then."""
         grasped: set[str] = set()
         resting: set[str] = set()
@@ -276,7 +277,7 @@ class Replay:
                 grasped.add(held.body)
                 resting |= self._standing.stand(held.body, None).on
                 self._world.place(held.body, before)
-        return Natural(frozenset(), frozenset(grasped), frozenset(resting))
+        return ExpectedContacts(frozenset(), frozenset(grasped), frozenset(resting))
 
 
 def _follow(row: Array, segment: Segment) -> None:

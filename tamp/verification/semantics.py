@@ -28,7 +28,7 @@ class State:
     """Facts by predicate; derived ones are not stored but asked for, and remembered once asked."""
 
     facts: dict[str, set[tuple[str, ...]]]
-    known: dict[Fact, bool] = field(default_factory=dict)
+    decided: dict[Fact, bool] = field(default_factory=dict)
     closed: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
 
     @classmethod
@@ -178,11 +178,11 @@ class Semantics:
             return fact in state or (self._is_type(predicate) and self.fits(terms[0], (predicate,)))
         if predicate in self._recursive:
             return tuple(terms) in self._closure(predicate, state)
-        if fact not in state.known:
-            state.known[fact] = fact in state or any(
+        if fact not in state.decided:
+            state.decided[fact] = fact in state or any(
                 True for rule in self._rules[predicate] for _ in self._answers(rule, terms, state)
             )
-        return state.known[fact]
+        return state.decided[fact]
 
     def _is_type(self, predicate: str) -> bool:
         return predicate not in self.domain.predicates and predicate in self.domain.types
@@ -246,7 +246,7 @@ class Semantics:
                         state.closed[name] |= new
                         grows = grows or bool(new)
                         # What rests on the group was answered from less than all.
-                        state.known.clear()
+                        state.decided.clear()
         return state.closed[predicate]
 
     def _every(self, types: Types, binding: Binding) -> Iterator[Binding]:

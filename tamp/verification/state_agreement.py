@@ -7,13 +7,13 @@ from collections import Counter
 
 import numpy as np
 
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile, TimedAction
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain
-from tamp.verification.certified_facts import ALIKE, CLOSE
-from tamp.verification.execution_state import Course
-from tamp.verification.initial_state import apart, base_apart, meant
+from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD
+from tamp.verification.execution_state import ExecutionState
+from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import State
 from tamp.verification.violation_log import Log
 
@@ -25,10 +25,12 @@ class Agreement:
         self._plan, self._world, self._log, self._domain = plan, world, log, domain
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._meant = {
-            name for name in ("at-pose", "holding", "hand-empty", "at-base") if meant(domain, name)
+            name
+            for name in ("at-pose", "holding", "hand-empty", "at-base")
+            if has_standard_meaning(domain, name)
         }
 
-    def compare(self, state: State, course: Course) -> None:
+    def compare(self, state: State, course: ExecutionState) -> None:
         """Log what differs."""
         if "at-pose" in self._meant:
             self._poses(state, course)
@@ -52,7 +54,10 @@ class Agreement:
                 self._log.add("state", f"by the facts the base is in {len(places)} places")
             for (base,) in places:
                 value = self._value(base, "base-conf")
-                if not isinstance(value, np.ndarray) or base_apart(value, course.row[:3]) > CLOSE:
+                if (
+                    not isinstance(value, np.ndarray)
+                    or base_difference(value, course.row[:3]) > POSE_DIFFERENCE_M
+                ):
                     self._log.add("state", f"the base is not at {base}")
 
     def follows(self, action: TimedAction) -> None:
@@ -71,23 +76,23 @@ class Agreement:
             moved = segment.opening[:, None] if part == "gripper" else segment.positions
             for end in (0, -1):
                 if part == "base":
-                    off = base_apart(rows[end], moved[end])
+                    off = base_difference(rows[end], moved[end])
                 else:
                     off = float(np.abs(rows[end] - moved[end]).max())
-                if off > CLOSE:
+                if off > POSE_DIFFERENCE_M:
                     self._log.add(
                         "state",
                         f"its segment {at + 1} is {off:.3g} (m, rad) off its motion",
                         depth=off,
                     )
 
-    def _poses(self, state: State, course: Course) -> None:
+    def _poses(self, state: State, course: ExecutionState) -> None:
         facts = state.all("at-pose")
         for body, pose in facts:
             if body in self._bodies:
                 self._pose(body, pose, course)
         placed = Counter(body for body, _ in facts)
-        if meant(self._domain, "riding"):
+        if has_standard_meaning(self._domain, "riding"):
             placed.update(fact[0] for fact in state.all("riding"))
         for name in self._world.scene.movable:
             count, free = placed[name.lower()], course.in_hand != name
@@ -97,26 +102,26 @@ class Agreement:
                 )
                 self._log.add("state", f"by the facts {name} is {where}", name)
 
-    def _pose(self, body: str, pose: str, course: Course) -> None:
+    def _pose(self, body: str, pose: str, course: ExecutionState) -> None:
         name, value = self._bodies[body], self._value(pose, "pose")
         if course.in_hand == name:
             self._log.add("state", f"{body} is in the hand, not at {pose}", body)
         elif not isinstance(value, np.ndarray):
             self._log.add("state", f"{pose} is not a pose", body)
         else:
-            moved, turned = apart(self._world.pose(name), value)
-            if moved > CLOSE or turned > ALIKE:
+            moved, turned = pose_difference(self._world.pose(name), value)
+            if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 self._log.add("state", f"{body} is {off} from {pose}", body, depth=moved)
 
-    def _grasp(self, body: str, grasp: str, course: Course) -> None:
+    def _grasp(self, body: str, grasp: str, course: ExecutionState) -> None:
         hold, held = self._value(grasp, "grasp"), course.held
         if held is None or held.body.lower() != body or not isinstance(hold, Hold):
             self._log.add("state", f"{body} is not in the hand by {grasp}", body)
             return
-        moved, turned = apart(held.T_tool_body, hold.T_tool_body)
+        moved, turned = pose_difference(held.T_tool_body, hold.T_tool_body)
         wider = abs(float(course.row[-1]) - hold.opening)
-        if moved > CLOSE or turned > ALIKE or wider > CLOSE:
+        if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD or wider > POSE_DIFFERENCE_M:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg, "
             off += f"fingers {1000 * wider:.1f} mm"
             self._log.add(

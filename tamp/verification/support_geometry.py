@@ -12,26 +12,26 @@ from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.simulation.shapes import body_points, mass_centre
 from tamp.simulation.world import World
 
-GAP = 0.010
+SUPPORT_GAP_M = 0.010
 """Metres of air below a body that still count as resting: it will drop onto what is there."""
-SINK = 0.001
+SUPPORT_PENETRATION_M = 0.001
 """Metres by which a body may stand in what it rests on."""
-EVEN = 0.0015
+SUPPORT_GAP_SPREAD_M = 0.0015
 """Metres by which the gaps of points that carry may differ."""
-LEAN = 0.002
+CENTRE_TOLERANCE_M = 0.002
 """Metres by which the centre of mass may be out of the felt points that carry (they are a grid)."""
-GRID = 30
-ELSEWHERE = 300.0
+GRID_LINES = 30
+EMPTY_PLACE_X_M = 300.0
 """Metres along x to where nothing is."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
+class SupportContact:
     """The stand of a body on what carries it.
 
     Attributes:
-        on: Names of the bodies that carry it, "floor" included; empty when nothing is within GAP
-            below it.
+        on: Names of the bodies that carry it, "floor" included; empty when nothing is within
+            SUPPORT_GAP_M below it.
         gap: Metres of air above the nearest, infinite when there is nothing.
         lean: Metres by which the centre of mass is out of what carries it; negative inside.
         carrying: Points of the world's plan at which it is carried, (n, 2), metres.
@@ -51,8 +51,8 @@ class Stand:
     def why(self) -> str | None:
         """Say why it does not; None when it does."""
         if not self.on:
-            return f"nothing is within {1000 * GAP:.0f} mm below it"
-        if self.lean > LEAN:
+            return f"nothing is within {1000 * SUPPORT_GAP_M:.0f} mm below it"
+        if self.lean > CENTRE_TOLERANCE_M:
             return f"its centre of mass is {1000 * self.lean:.1f} mm beyond what carries it"
         return None
 
@@ -69,14 +69,14 @@ class Supports:
             name: float(np.linalg.norm(points, axis=1).max())
             for name, points in self._points.items()
         }
-        self._stands: dict[tuple[tuple[str, bytes], ...], Stand] = {}
+        self._stands: dict[tuple[tuple[str, bytes], ...], SupportContact] = {}
         self._undersides: dict[tuple[str, bytes], Array] = {}
 
-    def stand(self, body: str, absent: str | None = None) -> Stand:
+    def stand(self, body: str, absent: str | None = None) -> SupportContact:
         """Find how a body stands where it is; the robot does not count."""
         key = self._surroundings(body, absent)
         if key not in self._stands:
-            self._stands[key] = self._felt(body, absent)
+            self._stands[key] = self._observe(body, absent)
         return self._stands[key]
 
     def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
@@ -89,43 +89,51 @@ class Supports:
         near = [name for name, is_near in zip(names, within.tolist(), strict=True) if is_near]
         return tuple((name, poses[name].tobytes()) for name in (body, *near))
 
-    def _felt(self, body: str, absent: str | None) -> Stand:
+    def _observe(self, body: str, absent: str | None) -> SupportContact:
         T_world_body = self._world.pose(body)
         robot = self._world.robot
         if robot is not None:
-            self._world.set_robot((ELSEWHERE, ELSEWHERE, 0.0), robot.home, 0.0)
+            self._world.set_robot((EMPTY_PLACE_X_M, EMPTY_PLACE_X_M, 0.0), robot.home, 0.0)
         T_world_absent = self._world.pose(absent) if absent else None
         if absent:
-            self._world.place(absent, _shifted(np.eye(4), 2 * ELSEWHERE))
+            self._world.place(absent, _shifted(np.eye(4), 2 * EMPTY_PLACE_X_M))
 
         underside = self._underside(body, T_world_body[:3, :3]) + T_world_body[:3, 3]
         try:
-            up, down = np.array([0.0, 0.0, 2 * SINK + EVEN]), np.array([0.0, 0.0, GAP + EVEN])
+            up, down = (
+                np.array([0.0, 0.0, 2 * SUPPORT_PENETRATION_M + SUPPORT_GAP_SPREAD_M]),
+                np.array([0.0, 0.0, SUPPORT_GAP_M + SUPPORT_GAP_SPREAD_M]),
+            )
             hits = self._world.rays(underside + up, underside - down)
         finally:
             self._world.place(body, T_world_body)
             if absent and T_world_absent is not None:
                 self._world.place(absent, T_world_absent)
 
-        length = 2 * SINK + 2 * EVEN + GAP
+        length = 2 * SUPPORT_PENETRATION_M + 2 * SUPPORT_GAP_SPREAD_M + SUPPORT_GAP_M
         gaps = np.array(
-            [fraction * length - 2 * SINK - EVEN if name else np.inf for name, fraction in hits]
+            [
+                fraction * length - 2 * SUPPORT_PENETRATION_M - SUPPORT_GAP_SPREAD_M
+                if name
+                else np.inf
+                for name, fraction in hits
+            ]
         )
         # What is met higher up is beside the body and not below it: a ray down its flank begins in
         # a neighbour.
-        gaps[gaps < -SINK - EVEN] = np.inf
+        gaps[gaps < -SUPPORT_PENETRATION_M - SUPPORT_GAP_SPREAD_M] = np.inf
 
         least = float(gaps.min())
-        if least > GAP:
-            return Stand(frozenset(), np.inf, np.inf)
+        if least > SUPPORT_GAP_M:
+            return SupportContact(frozenset(), np.inf, np.inf)
 
-        carrying = gaps <= least + EVEN
+        carrying = gaps <= least + SUPPORT_GAP_SPREAD_M
         on = frozenset(
             name for (name, _), carries in zip(hits, carrying, strict=True) if carries and name
         )
         centre = (T_world_body[:3, :3] @ self._centres[body] + T_world_body[:3, 3])[:2]
         points = underside[carrying][:, :2]
-        return Stand(on, least, outside(centre, points), points)
+        return SupportContact(on, least, outside(centre, points), points)
 
     def why_overloaded(self, body: str, stands: Mapping[str, Stand]) -> str | None:
         """Say how a body that stands tips under what stands on it, and on that; None when it does
@@ -153,13 +161,13 @@ class Supports:
         others = " and ".join(sorted(load - {body}))
         return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"
 
-    def on(self, body: str, surface: Surface, stand: Stand) -> str | None:
+    def on(self, body: str, surface: Surface, stand: SupportContact) -> str | None:
         """Say why a body that stands so does not stand on a surface; None when it does."""
         T_surface_world = np.linalg.inv(self._world.pose(surface.body) @ surface.pose.matrix)
         T_surface_body = T_surface_world @ self._world.pose(body)
         points = self._points[body] @ T_surface_body[:3, :3].T + T_surface_body[:3, 3]
         gap = float(points[:, 2].min())
-        if not -SINK - 1e-5 <= gap <= GAP + 1e-5:
+        if not -SUPPORT_PENETRATION_M - 1e-5 <= gap <= SUPPORT_GAP_M + 1e-5:
             return f"its lowest point is {1000 * gap:.1f} mm above the surface"
         centre = T_surface_body[:3, :3] @ self._centres[body] + T_surface_body[:3, 3]
         beyond = float((np.abs(centre[:2]) - np.array(surface.size) / 2).max())
@@ -169,7 +177,7 @@ class Supports:
             return "it rests on " + (", ".join(sorted(stand.on)) or "nothing")
         return stand.why
 
-    def inside(self, body: str, cavity: Cavity, stand: Stand) -> str | None:
+    def inside(self, body: str, cavity: Cavity, stand: SupportContact) -> str | None:
         """Say why a body that stands so is not inside a cavity; None when it is."""
         T_cavity_world = np.linalg.inv(self._world.pose(cavity.body) @ cavity.pose.matrix)
         T_cavity_body = T_cavity_world @ self._world.pose(body)
@@ -177,7 +185,7 @@ class Supports:
         half_x, half_y, height = cavity.size[0] / 2, cavity.size[1] / 2, cavity.size[2]
         low, high = np.array([-half_x, -half_y, 0.0]), np.array([half_x, half_y, height])
         sticks_out = float(np.maximum(low - points.min(axis=0), points.max(axis=0) - high).max())
-        if sticks_out > SINK:
+        if sticks_out > SUPPORT_PENETRATION_M:
             return f"it protrudes by {1000 * sticks_out:.1f} mm"
         return stand.why
 
@@ -189,14 +197,14 @@ class Supports:
         world = self._world
         away = np.eye(4)
         away[:3, :3] = rotation
-        away = _shifted(away, ELSEWHERE)
+        away = _shifted(away, EMPTY_PLACE_X_M)
         world.place(body, away)
 
         key = (body, rotation.round(9).tobytes())
         if key not in self._undersides:
             points = self._points[body] @ rotation.T
             low, high = points.min(axis=0), points.max(axis=0)
-            steps = [np.linspace(low[axis], high[axis], GRID + 2)[1:-1] for axis in (0, 1)]
+            steps = [np.linspace(low[axis], high[axis], GRID_LINES + 2)[1:-1] for axis in (0, 1)]
             grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
             middle = (low + high)[:2] / 2
             shrunk = middle + (points[:, :2] - middle) * 0.995  # rays along an edge may miss it
@@ -206,8 +214,8 @@ class Supports:
             hits = world.rays(starts, ends)
             fractions = np.array([fraction for _, fraction in hits])
             seen = np.array([name == body for name, _ in hits])
-            felt = starts + fractions[:, None] * (ends - starts) - away[:3, 3]
-            self._undersides[key] = felt[seen]
+            underside = starts + fractions[:, None] * (ends - starts) - away[:3, 3]
+            self._undersides[key] = underside[seen]
         return self._undersides[key]
 
 

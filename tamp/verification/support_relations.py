@@ -7,13 +7,14 @@ from collections.abc import Collection
 from tamp.plan.read import PlanFile
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Fact, Formula
+from tamp.verification.formulas import facts as facts_of
 from tamp.verification.formulas import show
-from tamp.verification.initial_state import meant
+from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
-from tamp.verification.support_geometry import Stand, Supports
+from tamp.verification.support_geometry import SupportContact, Supports
 from tamp.verification.violation_log import Log
 
-RELATIONS = {
+SUPPORT_PREDICATES = {
     "supported": 4,
     "contained": 4,
     "rests-on": 4,
@@ -26,7 +27,7 @@ RELATIONS = {
 lengths; decided in states with the bodies there."""
 
 
-class Standing:
+class SupportRelations:
     """Asks after the support of bodies in a world that a replay moves.
 
     Attributes:
@@ -46,7 +47,9 @@ class Standing:
 
         facts = sorted({*plan.certified, *plan.initial})
         self._relations = [
-            fact for fact in facts if fact[0] in known and len(fact) == RELATIONS.get(fact[0])
+            fact
+            for fact in facts
+            if fact[0] in known and len(fact) == SUPPORT_PREDICATES.get(fact[0])
         ]
         self._checked: set[Fact] = set()
 
@@ -60,7 +63,7 @@ class Standing:
             f"{name} stands on nothing at the start, as the problem says" for name in self._floating
         ]
 
-    def stand(self, body: str, in_hand: str | None) -> Stand:
+    def stand(self, body: str, in_hand: str | None) -> SupportContact:
         """Find how a body stands while another one is in the hand."""
         return self._supports.stand(body, absent=in_hand if in_hand != body else None)
 
@@ -77,7 +80,11 @@ class Standing:
 
     def check_relations(self, state: State, in_hand: str | None) -> None:
         """Check certified relations of bodies with places, in the first state with it there."""
-        there = set(state.all("at-pose")) if meant(self._semantics.domain, "at-pose") else set()
+        there = (
+            set(state.all("at-pose"))
+            if has_standard_meaning(self._semantics.domain, "at-pose")
+            else set()
+        )
         for fact in self._relations:
             if fact not in self._checked and there.issuperset(_posed(fact)):
                 self._checked.add(fact)
@@ -110,27 +117,28 @@ class Standing:
         if not self._semantics.holds(goal, state):
             self._log.add("goal", f"{show(goal)} does not follow from the facts at the end")
 
-        felt: set[Fact] = set()
-        reasons: dict[str, str] = {}
+        observed: set[Fact] = set()
+        reasons: dict[Fact, str] = {}
         for name in self._world.scene.movable:
             if name == in_hand:
                 continue
             stand = self.stand(name, in_hand)
             below = stand.on - self._world.scene.surfaces.keys()
-            felt |= {("on", name.lower(), body.lower()) for body in below}
+            observed |= {("on", name.lower(), body.lower()) for body in below}
             for predicate, relation in (("on", "supported"), ("inside", "contained")):
                 for place in self._places[relation]:
                     fact = (predicate, name.lower(), place)
                     why = self._why_not(relation, name, place, stand)
                     if why is None:
-                        felt.add(fact)
+                        observed.add(fact)
                     else:
-                        reasons[f"({' '.join(fact)})"] = why
+                        reasons[fact] = why
 
         facts = {(name, *row) for name, rows in state.facts.items() for row in rows}
-        if not self._semantics.without(("on", "inside")).holds(goal, State.of(facts | felt)):
+        if not self._semantics.without(("on", "inside")).holds(goal, State.of(facts | observed)):
+            wanted = facts_of(goal)
             asked = "; ".join(
-                f"{fact}: {why}" for fact, why in reasons.items() if fact in show(goal)
+                f"({' '.join(fact)}): {why}" for fact, why in reasons.items() if fact in wanted
             )
             message = f"{show(goal)} does not hold in the geometry at the end"
             self._log.add("goal", f"{message}: {asked}" if asked else message)
@@ -145,7 +153,7 @@ class Standing:
             bodies = [term for term in (fact[1], *fact[3:]) if term in self._bodies]
             self._log.add("certified", f"({' '.join(fact)}) does not hold: {why}", *bodies)
 
-    def _why_no_relation(self, fact: Fact, name: str, stand: Stand) -> str | None:
+    def _why_no_relation(self, fact: Fact, name: str, stand: SupportContact) -> str | None:
         relation, rests = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
         if relation == "grounded":
             return rests if stand.on & set(self._world.scene.movable) else None
@@ -161,7 +169,7 @@ class Standing:
             return self._why_not("supported", name, fact[3], stand)
         return stand.why if below in stand.on else rests
 
-    def _why_not(self, relation: str, body: str, place: str, stand: Stand) -> str | None:
+    def _why_not(self, relation: str, body: str, place: str, stand: SupportContact) -> str | None:
         if relation == "supported":
             surface = self._world.scene.surfaces.get(self._name(relation, place))
             return (

@@ -20,7 +20,7 @@ from tamp.verification.formulas import flat, ground, show
 from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics, State
 
-TOLERANCE = 1e-6
+COST_TOLERANCE = 1e-6
 """By which a stated cost may differ from the domain's."""
 
 
@@ -107,7 +107,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
         cost = _cost(task, action, arguments)
         if cost is None:
             violations.append(Violation("cost", "its cost is not known", index, action.name))
-        elif abs(cost - field["cost"].number()) > TOLERANCE:
+        elif abs(cost - field["cost"].number()) > COST_TOLERANCE:
             what = f"it costs {cost:g}, not {field['cost'].number():g}"
             violations.append(Violation("cost", what, index, action.name))
 
@@ -116,7 +116,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
 
     missing = [part for part in flat(task.goal) if not semantics.holds(part, state)]
     violations += [Violation("goal", f"{show(part)} does not hold") for part in missing]
-    if abs(total - stated) > TOLERANCE:
+    if abs(total - stated) > COST_TOLERANCE:
         violations.append(Violation("cost", f"the plan costs {total:g}, not {stated:g}"))
     return violations
 

@@ -13,34 +13,45 @@ from tamp.verification import trajectory_sampling as sampling
 
 def tolerances() -> tuple[tuple[str, str], ...]:
     """List what is compared, and by how much it may be off."""
-    speed, harsh = (f"{100 * (share - 1):.0f} %" for share in (limits.SPEED, limits.HARSH))
-    same = f"{_mm(certified.CLOSE)}, {math.degrees(certified.ALIKE):g} deg"
-    air = f"0 to {_mm(supports.GAP)} (it may sink in {_mm(supports.SINK)})"
+    speed, harsh = (
+        f"{100 * (share - 1):.0f} %"
+        for share in (limits.VELOCITY_LIMIT_SHARE, limits.ACCELERATION_LIMIT_SHARE)
+    )
+    same = (
+        f"{_mm(certified.POSE_DIFFERENCE_M)}, {math.degrees(certified.POSE_DIFFERENCE_RAD):g} deg"
+    )
+    air = (
+        f"0 to {_mm(supports.SUPPORT_GAP_M)} (it may sink in {_mm(supports.SUPPORT_PENETRATION_M)})"
+    )
+
     return (
-        ("penetration of robot, held body, bodies, floor", _mm(sweep.TOLERANCE)),
+        ("penetration of robot, held body, bodies, floor", _mm(sweep.MAX_PENETRATION_M)),
         (
             "between two states that are looked at",
-            f"{_mm(sampling.STEP)}, {math.degrees(sampling.TURN):g} deg a joint",
+            f"{_mm(sampling.POINT_STEP_M)}, {math.degrees(sampling.JOINT_STEP_RAD):g} deg a joint",
         ),
         ("air between a resting body and what carries it", air),
-        ("gaps of points that carry a body differ by", _mm(supports.EVEN)),
+        ("gaps of points that carry a body differ by", _mm(supports.SUPPORT_GAP_SPREAD_M)),
         (
             "centre of mass beyond what carries the body, also with all that stands on it",
-            _mm(supports.LEAN),
+            _mm(supports.CENTRE_TOLERANCE_M),
         ),
         (
             "lean of a body that is carried with others on it",
-            f"{math.degrees(loads.LEAN):g} deg",
+            f"{math.degrees(loads.LOADED_TILT_RAD):g} deg",
         ),
-        ("body beyond the walls of a cavity", _mm(supports.SINK)),
+        ("body beyond the walls of a cavity", _mm(supports.SUPPORT_PENETRATION_M)),
         ("pose of a body or the tool against the plan's", same),
         (
             "fingers: in what they hold, and off it",
-            f"{_mm(certified.PRESSED)}, {_mm(certified.LOOSE)}",
+            f"{_mm(certified.FINGER_PENETRATION_M)}, {_mm(certified.FINGER_GAP_M)}",
         ),
-        ("a joint or the base beyond its range", f"{limits.SLACK:g} rad, m"),
+        ("a joint or the base beyond its range", f"{limits.RANGE_TOLERANCE:g} rad, m"),
         ("velocity and acceleration over the limit", f"{speed}, {harsh}"),
-        ("jumps between segments, and of the clock", f"{replay.JUMP:g} rad, m; {replay.CLOCK:g} s"),
+        (
+            "jumps between segments, and of the clock",
+            f"{replay.SEGMENT_JUMP:g} rad, m; {replay.TIME_TOLERANCE_S:g} s",
+        ),
     )  # fmt: skip
 
 

@@ -18,20 +18,20 @@ from tamp.verification.execution_state import Held
 from tamp.verification.link_frames import LinkFrames, base_frames, matrices
 from tamp.verification.makers_limits import limits_of
 
-STEP = 0.005
+POINT_STEP_M = 0.005
 """Metres that any point of the robot or the held body moves between two samples, at most."""
-TURN = math.radians(0.5)
+JOINT_STEP_RAD = math.radians(0.5)
 """Radians that any joint or the base turns between two samples, at most."""
-COARSE = 0.2
+FIRST_STEP_RAD = 0.2
 """Radians that all joints together turn between first samples, so that chords tell arcs."""
-SPARE = 1.1
+STEP_SAFETY_FACTOR = 1.1
 """How much finer than the chords ask for."""
-PASSES = 4
-REACH = 2.0
+MAX_REFINEMENTS = 4
+ROUGH_REACH_M = 2.0
 """Metres from any joint to any point of the robot and its load, roughly: for piece sizes only."""
-PIECE = 4096
+MAX_PIECE_SAMPLES = 4096
 """Samples of a piece of a motion that are made at once, at most, by a rough count."""
-STRETCH = 64
+MAX_PIECE_ROWS = 64
 """Rows of a piece, at most."""
 MOTIONS = 2
 """Motions that are remembered: facts about one reach, which has two, come one after the other."""
@@ -160,16 +160,20 @@ class Sampler:
             yield rows, times
             return
         change = np.abs(np.diff(rows, axis=0))
-        ways = np.linalg.norm(change[:, :2], axis=1) + REACH * change[:, 2:-1].sum(axis=1)
+        ways = np.linalg.norm(change[:, :2], axis=1) + ROUGH_REACH_M * change[:, 2:-1].sum(axis=1)
         first, cost = 0, 0.0
-        for edge, needs in enumerate((ways / STEP).tolist()):
-            if edge > first and (cost + needs > PIECE or edge - first >= STRETCH):
+        for edge, needs in enumerate((ways / POINT_STEP_M).tolist()):
+            if edge > first and (
+                cost + needs > MAX_PIECE_SAMPLES or edge - first >= MAX_PIECE_ROWS
+            ):
                 yield rows[first : edge + 1], times[first : edge + 1]
                 first, cost = edge, 0.0
             cost += needs
-            if needs > PIECE:
+            if needs > MAX_PIECE_SAMPLES:
                 yield from _cut(
-                    rows[edge : edge + 2], times[edge : edge + 2], math.ceil(needs / PIECE)
+                    rows[edge : edge + 2],
+                    times[edge : edge + 2],
+                    math.ceil(needs / MAX_PIECE_SAMPLES),
                 )
                 first, cost = edge + 1, 0.0
         if first < len(rows) - 1:
@@ -262,12 +266,13 @@ def _divided(rows: Array, times: Array, parts: Array) -> tuple[Array, Array]:
 def _unwound(rows: Array) -> Array:
     """Unwind yaws: the same motion near zero, with no more turns than make a difference.
 
-    A base that turns on the spot is everywhere after one turn; one that moves on by less than STEP
-    in a turn is, after as many turns as it goes STEPs, within STEP of wherever it was.
+    A base that turns on the spot is everywhere after one turn; one that moves on by less than
+    POINT_STEP_M in a turn is, after as many turns as it goes steps of that length, within
+    POINT_STEP_M of wherever it was.
     """
     turning = np.diff(rows[:, 2])
     moved = np.linalg.norm(np.diff(rows[:, :2], axis=0), axis=1)
-    kept = math.tau * np.maximum(1.0, np.ceil(moved / STEP))
+    kept = math.tau * np.maximum(1.0, np.ceil(moved / POINT_STEP_M))
     turning = np.where(
         np.abs(turning) > kept, np.sign(turning) * kept + np.fmod(turning, math.tau), turning
     )

@@ -16,7 +16,7 @@ from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
 from tamp.system.files import find_domain, shipped
 from tamp.verification.initial_state import KINDS_OF_OBJECTS
 
-STREAMS = ".streams.pddl"
+STREAMS_SUFFIX = ".streams.pddl"
 """What a domain's streams file ends with, beside the domain."""
 
 
@@ -34,7 +34,7 @@ def streams_file(plan: PlanFile, override: Path | None, domain: Path | None = No
         return override
     source = plan.source("streams")
     if source is None:
-        beside = [domain.with_suffix(STREAMS)] if domain is not None else []
+        beside = [domain.with_suffix(STREAMS_SUFFIX)] if domain is not None else []
         return next((file for file in beside if file.is_file()), None)
     beside = [plan.file.parent / source.path.name] if plan.file else []
     return next((file for file in (source.path, *beside) if file.is_file()), None)
@@ -84,7 +84,7 @@ def other_files(
         elif sha256(own) != sha256(domain):
             found.append(f"by the domain {domain.name}, not the problem's {own.name}")
 
-    beside = (own or domain).with_suffix(STREAMS)
+    beside = (own or domain).with_suffix(STREAMS_SUFFIX)
     source = plan.source("streams")
     if streams is None:
         if source is not None:

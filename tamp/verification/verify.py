@@ -105,7 +105,7 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
     with open_world(loaded.scene, robot, name=engine) as world:
         sweeper = Sweeper(world, robot)
         certified = Certified(plan, world, robot, sweeper, domain)
-        stated = certified.known | inputs.decided | certifiable(plan, domain, inputs.streams)
+        stated = certified.checkable | inputs.decided | certifiable(plan, domain, inputs.streams)
         violations += check_initial(plan, loaded.scene, domain, inputs.initial, stated)
         static = [fact for fact in plan.initial if fact[0] in stated and fact not in inputs.initial]
         violations += certified.check([*plan.certified, *static], trusted)
@@ -117,7 +117,7 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
         replay = Replay(plan, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(inputs.goal)
         violations += log.violations
-        known = certified.known | inputs.decided
+        known = certified.checkable | inputs.decided
         report = _report(inputs, violations, trusted, relations, replay, known, began)
         return replace(report, engine=engine)
 

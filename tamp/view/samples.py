@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,7 +24,7 @@ class SampleMarker:
         used: Whether the plan rests on it.
         test: The stream that said no to it most often, or None.
         why: What it said.
-        others: The bodies that it was said to hit.
+        others: The bodies that the reasons name; none in files that do not list them.
         text: Everything about it in a line.
     """
 
@@ -91,7 +90,11 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> SampleMarker 
     )
     what = f"grasp of {body}" if grasp else " ".join([f"{body} by {stream}", *places])
     verdict = "in the plan" if used else "rejected" if refusals else "accepted"
-    words = {word.lower() for _, why, _ in refusals for word in re.findall(r"[\w-]+", why)}
+    met = {
+        word.text().lower()
+        for item in field["refusals"].items()
+        for word in (item["bodies"].items() if "bodies" in item else ())
+    }
 
     return SampleMarker(
         kind="grasp" if grasp else "placement",
@@ -100,6 +103,6 @@ def _shot(field: Field, names: Mapping[str, str], scene: Scene) -> SampleMarker 
         used=used,
         test=refusals[0][0] if refusals else None,
         why=refusals[0][1] if refusals else "",
-        others=tuple(name for name in scene.bodies if name.lower() in words and name != body),
+        others=tuple(name for name in scene.bodies if name.lower() in met and name != body),
         text=f"{what}: {verdict}" + (f" ({reasons})" if reasons else ""),
     )

@@ -1,4 +1,8 @@
-"""The page in a browser on this machine, served for as long as somebody wants to look."""
+"""The page in a browser on this machine, served for as long as somebody wants to look.
+
+Our own page and not viser's: that one plays offline, too, but has no panel for samples, skeletons
+and times; and not http.server's plain handler, which would serve a folder to every page that asks.
+"""
 
 from __future__ import annotations
 

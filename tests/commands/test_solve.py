@@ -156,6 +156,9 @@ def test_no_plan_exits_with_1_and_the_reason(
         and document["actions"] == []
     )
     assert "pitcher" in document["explanation"][0]
+    assert [cause["text"] for cause in document["causes"]] == document["explanation"]
+    assert document["causes"][0]["kind"] == "no-value"
+    assert "pitcher" in document["causes"][0]["objects"]
 
 
 def test_verify_judges_before_anything_is_written(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tamp.execution.monitoring import FELT, Touch, Watch
-from tamp.simulation.physics import FLOOR
+from tamp.simulation.world import FLOOR_NAME
 from tests.execution.worlds import Noting
 
 
@@ -45,7 +45,7 @@ def test_the_hardest_touch_of_a_pair_is_kept() -> None:
         (("left", "cup"), "box", False),  # nor the hand another body
         (("left", "table"), None, False),
         (("cup", "box"), "cup", False),  # they touched only in between
-        ((FLOOR, FLOOR), None, True),
+        ((FLOOR_NAME, FLOOR_NAME), None, True),
     ],
 )
 def test_what_may_touch_what(pair: tuple[str, str], active: str | None, wanted: bool) -> None:

@@ -10,11 +10,11 @@ import pytest
 from tamp.errors import InputError
 from tamp.execution.monitoring import EVERY, Watch
 from tamp.execution.motor_commands import CLOSING, REST, Player
-from tamp.simulation.actuated import RATE
+from tamp.simulation.actuation import COMMANDS_PER_SECOND
 from tests.execution.worlds import Noting
 from tests.plan.making import arm, base, close, let_go
 
-RESTING = round(REST * RATE)
+RESTING = round(REST * COMMANDS_PER_SECOND)
 
 
 def playing(world: Noting, grasp: str = "constraint") -> tuple[Player, Watch]:
@@ -32,11 +32,11 @@ def test_the_base_follows_its_segment_in_time_and_the_arm_stands() -> None:
     assert player.play(base([0, 1, 3], [[0, 0, 0], [1, 0, 0], [1, 0.5, 0.2]]), None, watch)
 
     aimed = np.array([conf for conf, _ in world.ticks])
-    assert len(aimed) == 3 * RATE + RESTING
-    assert aimed[RATE // 2 - 1, :3] == pytest.approx(
+    assert len(aimed) == 3 * COMMANDS_PER_SECOND + RESTING
+    assert aimed[COMMANDS_PER_SECOND // 2 - 1, :3] == pytest.approx(
         [0.5, 0, 0]
-    )  # the k-th step aims at (k + 1) / RATE seconds
-    assert aimed[2 * RATE - 1, :3] == pytest.approx([1, 0.25, 0.1])
+    )  # the k-th step aims at (k + 1) / COMMANDS_PER_SECOND seconds
+    assert aimed[2 * COMMANDS_PER_SECOND - 1, :3] == pytest.approx([1, 0.25, 0.1])
     assert aimed[-1, :3] == pytest.approx([1, 0.5, 0.2])
     assert (aimed[:, 3:] == 0.0).all()
 
@@ -46,8 +46,10 @@ def test_speeds_are_those_of_the_trajectory_and_zero_at_rest() -> None:
     player, watch = playing(world)
     player.play(arm([0, 2], [np.zeros(7), np.full(7, 0.5)]), None, watch)
     rates = np.array([rate for _, rate in world.ticks])
-    assert rates[: 2 * RATE, 3:] == pytest.approx(np.full((2 * RATE, 7), 0.25))
-    assert (rates[:, :3] == 0.0).all() and (rates[2 * RATE :] == 0.0).all()
+    assert rates[: 2 * COMMANDS_PER_SECOND, 3:] == pytest.approx(
+        np.full((2 * COMMANDS_PER_SECOND, 7), 0.25)
+    )
+    assert (rates[:, :3] == 0.0).all() and (rates[2 * COMMANDS_PER_SECOND :] == 0.0).all()
 
 
 def test_somebody_looks_now_and_then_from_the_first_step_on(
@@ -57,8 +59,10 @@ def test_somebody_looks_now_and_then_from_the_first_step_on(
     player, watch = playing(world)
     monkeypatch.setattr(watch, "look", lambda: looks.append(len(world.ticks)))
     player.play(base([0, 1], [[0, 0, 0], [1, 0, 0]]), None, watch)
-    assert looks[: RATE // EVERY] == list(range(1, RATE + 1, EVERY))
-    assert looks[RATE // EVERY :] == list(range(RATE + 1, RATE + RESTING + 1, EVERY))
+    assert looks[: COMMANDS_PER_SECOND // EVERY] == list(range(1, COMMANDS_PER_SECOND + 1, EVERY))
+    assert looks[COMMANDS_PER_SECOND // EVERY :] == list(
+        range(COMMANDS_PER_SECOND + 1, COMMANDS_PER_SECOND + RESTING + 1, EVERY)
+    )
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
@@ -72,7 +76,7 @@ def test_something_happens_once_at_its_share_of_the_time(share: float) -> None:
         lambda: happened.append(len(world.ticks)),
         share,
     )
-    assert happened == [min(int(share * RATE), RATE - 1)]
+    assert happened == [min(int(share * COMMANDS_PER_SECOND), COMMANDS_PER_SECOND - 1)]
 
 
 def test_the_base_stops_where_it_is_when_what_it_carries_is_gone() -> None:
@@ -85,8 +89,8 @@ def test_the_base_stops_where_it_is_when_what_it_carries_is_gone() -> None:
 
     assert not player.play(way, None, watch, lose, 0.5, guard="cup")
     stopped = len(world.ticks) - RESTING
-    assert RATE <= stopped <= RATE + EVERY + 1
-    assert world.conf[0] == pytest.approx(stopped / RATE)
+    assert COMMANDS_PER_SECOND <= stopped <= COMMANDS_PER_SECOND + EVERY + 1
+    assert world.conf[0] == pytest.approx(stopped / COMMANDS_PER_SECOND)
     assert player.play(
         arm([0, 1], [np.zeros(7), np.ones(7)]), None, watch, guard="cup"
     )  # the arm is not stopped
@@ -98,7 +102,7 @@ def test_a_constraint_binds_what_is_between_the_fingers() -> None:
     assert player.play(close("cup", 0.05), "cup", watch)
     assert world.opening == 0.05 and not world.squeezing and world.bound == "cup"
     assert len(world.ticks) == round(
-        CLOSING * RATE
+        CLOSING * COMMANDS_PER_SECOND
     )  # half a second in the file is less than it takes
 
 
@@ -135,7 +139,7 @@ def test_letting_go_at_once_opens_the_fingers() -> None:
     world = Noting("cup")
     player, watch = playing(world, "friction")
     player.play(close("cup"), "cup", watch)
-    world.bind("cup")
+    world.attach("cup")
     player.let_go()
     assert (world.bound, world.squeezing, world.opening) == (None, False, world.widest)
     assert world.told[-1] == ("pass", ("cup", False)) and math.isclose(world.widest, 0.08)

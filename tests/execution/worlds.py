@@ -35,7 +35,7 @@ class Noting:
         self.felt: dict[tuple[str, str], float] = {}
         self.near = True
 
-    def tick(self, rates: Sequence[float] = (0.0,) * 10) -> None:
+    def step_motors(self, rates: Sequence[float] = (0.0,) * 10) -> None:
         self.ticks.append((self.conf.copy(), rates))
 
     def actual(self) -> Array:
@@ -47,13 +47,13 @@ class Noting:
     def near_fingers(self, body: str) -> bool:
         return self.near
 
-    def bind(self, body: str) -> None:
+    def attach(self, body: str) -> None:
         self.bound = body
         self.told.append(("bind", body))
 
-    def unbind(self) -> None:
+    def detach(self) -> None:
         self.told.append(("unbind", self.bound))
         self.bound = None
 
-    def pass_through(self, body: str, through: bool) -> None:
+    def disable_collision(self, body: str, through: bool) -> None:
         self.told.append(("pass", (body, through)))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tamp.geometric.loading.bodies import Draft, read_body
+from tamp.geometric.loading.bodies import UnplacedBody, read_body
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.convex import hull_of
@@ -74,7 +74,7 @@ def yaml(folder: Path, text: str) -> Node:
     return read_yaml(file)
 
 
-def drafts(folder: Path, text: str) -> dict[str, Draft]:
+def drafts(folder: Path, text: str) -> dict[str, UnplacedBody]:
     """The bodies of a YAML text, one a line as in `bodies:`, read but not placed."""
     return {
         name: read_body(name, node, folder) for name, node in yaml(folder, text).mapping().items()

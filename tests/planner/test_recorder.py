@@ -87,15 +87,19 @@ def test_wild_outputs_are_heard_as_what_they_hold() -> None:
 def test_a_proposal_that_its_stream_refuses_is_told_with_the_reason() -> None:
     def draw(*inputs: Any, call: Call) -> Iterator[Any]:
         call.refused(at(5), "sinks in")
+        call.refused(at(5), Rejection.hits("box"))
+        call.refused(at(5), Rejection("hits box", bodies=("box", "lid")))
         yield at(6)
 
     recorder = Recorder()
     (heard,) = watched(recorder, bound("sample-on", draw))
     list(heard("cup", call=call()))
     assert [(one.value, dict(one.refusals)) for one in recorder.samples] == [
-        (at(5), {("sample-on", "sinks in"): 1}),
+        (at(5), {("sample-on", "sinks in"): 1, ("sample-on", "hits box"): 2}),
         (at(6), {}),
     ]
+    met = {("sample-on", "sinks in"): (), ("sample-on", "hits box"): ("box", "lid")}
+    assert recorder.samples[0].met == met
 
 
 def test_one_body_that_is_hard_to_place_leaves_room_for_others() -> None:

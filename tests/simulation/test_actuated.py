@@ -11,11 +11,10 @@ import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Pose, pose_difference
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
-from tamp.simulation.actuation import RATE, Actuated
+from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 from tamp.simulation.engines import ENGINES, installed, open_actuated
-from tamp.verification.initial_state import apart
 
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
@@ -29,22 +28,22 @@ SCENE = Scene(
 
 
 @pytest.fixture(params=[name for name in ENGINES if installed(name)])
-def world(request: pytest.FixtureRequest) -> Iterator[Actuated]:
+def world(request: pytest.FixtureRequest) -> Iterator[MotorSimulation]:
     with open_actuated(SCENE, ROBOT, name=request.param) as made:
-        made.put("held", made.tool())
+        made.set_pose("held", made.tool())
         yield made
 
 
-def test_the_robot_stands_where_the_planner_has_it(world: Actuated) -> None:
+def test_the_robot_stands_where_the_planner_has_it(world: MotorSimulation) -> None:
     assert world.tool() == pytest.approx(Kinematics(ROBOT).tool(world.conf), abs=1e-5)
     assert world.width() == pytest.approx(0.08)
 
 
-def test_friction_holds_and_letting_go_drops(world: Actuated) -> None:
+def test_friction_holds_and_letting_go_drops(world: MotorSimulation) -> None:
     world.squeezing = True
-    for _ in range(RATE // 2):
-        world.put("held", world.tool())  # until the fingers have closed
-        world.tick()
+    for _ in range(COMMANDS_PER_SECOND // 2):
+        world.set_pose("held", world.tool())  # until the fingers have closed
+        world.step_motors()
     world.conf[:3] = [0.05, 0.0, 0.1]
     world.wait(1.0)
     assert world.near_fingers("held")
@@ -56,74 +55,74 @@ def test_friction_holds_and_letting_go_drops(world: Actuated) -> None:
     assert world.pose("held")[2, 3] < 0.6 and not world.near_fingers("held")
 
 
-def test_a_bound_body_follows_the_hand_until_unbound(world: Actuated) -> None:
-    world.bind("held")
+def test_a_bound_body_follows_the_hand_until_unbound(world: MotorSimulation) -> None:
+    world.attach("held")
     T = np.linalg.inv(world.tool()) @ world.pose("held")
     world.conf[:3] = [0.1, 0.1, 0.5]
     world.wait(1.0)
     assert np.linalg.inv(world.tool()) @ world.pose("held") == pytest.approx(T, abs=2e-3)
-    world.unbind()
-    world.pass_through("held", False)
+    world.detach()
+    world.disable_collision("held", False)
     world.wait(1.0)
     assert world.pose("held")[2, 3] < 0.6
 
 
-def test_bodies_come_and_go(world: Actuated) -> None:
+def test_bodies_come_and_go(world: MotorSimulation) -> None:
     wall = replace(AWAY, name="wall", movable=False, pose=Pose((2.0, 2.0, 0.149)))
-    world.become(replace(SCENE, bodies=MappingProxyType({"away": AWAY, "wall": wall})))
+    world.reset_scene(replace(SCENE, bodies=MappingProxyType({"away": AWAY, "wall": wall})))
     world.wait(0.1)
     assert ("away", "wall") in world.touches()
     assert "held" not in world.solids
 
 
-def test_what_lies_still_wakes_when_it_is_pushed(world: Actuated) -> None:
+def test_what_lies_still_wakes_when_it_is_pushed(world: MotorSimulation) -> None:
     world.wait(4.0)
-    world.put("held", Pose((2.0, 2.0, 0.4)).matrix)
+    world.set_pose("held", Pose((2.0, 2.0, 0.4)).matrix)
     world.wait(1.0)
     assert ("away", "held") in world.touches()
 
 
-def held_off_centre(world: Actuated) -> np.ndarray:
+def held_off_centre(world: MotorSimulation) -> np.ndarray:
     """The hand presses on the bar 6 cm beside its middle; T_tool_body."""
     world.squeezing = True
     off = np.eye(4)
     off[:3, 3] = [0.06, 0.0, 0.01]
-    for _ in range(RATE // 2):
-        world.put("bar", world.tool() @ off)
-        world.tick()
+    for _ in range(COMMANDS_PER_SECOND // 2):
+        world.set_pose("bar", world.tool() @ off)
+        world.step_motors()
     world.wait(0.2)
     return np.linalg.inv(world.tool()) @ world.pose("bar")
 
 
-def turned(world: Actuated, angle: float, seconds: float) -> None:
+def turned(world: MotorSimulation, angle: float, seconds: float) -> None:
     """The base turns by this in this time, slowly at first and at last."""
-    count, rate = round(seconds * RATE), 0.0
+    count, rate = round(seconds * COMMANDS_PER_SECOND), 0.0
     for step in range(count):
         rate = angle / seconds * (1 - np.cos(2 * np.pi * (step + 1) / count))
-        world.conf[2] += rate / RATE
-        world.tick([0.0, 0.0, rate, *[0.0] * 7])
+        world.conf[2] += rate / COMMANDS_PER_SECOND
+        world.step_motors([0.0, 0.0, rate, *[0.0] * 7])
 
 
 @pytest.fixture(params=[name for name in ENGINES if installed(name)])
-def off_centre(request: pytest.FixtureRequest) -> Iterator[Actuated]:
+def off_centre(request: pytest.FixtureRequest) -> Iterator[MotorSimulation]:
     bar = Body("bar", (Part(Box((0.2, 0.07, 0.04))),), Pose((0.0, 2.0, 0.5)), True, mass=0.3)
     with open_actuated(replace(SCENE, bodies={"bar": bar}), ROBOT, name=request.param) as made:
         yield made
 
 
 def test_what_is_held_off_its_centre_does_not_creep_while_the_base_turns(
-    off_centre: Actuated,
+    off_centre: MotorSimulation,
 ) -> None:
     T = held_off_centre(off_centre)
     for angle in (2.0, -2.0, 2.0):
         turned(off_centre, angle, 3.0)
-        moved, angle = apart(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
+        moved, angle = pose_difference(T, np.linalg.inv(off_centre.tool()) @ off_centre.pose("bar"))
         # MuJoCo's friction knows speeds only: on a circle a body drifts outwards by w^2 r dt / 2 a second.
-        assert moved < (0.004 if type(off_centre).__name__ == "MujocoActuated" else 0.002)
+        assert moved < (0.004 if type(off_centre).__name__ == "MujocoMotors" else 0.002)
         assert angle < np.radians(2)
 
 
-def test_a_hand_that_has_turned_lets_go_at_once(off_centre: Actuated) -> None:
+def test_a_hand_that_has_turned_lets_go_at_once(off_centre: MotorSimulation) -> None:
     held_off_centre(off_centre)
     turned(off_centre, 2.0, 3.0)
     before = off_centre.pose("bar")[:3, 3]

@@ -173,7 +173,7 @@ def test_a_ball_and_a_can_that_roll_come_to_rest(name: str) -> None:
         True,
     )
     with open_actuated(scene_of(can), ROBOTS["panda_mobile"](), name=name) as world:
-        world.put("can", Pose.from_xyz_rpy((0.9, 0.0, 0.05), (math.pi / 2, 0.05, 0.0)).matrix)
+        world.set_pose("can", Pose.from_xyz_rpy((0.9, 0.0, 0.05), (math.pi / 2, 0.05, 0.0)).matrix)
         world.wait(4.0)
         assert world.speed("can")[0] < 5e-3
 
@@ -203,7 +203,7 @@ def test_every_shipped_robot_follows_its_motors(model: str, name: str) -> None:
     ) as world:
         for _ in range(60):
             world.conf[3:] += 0.2 / 60
-            world.tick()
+            world.step_motors()
         world.wait(0.5)
         assert np.abs(world.actual() - world.conf).max() < 5e-3
         assert world.width() == pytest.approx(robot.opening, abs=1e-3)

@@ -5,7 +5,16 @@ from __future__ import annotations
 import pytest
 
 from tamp.symbolic.pddl.structs import And, Atom, Exists, Forall, Formula, Not, Or, Parameter
-from tamp.verification.formulas import flat, free, ground, predicates, show, substitute, unify
+from tamp.verification.formulas import (
+    facts,
+    flat,
+    free,
+    ground,
+    predicates,
+    show,
+    substitute,
+    unify,
+)
 
 ON = Atom("on", ("?x", "?y"))
 CLEAR = Atom("clear", ("?x",))
@@ -62,6 +71,12 @@ def test_predicates_are_found_however_deep() -> None:
         "clear",
         "wet",
     }
+
+
+def test_facts_of_a_formula_are_its_atoms_without_variables() -> None:
+    wet, dry = Atom("wet", ("cup",)), Atom("empty", ())
+    formula = And((SOME, Not(wet), Or((dry, Forall((Parameter("?z"),), Atom("by", ("a", "b")))))))
+    assert facts(formula) == {("wet", "cup"), ("empty",), ("by", "a", "b")}
 
 
 def test_an_atom_is_ground_by_what_is_bound() -> None:

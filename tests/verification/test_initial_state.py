@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Pose, base_difference, pose_difference
 from tamp.geometric.scene.scene import Box
-from tamp.verification.initial_state import apart, base_apart, kinds_of
+from tamp.verification.initial_state import kinds_of
 from tests.geometric.making import body, crate, scene, table
 
 _ANGLE = st.floats(-math.pi, math.pi)
@@ -23,21 +23,25 @@ def test_a_turn_about_any_axis_is_its_angle(
 ) -> None:
     first = Pose.from_xyz_rpy((0.3, -0.2, 0.1), start)
     turn = Pose.from_xyz_rpy((0, 0, 0), tuple(angle if axis == one else 0.0 for one in "xyz"))
-    moved, turned = apart(first.matrix, (first @ turn).matrix)
+    moved, turned = pose_difference(first.matrix, (first @ turn).matrix)
     assert moved == pytest.approx(0.0, abs=1e-12)
     assert turned == pytest.approx(angle, abs=1e-7)
 
 
 def test_tiny_and_half_turns_are_exact() -> None:
     # The angle's cosine alone would lose one of a millionth of a radian.
-    assert apart(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, 1e-6).matrix)[1] == pytest.approx(
+    assert pose_difference(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, 1e-6).matrix)[1] == pytest.approx(
         1e-6, rel=1e-3
     )
-    assert apart(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, math.pi).matrix)[1] == pytest.approx(math.pi)
+    assert pose_difference(np.eye(4), Pose.from_xyz_yaw(0, 0, 0, math.pi).matrix)[
+        1
+    ] == pytest.approx(math.pi)
 
 
 def test_a_move_is_a_straight_distance() -> None:
-    assert apart(Pose((1, 2, 3)).matrix, Pose((1, 5, 7)).matrix) == pytest.approx((5.0, 0.0))
+    assert pose_difference(Pose((1, 2, 3)).matrix, Pose((1, 5, 7)).matrix) == pytest.approx(
+        (5.0, 0.0)
+    )
 
 
 @pytest.mark.parametrize(
@@ -54,8 +58,8 @@ def test_a_move_is_a_straight_distance() -> None:
 def test_bases_are_the_same_after_a_full_turn(
     second: tuple[float, float, float], far: float
 ) -> None:
-    assert base_apart(np.zeros(3), np.array(second)) == pytest.approx(far, abs=1e-12)
-    assert base_apart(np.array(second), np.zeros(3)) == pytest.approx(far, abs=1e-12)
+    assert base_difference(np.zeros(3), np.array(second)) == pytest.approx(far, abs=1e-12)
+    assert base_difference(np.array(second), np.zeros(3)) == pytest.approx(far, abs=1e-12)
 
 
 @pytest.mark.parametrize(

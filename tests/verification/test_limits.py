@@ -13,7 +13,7 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Room
 from tamp.plan.read import Segment
-from tamp.verification.limits import Excess, check_ranges, excesses
+from tamp.verification.limits import LimitViolation, check_ranges, limit_violations
 from tamp.verification.makers_limits import PANDA_MOBILE, limits_of
 from tests.plan.making import arm, base, close, plan_of
 
@@ -26,8 +26,8 @@ def robot() -> Robot:
     return ROBOTS["panda_mobile"]()
 
 
-def found(robot: Robot, *segments: Segment) -> dict[str, Excess]:
-    return {excess.kind: excess for excess in excesses(segments, robot, ROOM)}
+def found(robot: Robot, *segments: Segment) -> dict[str, LimitViolation]:
+    return {excess.kind: excess for excess in limit_violations(segments, robot, ROOM)}
 
 
 def ramp(distance: float, acceleration: float, count: int = 41) -> Segment:

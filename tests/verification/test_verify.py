@@ -14,7 +14,7 @@ import pytest
 from tamp.commands.verify import main
 from tamp.plan.violation import KINDS
 from tamp.simulation.engines import ENGINES, installed
-from tamp.verification.replay import LOOKS, LOOKS_BEYOND
+from tamp.verification.replay import LOOKS_BEYOND, MAX_STATES_AT_FIRST
 from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
 
@@ -328,4 +328,4 @@ def test_the_tolerances_are_said_in_the_help_and_in_the_documentation(
     for what, much in rows:
         assert what in said and much in said
         assert f"| {what} | {much} |" in written
-    assert f"{LOOKS:,} states" in written and f"{LOOKS_BEYOND:,}" in written
+    assert f"{MAX_STATES_AT_FIRST:,} states" in written and f"{LOOKS_BEYOND:,}" in written

@@ -22,7 +22,10 @@ POSE = {"position": [1, 2, 3], "quaternion": [0, 0, 0, 1]}
 def sample(
     arguments: list[str], used: bool = False, refusals: list | None = None, **more: Any
 ) -> dict[str, Any]:
-    told = [{"stream": s, "reason": why, "count": n} for s, why, n in refusals or []]
+    told = [
+        {"stream": s, "reason": why, "count": n, **({"bodies": list(met)} if met else {})}
+        for s, why, n, *met in refusals or []
+    ]
     return {
         "type": "pose",
         **POSE,
@@ -57,7 +60,9 @@ def test_a_placement_says_what_became_of_it() -> None:
 def test_a_marker_has_the_scenes_names_the_pose_and_the_first_refusal() -> None:
     record = {
         "record": {
-            "samples": [sample(["cup", "table"], refusals=[("test-pose-clear", "hits BOX", 1)])]
+            "samples": [
+                sample(["cup", "table"], refusals=[("test-pose-clear", "hits BOX", 1, "BOX")])
+            ]
         }
     }
     (marker,) = sample_markers(record, SCENE)
@@ -66,18 +71,19 @@ def test_a_marker_has_the_scenes_names_the_pose_and_the_first_refusal() -> None:
     assert marker.T[:3, 3].tolist() == [1, 2, 3]
 
 
-def test_a_body_is_not_blamed_for_its_own_name() -> None:
+def test_bodies_are_blamed_by_the_list_and_not_by_the_words() -> None:
     record = {
         "record": {
             "samples": [
-                sample(["box", "table"], refusals=[("t", "box hits the boxes near cup", 1)])
+                sample(
+                    ["box", "table"],
+                    refusals=[("t", "box hits cup", 1, "box", "table"), ("u", "cup is near", 1)],
+                )
             ]
         }
     }
     (marker,) = sample_markers(record, SCENE)
-    assert marker.others == (
-        "Cup",
-    )  # "boxes" is another word, and it is the box that is asked about
+    assert marker.others == ("table",)  # it is the box that is asked about
 
 
 def test_what_is_of_no_body_here_is_left_out() -> None:

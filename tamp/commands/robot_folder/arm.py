@@ -12,7 +12,7 @@ from tamp.commands.robot_folder.description import MOVING, Description
 from tamp.commands.robot_folder.joint_motion import clean, stands, z_onto
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element
-from tamp.geometric.robot.robot import MARGIN
+from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
 
@@ -162,7 +162,7 @@ def _check_joint(description: Description, joint: Joint) -> None:
         if joint.kind == "revolute":
             remedy += ', or type="continuous"'
         raise InputError(f"joint '{joint.name}' has no limits", file=file, remedy=remedy)
-    least = 2 * (MARGIN if joint.kind == "revolute" else MARGIN / 10)
+    least = 2 * (LIMIT_MARGIN_RAD if joint.kind == "revolute" else LIMIT_MARGIN_RAD / 10)
     if not joint.upper - joint.lower > least:
         what = "are swapped" if joint.upper < joint.lower else "leave it no room"
         raise InputError(

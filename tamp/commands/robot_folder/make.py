@@ -24,7 +24,7 @@ from tamp.commands.robot_folder.reach_table import table
 from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
 from tamp.commands.robot_folder.spheres import cover
 from tamp.errors import InputError
-from tamp.geometric.robot.robot import MARGIN, Link, Robot
+from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Hull, Part
@@ -182,7 +182,9 @@ def _robot(
 def _bound(joint: Joint, limit: float, inwards: float) -> float:
     if joint.kind == "continuous":
         return -inwards * 2 * math.pi
-    return limit + inwards * (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+    return limit + inwards * (
+        LIMIT_MARGIN_RAD / 10 if joint.kind == "prismatic" else LIMIT_MARGIN_RAD
+    )
 
 
 def _unused(gripper: Gripper, names: set[str]) -> tuple[str, Joint, Joint]:

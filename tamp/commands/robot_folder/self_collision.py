@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from tamp.commands.robot_folder.convex import Solid
-from tamp.geometric.collision.arrangement import PADDING
+from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Link, Robot
@@ -27,7 +27,7 @@ COMPARED = 1500
 MOSTLY = 0.5
 """The share of states above which a pair that meets touches by its shape, as neighbours do."""
 
-NEAR = PADDING + 5e-4
+NEAR = TRANSIT_CLEARANCE_M + 5e-4
 """Metres: two links nearer than this count as met, as they do in plans."""
 
 WRONG = 0.01

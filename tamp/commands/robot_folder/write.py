@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tamp.errors import InputError
-from tamp.geometric.robot.robot import MARGIN, Robot
+from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
@@ -192,7 +192,7 @@ def urdf_text(robot: Robot, masses: Mapping[str, float]) -> str:
         kind = "prismatic" if joint.kind == "prismatic" else "revolute"
         low, high = joint.lower, joint.upper
         if joint.kind == "continuous":
-            low, high = -2 * math.pi - MARGIN, 2 * math.pi + MARGIN
+            low, high = -2 * math.pi - LIMIT_MARGIN_RAD, 2 * math.pi + LIMIT_MARGIN_RAD
         lines += _joint(joint, kind, parent, low, high, robot.effort[index])
         parent = joint.child
     lines += [

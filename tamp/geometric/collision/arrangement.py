@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.edge_check import pair_of, sweep
-from tamp.geometric.collision.fcl_pairs import Exact
+from tamp.geometric.collision.edge_check import check_edge, pair_of
+from tamp.geometric.collision.fcl_pairs import ExactPairs
 from tamp.geometric.collision.kernels import FLOOR, FREE, SELF, UNDECIDED
 from tamp.geometric.collision.tables import CENTRE, FRAME, ON_FLOOR, RADIUS, Tables
 from tamp.geometric.scene.pose import Array
@@ -18,17 +18,17 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-PADDING = 0.002
+TRANSIT_CLEARANCE_M = 0.002
 """Metres: a transit state is free only when everything is at least this far from everything else.
 """
 
-_TIGHT = 2e-4
+_TIGHT_PADDING_M = 2e-4
 """The padding with which the kernel proves pieces of tight motions free; below the contact gap."""
 
-_TOUCH = 1e-6
+_TOUCHING_PADDING_M = 1e-6
 """Metres that count as touching: the kernel's verdicts need some padding."""
 
-_DEEPEST = 12
+_MAX_HALVINGS = 12
 """How often an edge that the kernel left undecided is halved before it counts as blocked."""
 
 
@@ -72,48 +72,48 @@ class Arrangement:
         exact: FCL on the same parts.
     """
 
-    def __init__(self, tables: Tables, exact: Exact) -> None:
+    def __init__(self, tables: Tables, exact: ExactPairs) -> None:
         self.tables = tables
         self._packed = tables.packed()
         self.stats = Statistics()
         self._exact = exact
 
     def free(self, conf: Float[Array, " conf"]) -> bool:
-        """Check whether everything is at least PADDING apart at `conf`."""
+        """Check whether everything is at least TRANSIT_CLEARANCE_M apart at `conf`."""
         self.stats.states += 1
         try:
-            code = sweep(conf, conf, PADDING, self._packed) & 3
+            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self._packed) & 3
         except TypeError:
             # A list, or not in C order; converting always would cost a tenth of the check.
             conf = np.ascontiguousarray(conf, dtype=np.float64)
-            code = sweep(conf, conf, PADDING, self._packed) & 3
+            code = check_edge(conf, conf, TRANSIT_CLEARANCE_M, self._packed) & 3
         if code != UNDECIDED:
             return code == FREE
         self.stats.states_undecided += 1
-        return self._scan(conf, PADDING) is None
+        return self._scan(conf, TRANSIT_CLEARANCE_M) is None
 
     def edge_free(self, start: Float[Array, " conf"], end: Float[Array, " conf"]) -> bool:
         """Check whether the straight line between two configurations is free of collision. Yaw
         turns the way that the numbers go.
 
         True is a proof: both ends are `free`, and in every state between, checked or not,
-        everything is at least PADDING / 2 apart.
+        everything is at least TRANSIT_CLEARANCE_M / 2 apart.
         """
         start = np.ascontiguousarray(start, dtype=np.float64)
         end = np.ascontiguousarray(end, dtype=np.float64)
         self.stats.edges += 1
-        code = sweep(start, end, PADDING, self._packed) & 3
+        code = check_edge(start, end, TRANSIT_CLEARANCE_M, self._packed) & 3
         if code != UNDECIDED:
             return code == FREE
         self.stats.edges_undecided += 1
-        return self._halves_free(start, end, _DEEPEST)
+        return self._halves_free(start, end, _MAX_HALVINGS)
 
     def _halves_free(self, start: Array, end: Array, depth: int) -> bool:
         middle = 0.5 * (start + end)
         if depth == 0 or not self.free(middle):
             return False
         for a, b in ((start, middle), (middle, end)):
-            code = sweep(a, b, PADDING, self._packed) & 3
+            code = check_edge(a, b, TRANSIT_CLEARANCE_M, self._packed) & 3
             if code != FREE and (code != UNDECIDED or not self._halves_free(a, b, depth - 1)):
                 return False
         return True
@@ -126,7 +126,7 @@ class Arrangement:
         "floor" or "room".
         """
         conf = np.ascontiguousarray(conf, dtype=np.float64)
-        answer = sweep(conf, conf, max(padding, _TOUCH), self._packed)
+        answer = check_edge(conf, conf, max(padding, _TOUCHING_PADDING_M), self._packed)
         code = answer & 3
         if code == UNDECIDED:
             return self._scan(conf, padding)
@@ -143,7 +143,7 @@ class Arrangement:
         if len(path) == 1:
             return self.hits(path[0], padding)
         for start, end in pairwise(path):
-            if sweep(start, end, max(2 * padding, _TIGHT), self._packed) & 3 == FREE:
+            if check_edge(start, end, max(2 * padding, _TIGHT_PADDING_M), self._packed) & 3 == FREE:
                 continue
             count = max(1, math.ceil(self._motion(start, end) / step))
             for k in range(count + 1):

@@ -7,21 +7,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tamp.geometric.collision.arrangement import PADDING, Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
-from tamp.geometric.collision.fcl_pairs import FLOOR_PART, Exact
+from tamp.geometric.collision.fcl_pairs import FLOOR_PART, ExactPairs
 from tamp.geometric.collision.robot_tables import RobotParts, RobotTables
-from tamp.geometric.collision.tables import HIGH, LOW, WIDTH, Rows, Tables, pose_rows, world_box
+from tamp.geometric.collision.tables import (
+    HIGH,
+    LOW,
+    PART_COLUMNS,
+    Rows,
+    Tables,
+    pose_rows,
+    world_box,
+)
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 
-__all__ = ["PADDING", "Arrangement", "Attachment", "Collisions"]
-
 Corner = Sequence[float]
 
-_MEMORY = 4096
+_MAX_REMEMBERED = 4096
 """How many placed bodies and robots are remembered before the memory is emptied."""
 
 
@@ -41,8 +47,8 @@ class Attachment:
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """A body at a pose: rows (k, WIDTH) and poses (k, 12) of its parts, their world boxes, the box
-    of all.
+    """A body at a pose: rows (k, PART_COLUMNS) and poses (k, 12) of its parts, their world boxes,
+    the box of all.
     """
 
     rows: Array
@@ -147,7 +153,7 @@ class Collisions:
             np.concatenate([_NO_POSES, *(placed.poses for _, placed in standing)]),
         )
 
-        exact = Exact(
+        exact = ExactPairs(
             self._kinematics,
             parts,
             opening,
@@ -163,7 +169,7 @@ class Collisions:
         key = (opening, attachment)
         parts = self._completed.get(key)
         if parts is None:
-            if len(self._completed) >= _MEMORY:
+            if len(self._completed) >= _MAX_REMEMBERED:
                 self._completed.clear()
             if attachment is None:
                 parts = self._robot.complete(opening, None, np.zeros((0, 4, 4)), _NO_ROWS)
@@ -179,7 +185,7 @@ class Collisions:
         key = (name, pose)
         placed = self._placed.get(key)
         if placed is None:
-            if len(self._placed) >= _MEMORY:
+            if len(self._placed) >= _MAX_REMEMBERED:
                 self._placed.clear()
             poses = pose_rows(pose.matrix @ self._part_matrices[name])
             rows = self._rows[name].copy()
@@ -207,7 +213,7 @@ class Collisions:
         return False
 
 
-_NO_ROWS, _NO_POSES = np.zeros((0, WIDTH)), np.zeros((0, 12))
+_NO_ROWS, _NO_POSES = np.zeros((0, PART_COLUMNS)), np.zeros((0, 12))
 
 
 def _overlap(a_low: Corner, a_high: Corner, b_low: Corner, b_high: Corner, padding: float) -> bool:

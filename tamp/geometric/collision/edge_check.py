@@ -31,16 +31,16 @@ from tamp.system.compilation import njit
 
 
 @njit(**INLINE)
-def verdict(code, part, other):
+def encode_result(code, part, other):
     """Pack a code and the pair that it rests on into one integer; `pair_of` reads it."""
     return code | part << 2 | (other + 4096) << 14
 
 
-def pair_of(verdict: int) -> tuple[int, int]:
+def pair_of(result: int) -> tuple[int, int]:
     """Return the robot's part and what it met: an obstacle's row, FLOOR, ROOM, or SELF - the other
     part.
     """
-    return verdict >> 2 & 4095, (verdict >> 14) - 4096
+    return result >> 2 & 4095, (result >> 14) - 4096
 
 
 @njit(**INLINE)
@@ -173,9 +173,9 @@ def _decide_pairs(
         if answer == APART:
             continue
         if answer == CLOSE:
-            return verdict(np.int64(HIT), i, other), count
+            return encode_result(np.int64(HIT), i, other), count
         if far <= padding or count == TASKS:
-            return verdict(np.int64(UNDECIDED), i, other), count
+            return encode_result(np.int64(UNDECIDED), i, other), count
 
         tasks[count, 0], tasks[count, 1] = i, other
         guesses[count, 0], guesses[count, 1], guesses[count, 2] = guess[0], guess[1], guess[2]
@@ -187,7 +187,7 @@ def _decide_pairs(
 def _decided(start, end, padding, tables):
     """Decide an edge, interval by interval; see kernels.py."""
     if _leaves_the_room(start, end, unpack(tables, np.int64(0))[0]):
-        return verdict(np.int64(HIT), np.int64(0), np.int64(ROOM))
+        return encode_result(np.int64(HIT), np.int64(0), np.int64(ROOM))
     joints, vertices = unpack(tables, np.int64(1)), unpack(tables, np.int64(2))
     leaves, parts = unpack(tables, np.int64(3)), unpack(tables, np.int64(4))
     part_poses, pairs = unpack(tables, np.int64(5)), unpack(tables, np.int64(6))
@@ -242,7 +242,7 @@ def _decided(start, end, padding, tables):
             return answer
         if count > before:
             if tail + 2 > INTERVALS:
-                return verdict(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
+                return encode_result(np.int64(UNDECIDED), tasks[before, 0], tasks[before, 1])
             _halve(head, tail, before, count, intervals, lists)
             tail += 2
         head += 1
@@ -279,8 +279,8 @@ def sources_digest() -> int:
     return zlib.crc32(b"".join(file.read_bytes() for file in files))
 
 
-sweep = _compiled(sources_digest())
-"""sweep(start, end, padding, tables) -> verdict: whether the straight line between two
+check_edge = _compiled(sources_digest())
+"""check_edge(start, end, padding, tables) -> result: whether the straight line between two
 configurations (3 + n,) is free.
 
 Equal configurations make it a state check. `padding` in metres, > 0: both ends and every checked

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FLOOR_PART = Part(Box((40.0, 40.0, 1.0)), Pose((0.0, 0.0, -0.5)))
 
 
-class Exact:
+class ExactPairs:
     """Decides pairs by python-fcl, placing only the two parts in question.
 
     Args:
@@ -53,7 +53,7 @@ class Exact:
         self._floor = floor
 
     def nearer(self, conf: Float[Array, " conf"], part: int, other: int, padding: float) -> bool:
-        """Check whether that pair (as in `sweep.pair_of`) is nearer than `padding` metres at
+        """Check whether that pair (as in `edge_check.pair_of`) is nearer than `padding` metres at
         `conf`; 0: intersects.
         """
         if other == ROOM:

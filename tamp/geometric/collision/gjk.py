@@ -18,8 +18,8 @@ from tamp.geometric.collision.tables import (
     CENTRE,
     CYLINDER,
     KIND,
-    MARGIN,
     POINT,
+    RADIUS_OFFSET,
     SIZE,
     VERTEX_COUNT,
     VERTICES,
@@ -38,7 +38,7 @@ JIT = {
     "no_rewrites": True,
     "_nrt": False,
 }
-"""For functions that only compiled code calls. They are not cached on their own: `sweep.sweep` is,
+"""For functions that only compiled code calls. They are not cached on their own: `check_edge` is,
 with them inside.
 
 They allocate nothing, so that nothing has to be counted (`_nrt`), and have no array expression to
@@ -256,7 +256,7 @@ def separation(a, i, poses_a, b, j, poses_b, vertices, near, far, guess, s, weig
     Returns:
         APART: the distance is >= far. CLOSE: < near. BETWEEN: >= near, surely < far. Or UNSURE.
     """
-    margin = a[i, MARGIN] + b[j, MARGIN]
+    margin = a[i, RADIUS_OFFSET] + b[j, RADIUS_OFFSET]
     near, far = near + margin, far + margin
     vx, vy, vz = guess[0], guess[1], guess[2]
     norm = math.sqrt(vx * vx + vy * vy + vz * vz)

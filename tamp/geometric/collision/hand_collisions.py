@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Placed = tuple[str, Pose]
 
-SLACK = 1e-4
+RADIUS_SLACK_M = 1e-4
 """What is added to the balls around parts, metres, so that rounding never keeps FCL from being
 asked."""
 
@@ -168,7 +168,7 @@ class _Movers:
                 low, high = bounds((part,), Pose())
                 parts.append((body, number, T_tool_body))
                 centres.append(T_tool_body[:3, :3] @ ((low + high) / 2) + T_tool_body[:3, 3])
-                radii.append(float(np.linalg.norm(high - low)) / 2 + SLACK)
+                radii.append(float(np.linalg.norm(high - low)) / 2 + RADIUS_SLACK_M)
         return cls(parts, np.array(centres), np.array(radii))
 
 

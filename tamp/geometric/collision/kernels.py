@@ -1,6 +1,6 @@
 """A robot's motion against bodies and itself, decided in compiled code.
 
-`sweep` proves that a straight line in configuration space is free. It takes an interval of the
+`check_edge` proves that a straight line in configuration space is free. It takes an interval of the
 line, places the robot at its middle and asks of every pair (part, obstacle) whether its distance
 there exceeds what the pair can lose within the interval; pairs that do are done with, the others go
 on to the two halves. Middles are visited level by level, so that a blocked edge is rejected early.
@@ -36,17 +36,17 @@ from tamp.geometric.collision.gjk import (
 from tamp.geometric.collision.tables import (
     BOX,
     CENTRE,
+    COVER_COUNT,
+    COVER_ERROR,
+    COVER_SPHERES,
     CYLINDER,
     FRAME,
     HULL,
     KIND,
-    LEAF_COUNT,
-    LEAVES,
-    MARGIN,
     POINT,
     RADIUS,
+    RADIUS_OFFSET,
     SIZE,
-    SLACK,
 )
 from tamp.system.compilation import njit
 
@@ -66,7 +66,7 @@ def _from_core(shapes, i, poses, x, y, z):
     lx, ly, lz = lx - shapes[i, CENTRE], ly - shapes[i, CENTRE + 1], lz - shapes[i, CENTRE + 2]
     kind = shapes[i, KIND]
     if kind == POINT:
-        return math.sqrt(lx * lx + ly * ly + lz * lz) - shapes[i, MARGIN]
+        return math.sqrt(lx * lx + ly * ly + lz * lz) - shapes[i, RADIUS_OFFSET]
     if kind == CYLINDER:
         ox = max(0.0, math.sqrt(lx * lx + ly * ly) - shapes[i, SIZE])
         oz = max(0.0, abs(lz) - shapes[i, SIZE + 2])
@@ -99,14 +99,15 @@ def _leaf_centre(leaves, k, poses, i):
 def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, guess):
     """Bound the distance of robot part i from obstacle j, by its bounding sphere, then its leaves.
 
-    A leaf's centre is in the part and the leaf stands out by SLACK at most; the sphere smaller by
-    that is inside: it gives the upper bound, unless the obstacle is a hull: its box stood for it.
+    A leaf's centre is in the part and the leaf stands out by COVER_ERROR at most; the sphere
+    smaller by that is inside: it gives the upper bound, unless the obstacle is a hull: its box
+    stood for it.
     """
     x, y, z = reach[i, 0], reach[i, 1], reach[i, 2]
     bound = _from_core(obstacles, j, poses, x, y, z) - parts[i, RADIUS]
     if bound >= far:
         return bound, math.inf
-    first, count = int(parts[i, LEAVES]), int(parts[i, LEAF_COUNT])
+    first, count = int(parts[i, COVER_SPHERES]), int(parts[i, COVER_COUNT])
     leaf_bound = math.inf
     for k in range(first, first + count):
         lx, ly, lz = _leaf_centre(leaves, k, placed, i)
@@ -118,7 +119,7 @@ def _from_obstacle(i, far, parts, placed, reach, obstacles, poses, j, leaves, gu
         bound = max(bound, leaf_bound)
     if bound < far and guess[0] == 0.0 and guess[1] == 0.0 and guess[2] == 0.0:
         _away(obstacles, j, poses, x, y, z, guess)
-    return bound, leaf_bound + parts[i, SLACK] if obstacles[j, KIND] != HULL else math.inf
+    return bound, leaf_bound + parts[i, COVER_ERROR] if obstacles[j, KIND] != HULL else math.inf
 
 
 @njit(**JIT)
@@ -129,11 +130,13 @@ def _leaf_distance(i, k, far, parts, placed, leaves, guess):
     """
     best = far
     bx = by = bz = 0.0
-    first_k, count_k = int(parts[k, LEAVES]), int(parts[k, LEAF_COUNT])
+    first_k, count_k = int(parts[k, COVER_SPHERES]), int(parts[k, COVER_COUNT])
     hx, hy, hz = parts[k, SIZE], parts[k, SIZE + 1], parts[k, SIZE + 2]
     cx, cy, cz = parts[k, CENTRE], parts[k, CENTRE + 1], parts[k, CENTRE + 2]
 
-    for m in range(int(parts[i, LEAVES]), int(parts[i, LEAVES]) + int(parts[i, LEAF_COUNT])):
+    for m in range(
+        int(parts[i, COVER_SPHERES]), int(parts[i, COVER_SPHERES]) + int(parts[i, COVER_COUNT])
+    ):
         x, y, z = _leaf_centre(leaves, m, placed, i)
         radius = leaves[m, 3]
         lx, ly, lz = in_frame(placed, k, x, y, z)
@@ -175,16 +178,16 @@ def _from_self(i, k, far, parts, placed, reach, leaves, guess):
     guess[0], guess[1], guess[2] = (
         reach[i, 0] - reach[k, 0], reach[i, 1] - reach[k, 1], reach[i, 2] - reach[k, 2],
     )  # fmt: skip
-    swapped = parts[i, LEAF_COUNT] == 0
+    swapped = parts[i, COVER_COUNT] == 0
     a, b = (k, i) if swapped else (i, k)
-    if parts[a, LEAF_COUNT] == 0:
+    if parts[a, COVER_COUNT] == 0:
         return bound, math.inf
     leaf_bound = _leaf_distance(a, b, far, parts, placed, leaves, guess)
     if swapped:
         guess[0], guess[1], guess[2] = -guess[0], -guess[1], -guess[2]
-    inner = leaf_bound + parts[a, SLACK]
-    if parts[b, LEAF_COUNT] > 0:
-        inner += parts[b, SLACK]
+    inner = leaf_bound + parts[a, COVER_ERROR]
+    if parts[b, COVER_COUNT] > 0:
+        inner += parts[b, COVER_ERROR]
     elif parts[b, KIND] != BOX:
         inner = math.inf  # the leaves of a were held against the box around b
     return max(bound, leaf_bound), inner
@@ -194,7 +197,7 @@ def _from_self(i, k, far, parts, placed, reach, leaves, guess):
 def _from_floor(i, parts, placed, vertices):
     """Return the height of the lowest point of robot part i above the plane z = 0; exact."""
     _, _, z = support(parts, i, placed, vertices, 0.0, 0.0, -1.0)
-    return z - parts[i, MARGIN]
+    return z - parts[i, RADIUS_OFFSET]
 
 
 @njit(**JIT)
@@ -212,11 +215,11 @@ def check(
     if other >= 0:
         j, b, poses = other, obstacles, obstacle_poses
         bound, inner = _from_obstacle(i, far, parts, placed, reach, b, poses, j, leaves, guess)
-        slack = parts[i, SLACK]
+        slack = parts[i, COVER_ERROR]
     else:
         j, b, poses = SELF - other, parts, placed
         bound, inner = _from_self(i, j, far, parts, placed, reach, leaves, guess)
-        slack = parts[i, SLACK] + parts[j, SLACK]
+        slack = parts[i, COVER_ERROR] + parts[j, COVER_ERROR]
 
     if bound >= far:
         return APART

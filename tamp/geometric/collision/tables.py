@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 POINT, BOX, CYLINDER, HULL = 0, 1, 2, 3
 """Kinds of convex cores; a sphere is a point with a margin."""
 
-KIND, SIZE, CENTRE, RADIUS, MARGIN = 0, 1, 4, 7, 8
-VERTICES, VERTEX_COUNT, LEAVES, LEAF_COUNT, SLACK = 9, 10, 11, 12, 13
+KIND, SIZE, CENTRE, RADIUS, RADIUS_OFFSET = 0, 1, 4, 7, 8
+VERTICES, VERTEX_COUNT, COVER_SPHERES, COVER_COUNT, COVER_ERROR = 9, 10, 11, 12, 13
 FRAME, ON_FLOOR, LOW, HIGH = 14, 15, 16, 19
-WIDTH = 22
+PART_COLUMNS = 22
 """Columns of a row that describes one convex part.
 
 KIND; SIZE: half extents of its box around CENTRE, both in the part's frame; RADIUS of its sphere
-around CENTRE; MARGIN around the core; VERTICES and LEAVES: first row and number of rows in those
-tables; SLACK: how far its spheres may stand out of it; FRAME: joint (1..n) that moves it, 0 for the
-base; ON_FLOOR: may touch the floor; LOW and HIGH: corners of the world's box around it (obstacles
-only). Metres.
+around CENTRE; RADIUS_OFFSET around the core; VERTICES and COVER_SPHERES: first row and number
+of rows in those tables; COVER_ERROR: how far its spheres may stand out of it; FRAME: joint (1..n)
+that moves it, 0 for the base; ON_FLOOR: may touch the floor; LOW and HIGH: corners of the world's
+box around it (obstacles only). Metres.
 """
 
 SLIDES = 12
@@ -43,11 +43,11 @@ class Tables(NamedTuple):
         vertices: (3, v) of all hulls, each in its part's frame; one column a vertex, for vector
             instructions.
         leaves: (l, 4) centres and radii of the spheres that cover parts, each in its part's frame.
-        parts: (n, WIDTH) the robot's convex parts, those of an attached body last.
+        parts: (n, PART_COLUMNS) the robot's convex parts, those of an attached body last.
         part_poses: (n, 12) in their frames.
         pairs: (k, 2) rows of `parts` that are checked against each other, the one nearer to the
             base first.
-        obstacles: (m, WIDTH) the bodies' convex parts.
+        obstacles: (m, PART_COLUMNS) the bodies' convex parts.
         obstacle_poses: (m, 12) in the world.
     """
 
@@ -94,21 +94,23 @@ class Rows:
     def row(
         self, part: Part, cover: tuple[Float[Array, "k 4"], float] | None = None
     ) -> Float[Array, " width"]:
-        """Build the row of one part (WIDTH,), without its pose; `cover`: leaves (k, 4) in the
-        part's frame, slack.
+        """Build the row of one part (PART_COLUMNS,), without its pose; `cover`: leaves (k, 4) in
+        the part's frame, slack.
         """
-        row = np.zeros(WIDTH)
-        row[KIND], row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3], row[RADIUS], row[MARGIN] = _core(
-            part.shape
-        )
+        row = np.zeros(PART_COLUMNS)
+        kind, size, centre, radius, offset = _core(part.shape)
+        row[KIND], row[RADIUS], row[RADIUS_OFFSET] = kind, radius, offset
+        row[SIZE : SIZE + 3], row[CENTRE : CENTRE + 3] = size, centre
+
         if isinstance(part.shape, Hull):
             row[VERTICES], row[VERTEX_COUNT] = self._vertex_count, len(part.shape.vertices)
             self._vertices.append(np.asarray(part.shape.vertices, dtype=np.float64))
             self._vertex_count += len(part.shape.vertices)
-        row[SLACK] = row[RADIUS]
+        row[COVER_ERROR] = row[RADIUS]
         if cover is not None:
             leaves, slack = cover
-            row[LEAVES], row[LEAF_COUNT], row[SLACK] = self._leaf_count, len(leaves), slack
+            row[COVER_SPHERES], row[COVER_COUNT] = self._leaf_count, len(leaves)
+            row[COVER_ERROR] = slack
             self._leaves.append(leaves)
             self._leaf_count += len(leaves)
         return row
@@ -147,8 +149,8 @@ def _core(shape: Shape) -> tuple[int, Array, Array, float, float]:
 def world_box(
     rows: Float[Array, "n width"], poses: Float[Array, "n 12"]
 ) -> tuple[Float[Array, "n 3"], Float[Array, "n 3"]]:
-    """Compute low and high corners (n, 3) of the world's boxes around parts (n, WIDTH) at poses (n,
-    12).
+    """Compute low and high corners (n, 3) of the world's boxes around parts (n, PART_COLUMNS) at
+    poses (n, 12).
     """
     rotations = poses[:, :9].reshape(-1, 3, 3)
     centres = np.einsum("nij,nj->ni", rotations, rows[:, CENTRE : CENTRE + 3]) + poses[:, 9:]

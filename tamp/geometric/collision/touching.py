@@ -18,17 +18,17 @@ from tamp.geometric.scene.scene import Scene
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-NEAR = 0.0005
+TOUCHING_GAP_M = 0.0005
 """Metres of air up to which two bodies count as touching."""
 
-DEEPER = 0.0002
+DEEPENING_M = 0.0002
 """Metres by which a body that moves away may get deeper into one that it touches: the arm's path is
 not quite straight, and depths are not quite exact."""
 
-SIDEWAYS = 0.02
+SIDEWAYS_SHIFT_M = 0.02
 """How far a body that touches something is moved aside while it is lifted, metres,"""
 
-DIRECTIONS = 16
+SIDEWAYS_DIRECTIONS = 16
 """and in how many directions that is considered."""
 
 
@@ -60,7 +60,7 @@ class Touching:
             self._touched[body] = {
                 other: self._depth(body, T, other)
                 for other in near
-                if self._gap(body, T, other) <= NEAR
+                if self._gap(body, T, other) <= TOUCHING_GAP_M
             }
         return self._touched[body]
 
@@ -78,18 +78,23 @@ class Touching:
             return up
 
         if (body, lift) not in self._ways:
-            if all(self._gap(body, _moved(pose.matrix, up), other) > NEAR for other in touched):
+            if all(
+                self._gap(body, _moved(pose.matrix, up), other) > TOUCHING_GAP_M
+                for other in touched
+            ):
                 return up
 
-            turn = np.arange(DIRECTIONS) * 2 * math.pi / DIRECTIONS
-            aside = SIDEWAYS * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(DIRECTIONS)])
+            turn = np.arange(SIDEWAYS_DIRECTIONS) * 2 * math.pi / SIDEWAYS_DIRECTIONS
+            aside = SIDEWAYS_SHIFT_M * np.column_stack(
+                [np.cos(turn), np.sin(turn), np.zeros(SIDEWAYS_DIRECTIONS)]
+            )
             # Straight up is tried first: of equals the first one is taken.
             ways = [up, *(up + one for one in aside)]
 
             around = [
                 other
                 for other in self._there
-                if other != body and self._close(body, other, lift + SIDEWAYS)
+                if other != body and self._close(body, other, lift + SIDEWAYS_SHIFT_M)
             ]
             room = [
                 min(self._gap(body, _moved(pose.matrix, way), other) for other in around)
@@ -103,16 +108,16 @@ class Touching:
         """Check whether a body that is moved through poses (4, 4) leaves one that it touches, and
         stays away.
         """
-        deepest = self.touched(body, self._scene.bodies[body].pose).get(other, 0.0) + DEEPER
+        deepest = self.touched(body, self._scene.bodies[body].pose).get(other, 0.0) + DEEPENING_M
         clear = False
         for T in T_world_body:
-            if self._gap(body, T, other) > NEAR:
+            if self._gap(body, T, other) > TOUCHING_GAP_M:
                 clear = True
             elif clear or self._depth(body, T, other) > deepest:
                 return False
         return True
 
-    def _close(self, body: str, other: str, reach: float = NEAR) -> bool:
+    def _close(self, body: str, other: str, reach: float = TOUCHING_GAP_M) -> bool:
         (low, high), (low_other, high_other) = self._boxes[body], self._boxes[other]
         return bool(np.all(low <= high_other + reach) and np.all(low_other <= high + reach))
 

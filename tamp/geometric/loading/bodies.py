@@ -8,10 +8,10 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.geometric.loading.declared_places import check_name, read_cavities, read_surfaces
-from tamp.geometric.loading.furniture import FURNITURE, PORTABLE, Furniture, Options
+from tamp.geometric.loading.furniture import FURNITURE, PORTABLE_KINDS, Furniture, Options
 from tamp.geometric.loading.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_triangles
 from tamp.geometric.loading.orientation import read_orientation
-from tamp.geometric.loading.tops import NARROWEST, top_of
+from tamp.geometric.loading.tops import MIN_TOP_WIDTH_M, top_of
 from tamp.geometric.loading.urdf_object import LARGEST_MASS
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.bounds import bounds
@@ -26,9 +26,18 @@ COLOURS: Mapping[str, tuple[float, float, float]] = {
     "yellow": (0.95, 0.8, 0.2),
 }  # fmt: skip
 
-PLACEMENT = ("on", "at", "yaw", "rpy", "quaternion", "pose")
-_SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
-_COMMON = (*PLACEMENT, "fixed", "mass", "friction", "colour", "surfaces", "cavities", "front")
+PLACEMENT_KEYS = ("on", "at", "yaw", "rpy", "quaternion", "pose")
+_SHAPE_KEYS = ("box", "cylinder", "sphere", "capsule", "mesh", "furniture")
+_COMMON_KEYS = (
+    *PLACEMENT_KEYS,
+    "fixed",
+    "mass",
+    "friction",
+    "colour",
+    "surfaces",
+    "cavities",
+    "front",
+)
 _OPTIONS = {"mesh": ("scale",)}
 _LARGEST_MOVABLE = 5.0
 _LARGEST = 1e5
@@ -38,7 +47,7 @@ _SMALLEST = 1e-5
 
 
 @dataclass(frozen=True)
-class Draft:
+class UnplacedBody:
     """A body before it is placed.
 
     Attributes:
@@ -54,7 +63,7 @@ class Draft:
     mesh: Mesh | None = None
 
 
-def read_body(name: str, node: Node, folder: Path) -> Draft:
+def read_body(name: str, node: Node, folder: Path) -> UnplacedBody:
     """Read one entry of `bodies:`.
 
     Args:
@@ -68,7 +77,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     check_name(name, node)
 
     kind = _kind(node)
-    entries = node.mapping((*_SHAPES, *_COMMON, *_options(kind, node)))
+    entries = node.mapping((*_SHAPE_KEYS, *_COMMON_KEYS, *_options(kind, node)))
     mesh: Mesh | None = None
     furniture = Furniture(())
 
@@ -84,8 +93,8 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
     movable = kind != "furniture"
     if "fixed" in entries:
         movable = not entries["fixed"].flag()
-    if kind == "furniture" and movable and entries[kind].text() not in PORTABLE:
-        what = f"furniture is fixed, but for {' and '.join(PORTABLE)}"
+    if kind == "furniture" and movable and entries[kind].text() not in PORTABLE_KINDS:
+        what = f"furniture is fixed, but for {' and '.join(PORTABLE_KINDS)}"
         raise entries["fixed"].error(what)
     _check_size(parts, entries[kind], movable)
 
@@ -95,7 +104,7 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
             mesh_triangles(mesh) if mesh and len(parts) > 1 and "surfaces" not in entries else None
         )
         top = top_of(name, parts, _stance(entries), triangles)
-        derived = (top,) if top and min(top.size) >= NARROWEST - 1e-9 else ()
+        derived = (top,) if top and min(top.size) >= MIN_TOP_WIDTH_M - 1e-9 else ()
 
     body = Body(
         name,
@@ -123,14 +132,15 @@ def read_body(name: str, node: Node, folder: Path) -> Draft:
         front=entries["front"].angle() if "front" in entries else 0.0,
     )
 
-    return Draft(body, {key: entries[key] for key in PLACEMENT if key in entries}, node, mesh)
+    placement = {key: entries[key] for key in PLACEMENT_KEYS if key in entries}
+    return UnplacedBody(body, placement, node, mesh)
 
 
 def _kind(node: Node) -> str:
-    found = [key for key in node.mapping() if key in _SHAPES]
+    found = [key for key in node.mapping() if key in _SHAPE_KEYS]
     if not found:
-        keys = [key for key in node.mapping() if key not in _COMMON]
-        raise node.error("it has no shape", found=keys[0] if keys else None, choices=_SHAPES)
+        keys = [key for key in node.mapping() if key not in _COMMON_KEYS]
+        raise node.error("it has no shape", found=keys[0] if keys else None, choices=_SHAPE_KEYS)
     if len(found) > 1:
         raise node.mapping()[found[1]].error(
             f"'{found[0]}' and '{found[1]}' both give a shape: keep one"

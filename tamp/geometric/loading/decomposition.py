@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from tamp.geometric.scene.convex import TOLERANCE, directions, simplified, thickened
+from tamp.geometric.scene.convex import HULL_TOLERANCE_M, directions, simplified, thickened
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
@@ -276,7 +276,7 @@ def _grown(cells: list[Array], vertices: Array) -> list[Array]:
         for plane in ConvexHull(thickened(points)).equations:
             np.maximum(row, vertices @ plane[:3] + plane[3], out=row)
     nearest = np.argmin(distances, axis=0)
-    out = distances.min(axis=0) > TOLERANCE / 2
+    out = distances.min(axis=0) > HULL_TOLERANCE_M / 2
     # The box of the mesh is kept exactly.
     farthest = np.concatenate([np.argmin(vertices, axis=0), np.argmax(vertices, axis=0)])
     out[farthest] = distances.min(axis=0)[farthest] > _EXACT

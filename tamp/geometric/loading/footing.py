@@ -19,36 +19,36 @@ from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Sphere
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-GAP = 0.0095
+SUPPORT_GAP_M = 0.0095
 """Metres of air below a body that still count as resting: 0.5 mm less than the judge allows."""
 
-SINK = 0.001
+SUPPORT_PENETRATION_M = 0.001
 """Metres by which a body may stand in what carries it."""
 
-EVEN = 0.0015
+SUPPORT_GAP_SPREAD_M = 0.0015
 """Metres by which the gaps of points that carry may differ."""
 
-LEAN = 0.001
+CENTRE_TOLERANCE_M = 0.001
 """Metres by which the centre of mass may be out of the points that carry; the judge, who feels a
 grid, allows twice.
 """
 
-GRID = 30
+GRID_LINES = 30
 """Lines along x and y."""
 
-EDGED = 8
+MAX_EDGED_PARTS = 8
 """Parts around a body whose edges are felt as well,"""
 
-INSIDE = 1e-4
+EDGE_INSET_M = 1e-4
 """this far inside of them, metres."""
 
-CROWD = 400
+MAX_PARTS_AROUND = 400
 """Parts around a body; where there are more, they lie in each other, which is refused elsewhere."""
 
-PAIRS = 8_000
+MAX_PARTS_LOOKED_AT = 8_000
 """Parts looked at for all bodies together: only in a crowd that lies in itself are there more."""
 
-FLOOR = "floor"
+FLOOR_NAME = "floor"
 """What the floor is called among bodies."""
 
 
@@ -57,8 +57,8 @@ class Footing:
     """The footing of a body: how it stands.
 
     Attributes:
-        on: Names of the bodies that carry it, FLOOR included; empty when nothing is within GAP
-            below it.
+        on: Names of the bodies that carry it, FLOOR_NAME included; empty when nothing is
+            within SUPPORT_GAP_M below it.
         lean: Metres by which the centre of mass is out of what carries it; not positive inside.
     """
 
@@ -70,7 +70,7 @@ class Footing:
         """Return why it does not stay where it is; None when it does."""
         if not self.on:
             return "nothing is within 10 mm below it"
-        if self.lean > LEAN:
+        if self.lean > CENTRE_TOLERANCE_M:
             return f"its centre of mass is {1000 * self.lean:.1f} mm beyond what carries it"
         return None
 
@@ -98,33 +98,38 @@ class Ground:
         around = (self._low[:, :2] < high[:2]).all(axis=1) & (self._high[:, :2] > low[:2]).all(
             axis=1
         )
-        around &= (self._high[:, 2] > low[2] - GAP - EVEN) & (self._low[:, 2] < high[2])
+        around &= (self._high[:, 2] > low[2] - SUPPORT_GAP_M - SUPPORT_GAP_SPREAD_M) & (
+            self._low[:, 2] < high[2]
+        )
 
         near = [i for i in np.flatnonzero(around) if self._parts[i][0] != body.name]
         others = [self._parts[i] for i in near]
         self._pairs += len(others)
-        if len(others) > CROWD or self._pairs > PAIRS:
+        if len(others) > MAX_PARTS_AROUND or self._pairs > MAX_PARTS_LOOKED_AT:
             fixed = frozenset(name for name, _, _ in others if name in self._fixed)
-            return Footing(fixed or frozenset({others[0][0] if others else FLOOR}), 0.0)
+            return Footing(fixed or frozenset({others[0][0] if others else FLOOR_NAME}), 0.0)
 
-        few = near[:EDGED]
+        few = near[:MAX_EDGED_PARTS]
         xy, under = _underside(
-            body, low, high, np.concatenate([self._low[few] + INSIDE, self._high[few] - INSIDE])
+            body,
+            low,
+            high,
+            np.concatenate([self._low[few] + EDGE_INSET_M, self._high[few] - EDGE_INSET_M]),
         )
 
         tops = np.zeros((len(xy), len(others) + 1))  # the floor's first
         for column, (_, part, T_world_part) in enumerate(others, start=1):
             _, tops[:, column] = vertical(part, T_world_part, xy)
         # What is met higher up is beside the body and not below it.
-        tops[tops > under[:, None] + SINK + EVEN] = -np.inf
+        tops[tops > under[:, None] + SUPPORT_PENETRATION_M + SUPPORT_GAP_SPREAD_M] = -np.inf
 
         gaps = under[:, None] - tops
         least = float(gaps.min(initial=np.inf))
-        if least > GAP:
+        if least > SUPPORT_GAP_M:
             return Footing(frozenset(), math.inf)
 
-        carrying = gaps <= least + EVEN
-        names = [FLOOR, *(name for name, _, _ in others)]
+        carrying = gaps <= least + SUPPORT_GAP_SPREAD_M
+        names = [FLOOR_NAME, *(name for name, _, _ in others)]
         on = frozenset(names[column] for column in np.flatnonzero(carrying.any(axis=0)))
 
         T, centre = body.pose.matrix, center_of_mass(body)
@@ -196,10 +201,12 @@ def _underside(body: Body, low: Array, high: Array, edges: Array) -> tuple[Array
     steps: list[Array] = []
     for axis in (0, 1):
         inside = edges[(edges[:, axis] > low[axis]) & (edges[:, axis] < high[axis]), axis]
-        steps.append(np.concatenate([np.linspace(low[axis], high[axis], GRID + 2)[1:-1], inside]))
+        steps.append(
+            np.concatenate([np.linspace(low[axis], high[axis], GRID_LINES + 2)[1:-1], inside])
+        )
     grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
     points = body.pose.apply(body_points(body))
-    lowest = points[points[:, 2] < low[2] + 2 * EVEN][:, :2]
+    lowest = points[points[:, 2] < low[2] + 2 * SUPPORT_GAP_SPREAD_M][:, :2]
     middle = (low + high)[:2] / 2
     # A line along an edge may miss it.
     xy = np.concatenate([grid, middle + (lowest - middle) * 0.998])

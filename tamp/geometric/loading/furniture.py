@@ -14,7 +14,7 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cavity, Part, Surface
 
 Size = tuple[float, float, float]
-_LEG = 0.05
+_LEG_WIDTH_M = 0.05
 
 
 @dataclass(frozen=True)
@@ -70,13 +70,16 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
         f"a table {height:g} m high has no room under a top {thickness:g} m thick",
     )
     _need(
-        min(width, depth) > 2 * _LEG,
-        f"a table narrower than {2 * _LEG:g} m has no room for legs: say legs: false",
+        min(width, depth) > 2 * _LEG_WIDTH_M,
+        f"a table narrower than {2 * _LEG_WIDTH_M:g} m has no room for legs: say legs: false",
     )
 
-    across, along = (width - _LEG) / 2, (depth - _LEG) / 2
+    across, along = (width - _LEG_WIDTH_M) / 2, (depth - _LEG_WIDTH_M) / 2
     legs = [
-        Part(Box((_LEG, _LEG, height - thickness)), _at(x, y, (height - thickness) / 2))
+        Part(
+            Box((_LEG_WIDTH_M, _LEG_WIDTH_M, height - thickness)),
+            _at(x, y, (height - thickness) / 2),
+        )
         for x in (-across, across)
         for y in (-along, along)
     ]
@@ -129,7 +132,7 @@ FURNITURE: Mapping[str, Kind] = {
 }
 """Builders by name; each raises ValueError, with a sentence, when the boards leave no room."""
 
-PORTABLE = ("open_box",)
+PORTABLE_KINDS = ("open_box",)
 """Kinds that may be moved: `fixed: false`."""
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tamp.geometric.loading.bodies import Draft
+from tamp.geometric.loading.bodies import UnplacedBody
 from tamp.geometric.loading.orientation import read_orientation, read_pose
 from tamp.geometric.loading.tops import top_of
 from tamp.geometric.loading.yaml_nodes import Node
@@ -16,17 +16,17 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
 
-FLOOR = "floor"
+FLOOR_NAME = "floor"
 """What `on:` calls the room's floor, at z = 0; it is no surface of the scene."""
 
-FARTHEST = 1e5
+MAX_COORDINATE_M = 1e5
 """Metres from the world's origin: farther out numbers lose the tenths of a millimetre that contacts
 need.
 """
 
 _HIGHEST_PILE = 200
-_SNAP = 0.002
-_UPRIGHT = math.cos(math.radians(1.0))
+_SNAP_DISTANCE_M = 0.002
+_UPRIGHT_COSINE = math.cos(math.radians(1.0))
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class _Place:
         return max(0.0, abs(float(x)) - self.size[0] / 2, abs(float(y)) - self.size[1] / 2)
 
 
-def place_bodies(drafts: Mapping[str, Draft]) -> tuple[dict[str, Body], tuple[str, ...]]:
+def place_bodies(drafts: Mapping[str, UnplacedBody]) -> tuple[dict[str, Body], tuple[str, ...]]:
     """Give every body its pose and its support.
 
     Returns:
@@ -57,7 +57,7 @@ def place_bodies(drafts: Mapping[str, Draft]) -> tuple[dict[str, Body], tuple[st
 
 
 class _Placing:
-    def __init__(self, drafts: Mapping[str, Draft]) -> None:
+    def __init__(self, drafts: Mapping[str, UnplacedBody]) -> None:
         self.drafts = drafts
         self.owners = {
             place.name: draft.body.name
@@ -82,7 +82,7 @@ class _Placing:
         self.heights = np.array([place.pose.position[2] for _, place in self.places])
         for name, draft in self.drafts.items():
             if "on" not in draft.entries and bodies[name].movable:
-                bodies[name] = self.settled(bodies[name], draft.node)
+                bodies[name] = self.with_inferred_support(bodies[name], draft.node)
         return bodies, tuple(self.warnings)
 
     def place(self, name: str, above: tuple[str, ...]) -> None:
@@ -96,14 +96,16 @@ class _Placing:
         if len(above) > _HIGHEST_PILE:
             raise draft.node.error(f"it carries more than {_HIGHEST_PILE} bodies, one on the other")
         if "on" in draft.entries:
-            self.placed[name] = self.stood(draft, (*above, name))
+            self.placed[name] = self.placed_on_support(draft, (*above, name))
         else:
-            self.placed[name] = self.posed(draft)
-        if max(map(abs, self.placed[name].pose.position)) > FARTHEST:
-            raise draft.node.error(f"it is farther than {FARTHEST:g} m from the world's origin")
+            self.placed[name] = self.placed_at_pose(draft)
+        if max(map(abs, self.placed[name].pose.position)) > MAX_COORDINATE_M:
+            raise draft.node.error(
+                f"it is farther than {MAX_COORDINATE_M:g} m from the world's origin"
+            )
         self.check_level(self.placed[name], draft.node)
 
-    def posed(self, draft: Draft) -> Body:
+    def placed_at_pose(self, draft: UnplacedBody) -> Body:
         """Place a body given by `pose:`, or by `at: [x, y, z]` and how it is turned."""
         entries = draft.entries
         if "pose" in entries:
@@ -120,7 +122,7 @@ class _Placing:
         x, y, z = entries["at"].numbers(3)
         return replace(draft.body, pose=Pose((x, y, z), read_orientation(entries)))
 
-    def stood(self, draft: Draft, above: tuple[str, ...]) -> Body:
+    def placed_on_support(self, draft: UnplacedBody, above: tuple[str, ...]) -> Body:
         """Place a body given by `on:`: upright as modelled unless turned, its lowest point just
         above the support.
         """
@@ -147,7 +149,7 @@ class _Placing:
     def support(self, node: Node, above: tuple[str, ...]) -> _Place:
         """Find the surface, the cavity, the carrying body or the floor that `on:` names."""
         name = node.text()
-        if name == FLOOR and name not in self.owners and name not in self.drafts:
+        if name == FLOOR_NAME and name not in self.owners and name not in self.drafts:
             return _Place(None, Pose(), (math.inf, math.inf))
 
         if name in self.owners:
@@ -168,30 +170,30 @@ class _Placing:
                 )
             return top
 
-        known = sorted({*self.owners, *self.drafts, FLOOR} - {above[-1]})
+        known = sorted({*self.owners, *self.drafts, FLOOR_NAME} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=known)
 
     def check_level(self, body: Body, node: Node) -> None:
         for place in (*body.surfaces, *body.cavities):
-            if (body.pose @ place.pose).rotation[2, 2] < _UPRIGHT and not body.movable:
+            if (body.pose @ place.pose).rotation[2, 2] < _UPRIGHT_COSINE and not body.movable:
                 raise node.error(f"'{place.name}' is not horizontal, nothing can stand on it")
 
-    def settled(self, body: Body, node: Node) -> Body:
+    def with_inferred_support(self, body: Body, node: Node) -> Body:
         """Settle a movable body given by its pose: snap it to what is within 2 mm below it."""
         low, high = bounds(body.parts, body.pose)
-        if low[2] < -_SNAP:
+        if low[2] < -_SNAP_DISTANCE_M:
             raise node.error(
                 f"it reaches {-low[2]:.3f} m below the floor", remedy="Or say 'fixed: true'"
             )
         base = np.array([*(low + high)[:2] / 2, low[2]])
         places = [_Place(None, Pose(), (math.inf, math.inf))]
-        for index in np.flatnonzero(np.abs(self.heights - low[2]) <= _SNAP):
+        for index in np.flatnonzero(np.abs(self.heights - low[2]) <= _SNAP_DISTANCE_M):
             owner, place = self.places[index]
             places += [place] if owner != body.name else []
         under = [
             (abs(low[2] - place.pose.position[2]), index, place)
             for index, place in enumerate(places)
-            if abs(low[2] - place.pose.position[2]) <= _SNAP and place.outside(base) == 0
+            if abs(low[2] - place.pose.position[2]) <= _SNAP_DISTANCE_M and place.outside(base) == 0
         ]
         if not under:  # in the air, or on several bodies: `steady` asks
             return body
@@ -211,7 +213,7 @@ def _places(body: Body) -> dict[str, _Place]:
     places: dict[str, _Place] = {}
     for place in (*body.surfaces, *body.cavities):
         pose = body.pose @ place.pose
-        if pose.rotation[2, 2] >= _UPRIGHT:
+        if pose.rotation[2, 2] >= _UPRIGHT_COSINE:
             places[place.name] = _Place(place.name, pose, place.size[:2])
     return places
 

@@ -8,18 +8,19 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tamp.errors import InputError
-from tamp.geometric.loading.bodies import Draft, read_body
-from tamp.geometric.loading.initial_poses import FARTHEST, FLOOR, place_bodies
+from tamp.geometric.loading.bodies import UnplacedBody, read_body
+from tamp.geometric.loading.initial_poses import FLOOR_NAME, MAX_COORDINATE_M, place_bodies
+from tamp.geometric.loading.passage import PddlPassage
 from tamp.geometric.loading.robots import find_robot, load_robot
 from tamp.geometric.loading.steadying import steady
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node, Passage
+from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.system.files import find_problem
 
-_KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
+_PROBLEM_KEYS = ("name", "domain", "robot", "room", "bodies", "goal", "init", "metric", "samplers")
 
-_ANYWHERE = Room((-FARTHEST, FARTHEST), (-FARTHEST, FARTHEST))
+_UNBOUNDED_ROOM = Room((-MAX_COORDINATE_M, MAX_COORDINATE_M), (-MAX_COORDINATE_M, MAX_COORDINATE_M))
 _NO_MATTER_WHICH = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 
 
@@ -45,10 +46,10 @@ class LoadedProblem:
 
     path: Path
     scene: Scene
-    goal: Passage
+    goal: PddlPassage
     domain: str | None
-    init: tuple[Passage, ...]
-    metric: Passage | None
+    init: tuple[PddlPassage, ...]
+    metric: PddlPassage | None
     samplers: Mapping[str, str]
     meshes: tuple[Path, ...]
     warnings: tuple[str, ...]
@@ -82,9 +83,9 @@ def load_scene(
     path = find_problem(problem)
     root = read_yaml(path)
     needed = ("bodies", "goal") if demonstration else ("robot", "room", "bodies", "goal")
-    entries = root.mapping(_KEYS, required=needed)
+    entries = root.mapping(_PROBLEM_KEYS, required=needed)
     name = entries["name"].text() if "name" in entries else path.stem
-    room = _room(entries["room"]) if "room" in entries else _ANYWHERE
+    room = _room(entries["room"]) if "room" in entries else _UNBOUNDED_ROOM
     start = _NO_MATTER_WHICH
     if "robot" in entries:
         start = _robot(entries["robot"], room, path, robot)
@@ -137,9 +138,9 @@ def _room(node: Node) -> Room:
         low, high = entries[axis].numbers(2)
         if not low < high:
             raise entries[axis].error(f"the lower limit {low:g} is not below the upper {high:g}")
-        if max(-low, high) > FARTHEST:
+        if max(-low, high) > MAX_COORDINATE_M:
             raise entries[axis].error(
-                f"the room reaches farther than {FARTHEST:g} m from the world's origin"
+                f"the room reaches farther than {MAX_COORDINATE_M:g} m from the world's origin"
             )
         limits.append((low, high))
     return Room(*limits)
@@ -178,11 +179,11 @@ def _arm(node: Node, model: str) -> tuple[float, ...]:
     return angles
 
 
-def _check_names(drafts: Mapping[str, Draft]) -> None:
+def _check_names(drafts: Mapping[str, UnplacedBody]) -> None:
     """Check that all names are unique: they share one space, in which case does not count (PDDL's
     rule); one place may be named as its body.
     """
-    owners = {"robot": "the robot", FLOOR: "the floor"}
+    owners = {"robot": "the robot", FLOOR_NAME: "the floor"}
     for name, draft in drafts.items():
         if name.lower() in owners:
             raise draft.node.error(f"the name '{name}' is taken by {owners[name.lower()]}")

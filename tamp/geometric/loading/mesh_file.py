@@ -28,7 +28,7 @@ MOST_TRIANGLES = 1_000_000
 """More are refused; a body has some thousand."""
 
 Triangles = tuple[Array, NDArray[np.int64]]
-SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf")
+MESH_SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf")
 _KNOWN = "OBJ, STL, PLY, COLLADA (.dae), glTF (.glb, .gltf) nor URDF"
 _FACET = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _CORNER_0 = re.compile(rb"^f[^\n]*\s0[/\s]", re.MULTILINE)

@@ -16,8 +16,8 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Int
 
-LARGEST = 5.0
-SMALLEST = 0.001
+MAX_MESH_SIZE_M = 5.0
+MIN_MESH_SIZE_M = 0.001
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,13 +125,13 @@ def open_edges(faces: Int[NDArray[np.integer], "m 3"]) -> int:
 def _check_size(name: str, extents: Array) -> None:
     largest = float(extents.max())
     size = " x ".join(f"{side:.4g}" for side in extents)
-    if largest > LARGEST:
+    if largest > MAX_MESH_SIZE_M:
         factor = 0.001 if largest > 20 else 0.01
         raise InputError(
             f"the mesh '{name}' is {size} m large",
             remedy=f"Lengths are metres: say scale: {factor:g}",
         )
-    if largest < SMALLEST:
+    if largest < MIN_MESH_SIZE_M:
         raise InputError(
             f"the mesh '{name}' is {size} m small", remedy="Lengths are metres: say scale: 1000"
         )

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
 Scale = tuple[float, float, float]
-SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf", ".urdf")
+MESH_SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf", ".urdf")
 _PYBULLET = "pybullet_data"
 _ENTRIES = 2000
 
@@ -104,7 +104,7 @@ def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
             continue
         with os.scandir(folder) as entries:
             for _, entry in zip(range(_ENTRIES), entries, strict=False):
-                if entry.name.lower().endswith(SUFFIXES) and entry.is_file():
+                if entry.name.lower().endswith(MESH_SUFFIXES) and entry.is_file():
                     found.add(str(path.parent / entry.name))
     return found
 

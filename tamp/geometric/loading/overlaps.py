@@ -12,7 +12,7 @@ from tamp.geometric.loading.load import LoadedProblem
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Scene, Sphere
 
-TOLERANCE = 0.001
+OVERLAP_TOLERANCE_M = 0.001
 """Metres that two bodies may lie in each other at the start, so that touching is no mistake."""
 
 _ENOUGH = 20
@@ -59,12 +59,13 @@ def find_overlaps(scene: Scene) -> Iterator[Overlap]:
     for index, body in enumerate(bodies):
         later = slice(index + 1, None)
         near = np.all(
-            (lows[index] <= highs[later] - TOLERANCE) & (lows[later] <= highs[index] - TOLERANCE),
+            (lows[index] <= highs[later] - OVERLAP_TOLERANCE_M)
+            & (lows[later] <= highs[index] - OVERLAP_TOLERANCE_M),
             axis=1,
         )
         for other in np.flatnonzero(near) + index + 1:
             depth = _depth(body, bodies[other])
-            if depth > TOLERANCE:
+            if depth > OVERLAP_TOLERANCE_M:
                 yield Overlap(body.name, bodies[other].name, depth)
 
 

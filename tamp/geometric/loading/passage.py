@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Passage:
+class PddlPassage:
     """A piece of PDDL inside a YAML file, as it stands there, line breaks included.
 
     Attributes:

@@ -13,7 +13,7 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node
-from tamp.geometric.robot.robot import DRIVES, MARGIN, Link, Robot
+from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part
@@ -120,7 +120,7 @@ def _check_home(robot: Robot, node: Node) -> None:
 def _joint(name: str, entry: Mapping[str, Node]) -> Joint:
     kind = entry["kind"].text(KINDS, "kind of joint")
     low, high = entry["range"].numbers(2)
-    least = 2 * (MARGIN if kind != "prismatic" else MARGIN / 10)
+    least = 2 * (LIMIT_MARGIN_RAD if kind != "prismatic" else LIMIT_MARGIN_RAD / 10)
     if kind != "continuous" and not high - low > least:
         raise entry["range"].error(f"the lower limit {low:g} is not below the upper {high:g}")
     return Joint(
@@ -132,13 +132,13 @@ def _joint(name: str, entry: Mapping[str, Node]) -> Joint:
 def _lower(joint: Joint) -> float:
     if joint.kind == "continuous":
         return -FULL_TURN
-    return joint.lower + (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+    return joint.lower + (LIMIT_MARGIN_RAD / 10 if joint.kind == "prismatic" else LIMIT_MARGIN_RAD)
 
 
 def _upper(joint: Joint) -> float:
     if joint.kind == "continuous":
         return FULL_TURN
-    return joint.upper - (MARGIN / 10 if joint.kind == "prismatic" else MARGIN)
+    return joint.upper - (LIMIT_MARGIN_RAD / 10 if joint.kind == "prismatic" else LIMIT_MARGIN_RAD)
 
 
 def _each(entries: Mapping[str, Mapping[str, Node]], key: str) -> tuple[float, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -41,16 +42,17 @@ def find_robot(model: str, beside: Path | None = None) -> str:
     if model in ROBOTS:
         return model
     folders = [folder / model for folder in (beside, Path.cwd()) if folder is not None]
-    for folder in folders:
-        if (folder / ROBOT_FILE).is_file():
-            return str(folder.resolve())
-    for folder in folders:
-        if folder.is_dir():
-            raise InputError(
-                f"the folder '{model}' has no {ROBOT_FILE}",
-                file=folder,
-                remedy="tamp-robot make writes one from a URDF",
-            )
+    with contextlib.suppress(OSError):  # a name too long to be one
+        for folder in folders:
+            if (folder / ROBOT_FILE).is_file():
+                return str(folder.resolve())
+        for folder in folders:
+            if folder.is_dir():
+                raise InputError(
+                    f"the folder '{model}' has no {ROBOT_FILE}",
+                    file=folder,
+                    remedy="tamp-robot make writes one from a URDF",
+                )
     remedy = "A folder that tamp-robot made serves as well"
     raise InputError(f"unknown robot '{model}'", found=model, choices=tuple(ROBOTS), remedy=remedy)
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.loading.bodies import Draft
+from tamp.geometric.loading.bodies import UnplacedBody
 from tamp.geometric.loading.footing import (
-    SINK,
+    SUPPORT_PENETRATION_M,
     Footing,
     Ground,
     body_points,
@@ -25,20 +25,20 @@ from tamp.geometric.scene.scene import Body, Cavity, Surface
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-TIP = math.radians(20.0)
+MAX_TIP_RAD = math.radians(20.0)
 """A body that does not stand as it was given is tipped at most this far onto the face beside,
 radians.
 """
 
-TOUCHING = 0.0005
+TOUCHING_HEIGHT_M = 0.0005
 """Metres: points no higher than this above the lowest are down."""
 
-ROLLS = 60
+MAX_ROLLS = 60
 """Edges over which a body is rolled, at most."""
 
 
 def steady(
-    bodies: Mapping[str, Body], drafts: Mapping[str, Draft]
+    bodies: Mapping[str, Body], drafts: Mapping[str, UnplacedBody]
 ) -> tuple[dict[str, Body], tuple[str, ...]]:
     """Compare how movable bodies stand with what the problem says, by the judge's rule.
 
@@ -84,12 +84,18 @@ def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | 
     place = _place(body.support, bodies)
     if place is None:  # the floor, or a movable body
         return footing.why
+
     T_place_body = (bodies[place.body].pose @ place.pose).inverse() @ body.pose
     if isinstance(place, Cavity):
         points, half = T_place_body.apply(body_points(body)), np.array(place.size[:2]) / 2
         low, high = np.array([-half[0], -half[1], 0.0]), np.array([half[0], half[1], place.size[2]])
         beyond = float(np.maximum(low - points.min(axis=0), points.max(axis=0) - high).max())
-        return f"it protrudes by {1000 * beyond:.1f} mm" if beyond > SINK - 1e-5 else footing.why
+        return (
+            f"it protrudes by {1000 * beyond:.1f} mm"
+            if beyond > SUPPORT_PENETRATION_M - 1e-5
+            else footing.why
+        )
+
     if place.body not in footing.on:
         below = ", ".join(sorted(footing.on)) or "nothing within 10 mm"
         return f"under it is {below}; the surface '{place.name}' is in the air there"
@@ -132,16 +138,16 @@ def _tipped(
 
 def tip(body: Body) -> Float[Array, "3 3"] | None:
     """Compute the rotation (3, 3), in the world, by which a body on a plane rolls until it lies
-    still; None beyond TIP.
+    still; None beyond MAX_TIP_RAD.
     """
     points = body.pose.rotation @ body_points(body).T
     centre = body.pose.rotation @ center_of_mass(body)
 
     turn = np.eye(3)
-    for _ in range(ROLLS):
+    for _ in range(MAX_ROLLS):
         P, c = turn @ points, turn @ centre
         low = float(P[2].min())
-        down = P[2] < low + TOUCHING
+        down = P[2] < low + TOUCHING_HEIGHT_M
         feet = P[:2, down].T
         if outside(c[:2], feet) <= 0.0:
             break
@@ -152,11 +158,11 @@ def tip(body: Body) -> Float[Array, "3 3"] | None:
         ahead = np.array([axis[1], -axis[0]]) @ above[:2]
         angles = np.where(ahead > 1e-9, np.arctan2(above[2], ahead), np.inf)
         angle = float(angles.min(initial=np.inf))
-        if not angle < TIP:
+        if not angle < MAX_TIP_RAD:
             return None
 
         turn = _about(axis, max(angle, 1e-6)) @ turn
-        if math.acos(min(1.0, (float(np.trace(turn)) - 1) / 2)) > TIP:
+        if math.acos(min(1.0, (float(np.trace(turn)) - 1) / 2)) > MAX_TIP_RAD:
             return None
     else:
         return None

@@ -20,19 +20,19 @@ from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Surface
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-NARROWEST = 0.05
+MIN_TOP_WIDTH_M = 0.05
 """Metres: a face that is narrower carries something only where nothing wider is level and free."""
 
-_LEVEL = math.cos(math.radians(1.0))
+_LEVEL_COSINE = math.cos(math.radians(1.0))
 _SAME_HEIGHT = 0.001
 _SAME_YAW = math.radians(0.5)
-_HEADROOM = 0.05
+_HEADROOM_M = 0.05
 """Metres: what begins lower above a face stands on it; what begins higher leaves room under it."""
 
-_EDGE = 0.01
+_EDGE_WIDTH_M = 0.01
 """Metres: of several parts or of a hull, a narrower face is an edge."""
 
-_LID = 0.003
+_LID_DISTANCE_M = 0.003
 """Metres from a hull's face within which the mesh itself must lie."""
 
 _MOST_PARTS = 400
@@ -118,9 +118,9 @@ def _highest(
         level = [face for face in faces if face.height >= height - _SAME_HEIGHT]
         faces = [face for face in faces if face.height < height - _SAME_HEIGHT]
         found = _largest(level, height, boxes)
-        if found is not None and min(found.size) >= NARROWEST - 1e-9:
+        if found is not None and min(found.size) >= MIN_TOP_WIDTH_M - 1e-9:
             return found
-        if found is not None and (plain or min(found.size) >= _EDGE):
+        if found is not None and (plain or min(found.size) >= _EDGE_WIDTH_M):
             narrow = narrow or found
     return narrow
 
@@ -134,7 +134,7 @@ def _clearance(place: _Rectangle, boxes: list[tuple[Array, Array]]) -> float:
         x0, x1, y0, y1 = _flat_box(low, high, into)
         beside = abs((x0 + x1) / 2 - place.x) >= (x1 - x0 + place.size[0]) / 2 - 1e-5
         beside |= abs((y0 + y1) / 2 - place.y) >= (y1 - y0 + place.size[1]) / 2 - 1e-5
-        if low[2] >= place.height + _HEADROOM and not beside:
+        if low[2] >= place.height + _HEADROOM_M and not beside:
             free = min(free, float(low[2]) - place.height)
     return free
 
@@ -143,7 +143,7 @@ def _faces(part: Part) -> Iterator[_Face]:
     shape, rotation, position = part.shape, part.pose.rotation, part.pose.matrix[:3, 3]
     if isinstance(shape, Box):
         axis = int(np.argmax(np.abs(rotation[2])))
-        if abs(rotation[2, axis]) < _LEVEL:
+        if abs(rotation[2, axis]) < _LEVEL_COSINE:
             return
         half = np.array(shape.size) / 2
         up = math.copysign(1.0, rotation[2, axis])
@@ -156,7 +156,7 @@ def _faces(part: Part) -> Iterator[_Face]:
         )
 
     elif isinstance(shape, Cylinder):
-        if abs(rotation[2, 2]) < _LEVEL:
+        if abs(rotation[2, 2]) < _LEVEL_COSINE:
             return
         # Half of the square in the circle, its sides along the cylinder's x and y.
         side = shape.radius / 2**0.5
@@ -179,7 +179,7 @@ def _hull_face(shape: Hull, rotation: Array, position: Array) -> Iterator[_Face]
     a, b, c = points[shape.faces].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)
-    up = normals[:, 2] >= _LEVEL * lengths
+    up = normals[:, 2] >= _LEVEL_COSINE * lengths
     up &= lengths > 1e-12
     if not up.any():
         return
@@ -196,7 +196,9 @@ def _solid(face: _Face, triangles: Array | None) -> bool:
     """Check whether most of a hull's face is the surface of the mesh and not a lid over air."""
     if triangles is None:
         return False
-    near = triangles[np.all(np.abs(triangles[:, :, 2] - face.height) < _LID, axis=1)][:, :, :2]
+    near = triangles[np.all(np.abs(triangles[:, :, 2] - face.height) < _LID_DISTANCE_M, axis=1)][
+        :, :, :2
+    ]
     a, b, c = near.transpose(1, 0, 2)
     area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
     up = area > 1e-12  # counter-clockwise from above
@@ -219,7 +221,7 @@ def _largest(
     standing = [
         (low, high)
         for low, high in boxes
-        if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM
+        if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM_M
     ]
 
     yaws: list[float] = []

@@ -10,7 +10,7 @@ from pathlib import Path
 import yaml
 
 from tamp.errors import InputError
-from tamp.geometric.loading.passage import Passage
+from tamp.geometric.loading.passage import PddlPassage
 
 _TAG = "tag:yaml.org,2002:"
 _UNITS = ("deg", "rad", "°")
@@ -225,7 +225,7 @@ class Node:
         """Check whether it is a list."""
         return isinstance(self._node, yaml.SequenceNode)
 
-    def passage(self) -> Passage:
+    def passage(self) -> PddlPassage:
         """Return the text as it stands in the file, so that a parser can say line and column."""
         text = self.text()
         start, end = self._node.start_mark, self._node.end_mark
@@ -237,14 +237,16 @@ class Node:
             block = list(
                 itertools.takewhile(lambda line: not line.strip() or _indent(line) >= indent, below)
             )
-            return Passage("\n".join(block), start.line + 2, 1)
+            return PddlPassage("\n".join(block), start.line + 2, 1)
         lines = self._source[start.line : end.line + 1]
         lines[-1] = lines[-1][: end.column]
         lines[0] = lines[0][start.column :]
         raw = "\n".join(lines)
         if style in ("'", '"'):
-            return Passage(raw[1:-1] if "\\" not in raw else text, start.line + 1, start.column + 2)
-        return Passage(raw, start.line + 1, start.column + 1)
+            return PddlPassage(
+                raw[1:-1] if "\\" not in raw else text, start.line + 1, start.column + 2
+            )
+        return PddlPassage(raw, start.line + 1, start.column + 1)
 
     def _checked(self, word: str, positive: bool, low: float, high: float) -> float:
         try:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.motion.checker import Checker, Limits
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.motion.sampling_based import JointSpace, connect
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
@@ -17,10 +17,14 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-CHECKS = 250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
-REACH = 0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
-SHORTCUTS = 30
-PATIENCE = 5
+MAX_EDGE_CHECKS = (
+    250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
+)
+MAX_EDGE_RAD = (
+    0.7  # radians, the longest edge of the trees: short ones cost little when they are blocked
+)
+SHORTCUT_TRIES = 30
+SHORTCUT_PATIENCE = 5
 
 
 def plan_arm(
@@ -33,8 +37,8 @@ def plan_arm(
     deadline: Deadline,
     *,
     effort: int = 1,
-    shortcuts: int = SHORTCUTS,
-) -> Planned:
+    shortcuts: int = SHORTCUT_TRIES,
+) -> MotionResult:
     """Plan a collision-free path of the arm from `start` to one of `goals`.
 
     The straight line is tried first, then RRTConnect, whose path is shortened; every edge of the
@@ -49,7 +53,7 @@ def plan_arm(
         robot: Gives the joint limits.
         rng: Advanced by two draws at most per call, plus those of the shortcuts.
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
-        effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
+        effort: 0, 1, 2, ...: RRTConnect may check MAX_EDGE_CHECKS * 4**effort edges.
         shortcuts: Random cuts to try.
 
     Returns:
@@ -70,32 +74,37 @@ def plan_arm(
 
     candidates = candidates[[inside(goal) for goal in candidates]]
     if not inside(start) or not len(candidates):
-        return Planned(None, Failure.LIMITS, 0)
+        return MotionResult(None, Failure.LIMITS, 0)
     if not checker.free(conf(start)):
-        return Planned(None, Failure.START, 0)
+        return MotionResult(None, Failure.START, 0)
 
     candidates = candidates[[checker.free(conf(goal)) for goal in candidates]]
     if not len(candidates):
-        return Planned(None, Failure.GOAL, 0)
+        return MotionResult(None, Failure.GOAL, 0)
 
     candidates = candidates[np.argsort(np.linalg.norm(candidates - start, axis=1), kind="stable")]
     checks = 0
     for goal in candidates:
         checks += 1
         if edge_free(start, goal):
-            return Planned(np.array([start, goal]), None, checks)
+            return MotionResult(np.array([start, goal]), None, checks)
         if deadline.passed:
-            return Planned(None, Failure.TIME, checks)
+            return MotionResult(None, Failure.TIME, checks)
 
     path, asked = connect(
         JointSpace(tuple(lower), tuple(upper)), start, list(candidates), edge_free,
-        seed=int(rng.integers(1, 2**31)), checks=CHECKS * 4**effort, deadline=deadline, reach=REACH,
+        seed=int(rng.integers(1, 2**31)), checks=MAX_EDGE_CHECKS * 4**effort,
+        deadline=deadline, reach=MAX_EDGE_RAD,
     )  # fmt: skip
     checks += asked
     if path is None:
-        return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+        return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
 
-    path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=PATIENCE)
+    path, asked = shortcut(path, edge_free, rng, tries=shortcuts, patience=SHORTCUT_PATIENCE)
     checks += asked + len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))
-    return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
+    return (
+        MotionResult(path, None, checks)
+        if certified
+        else MotionResult(None, Failure.EXHAUSTED, checks)
+    )

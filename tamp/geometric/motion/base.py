@@ -11,7 +11,7 @@ import numpy as np
 from tamp.geometric.motion.checker import Checker
 from tamp.geometric.motion.differential import turn_and_drive
 from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
@@ -21,19 +21,21 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-YAW = (2,)
-WEIGHTS = np.array([1.0, 1.0, 0.5])
+YAW_COLUMNS = (2,)
+DISTANCE_WEIGHTS = np.array([1.0, 1.0, 0.5])
 """A radian of turning weighs half a metre, as in OMPL's SE2 space."""
 
-CHECKS = 200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
-REACH = 1.0  # the longest edge of the trees, weighted metres
-SHORTCUTS = 30
-PATIENCE = 8
+MAX_EDGE_CHECKS = (
+    200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
+)
+MAX_EDGE_M = 1.0  # the longest edge of the trees, weighted metres
+SHORTCUT_TRIES = 30
+SHORTCUT_PATIENCE = 8
 CURVE_STEP = (
     0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
 )
-RETREATS = (0.3, 0.6)  # metres to back away from furniture before turning
-PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
+RETREATS_M = (0.3, 0.6)  # metres to back away from furniture before turning
+MAX_PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
 
 STEERINGS = ("se2", "reeds-shepp", "differential")
 
@@ -52,8 +54,8 @@ def plan_base(
     steering: str = "se2",
     turning_radius: float = 0.5,
     effort: int = 1,
-    shortcuts: int = SHORTCUTS,
-) -> Planned:
+    shortcuts: int = SHORTCUT_TRIES,
+) -> MotionResult:
     """Plan a collision-free path of the base from `start` to `goal`.
 
     With "se2" the base moves in any direction: the straight line (translating and turning at once),
@@ -73,7 +75,7 @@ def plan_base(
         deadline: Outer cap; the effort is the bound that keeps results reproducible.
         steering: One of STEERINGS.
         turning_radius: For "reeds-shepp", metres.
-        effort: 0, 1, 2, ...: RRTConnect may check CHECKS * 4**effort edges.
+        effort: 0, 1, 2, ...: RRTConnect may check MAX_EDGE_CHECKS * 4**effort edges.
         shortcuts: Random cuts to try (not with "reeds-shepp").
 
     Returns:
@@ -86,7 +88,7 @@ def plan_base(
     if steering not in STEERINGS:
         raise ValueError(f"unknown steering '{steering}'. Choices: {', '.join(STEERINGS)}")
     start = np.asarray(start, dtype=float)
-    goal = nearest(start, np.asarray(goal, dtype=float), YAW)
+    goal = nearest(start, np.asarray(goal, dtype=float), YAW_COLUMNS)
     checks = 0
 
     def conf(base: Array) -> Array:
@@ -95,37 +97,33 @@ def plan_base(
     def edge_free(a: Array, b: Array) -> bool:
         nonlocal checks
         checks += 1
-        return checker.edge_free(conf(a), conf(nearest(a, b, YAW)))
+        return checker.edge_free(conf(a), conf(nearest(a, b, YAW_COLUMNS)))
 
     if not (_inside(room, start) and _inside(room, goal)):
-        return Planned(None, Failure.LIMITS, checks)
+        return MotionResult(None, Failure.LIMITS, checks)
     if not checker.free(conf(start)):
-        return Planned(None, Failure.START, checks)
+        return MotionResult(None, Failure.START, checks)
     if not checker.free(conf(goal)):
-        return Planned(None, Failure.GOAL, checks)
+        return MotionResult(None, Failure.GOAL, checks)
 
     seed = int(rng.integers(1, 2**31))
-    budget = CHECKS * 4**effort
+    budget = MAX_EDGE_CHECKS * 4**effort
     if steering == "se2":
         path = _simple(start, goal, room, edge_free, deadline)
         if path is None:
             plane = PlaneSpace(room.x, room.y)
             found, _ = connect(
-                plane,
-                start,
-                [goal],
-                edge_free,
-                seed=seed,
-                checks=budget,
-                deadline=deadline,
-                reach=REACH,
-            )
-            path = None if found is None else unwrap(np.array([start, *found[1:-1], goal]), YAW)
+                plane, start, [goal], edge_free, seed=seed, checks=budget, deadline=deadline,
+                reach=MAX_EDGE_M,
+            )  # fmt: skip
+            if found is not None:
+                path = unwrap(np.array([start, *found[1:-1], goal]), YAW_COLUMNS)
 
         if path is not None and len(path) > 2:
             path, _ = shortcut(
-                path, edge_free, rng, tries=shortcuts, patience=PATIENCE, weights=WEIGHTS,
-                periodic=YAW,
+                path, edge_free, rng, tries=shortcuts, patience=SHORTCUT_PATIENCE,
+                weights=DISTANCE_WEIGHTS,
+                periodic=YAW_COLUMNS,
             )  # fmt: skip
     elif steering == "differential":
         path = turn_and_drive(
@@ -137,9 +135,13 @@ def plan_base(
         path = _drive(plane, start, goal, room, edge_free, seed, budget, deadline)
 
     if path is None:
-        return Planned(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+        return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
     certified = all(edge_free(a, b) for a, b in pairwise(path))
-    return Planned(path, None, checks) if certified else Planned(None, Failure.EXHAUSTED, checks)
+    return (
+        MotionResult(path, None, checks)
+        if certified
+        else MotionResult(None, Failure.EXHAUSTED, checks)
+    )
 
 
 def _simple(
@@ -154,8 +156,8 @@ def _simple(
     ways_out = [start, *_retreats(start, room, edge_free)]
     ways_in = [goal, *_retreats(goal, room, edge_free)]
     paths = [np.array([start, out, into, goal]) for out in ways_out for into in ways_in]
-    paths.sort(key=lambda path: length(path, WEIGHTS))
-    for path in paths[1 : PAIRS + 1]:  # the first is the straight line
+    paths.sort(key=lambda path: length(path, DISTANCE_WEIGHTS))
+    for path in paths[1 : MAX_PAIRS + 1]:  # the first is the straight line
         if deadline.passed:
             return None
         if edge_free(path[1], path[2]):
@@ -178,7 +180,7 @@ def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
     """
     for angle in np.pi + np.array([0.0, 1.0, -1.0, 2.0, -2.0]) * np.pi / 4:
         heading = base[2] + angle
-        for distance in RETREATS:
+        for distance in RETREATS_M:
             away = base + distance * np.array([np.cos(heading), np.sin(heading), 0.0])
             if not _inside(room, away) or not edge_free(base, away):
                 break
@@ -198,7 +200,7 @@ def _drive(
     """Compute Reeds-Shepp curves from start to goal, sampled."""
 
     def sampled(a: Array, b: Array) -> Array:
-        return unwrap(curve(plane, a, b, CURVE_STEP), YAW)
+        return unwrap(curve(plane, a, b, CURVE_STEP), YAW_COLUMNS)
 
     def curve_free(a: Array, b: Array) -> bool:
         samples = sampled(a, b)
@@ -216,7 +218,7 @@ def _drive(
             seed=seed,
             checks=budget,
             deadline=deadline,
-            reach=2.0 * REACH,
+            reach=2.0 * MAX_EDGE_M,
         )
 
         if found is None:
@@ -231,7 +233,7 @@ def _drive(
             rest = rest[jump + 1 :]
 
     pieces = [sampled(a, b) for a, b in pairwise(vertices)]
-    return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW)
+    return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW_COLUMNS)
 
 
 def _inside(room: Room, base: Array) -> bool:

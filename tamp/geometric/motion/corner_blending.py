@@ -37,26 +37,26 @@ MOST = 10  # nodes on one straight part
 
 
 @dataclass(frozen=True, eq=False)
-class Rail:
+class BlendedPath:
     """Nodes along the geometry, with derivatives of the position by the station.
 
     Attributes:
         positions: Shape (m, d).
         stations: Path parameter of the nodes, shape (m,), increasing from 0.
         tangents: First derivative at each node, shape (m, d).
-        steepest: Largest magnitude of the first derivative beside each node, shape (m, d); for the
-            speed limits.
-        bends_before: Second derivative just before each node, shape (m, d).
-        bends_after: The same just after it.
+        max_derivative: Largest magnitude of the first derivative beside each node, shape (m, d);
+            for the speed limits.
+        curvature_before: Second derivative just before each node, shape (m, d).
+        curvature_after: The same just after it.
         straight: For each interval whether it may be sampled more finely, shape (m - 1,).
     """
 
     positions: Array
     stations: Array
     tangents: Array
-    steepest: Array
-    bends_before: Array
-    bends_after: Array
+    max_derivative: Array
+    curvature_before: Array
+    curvature_after: Array
     straight: NDArray[np.bool_]
 
 
@@ -80,7 +80,7 @@ class Corner:
     window: float = 0.0
 
     @property
-    def taken(self) -> float:
+    def blend_length(self) -> float:
         """Return how much of either adjacent edge belongs to the corner; zero where the motion
         rests.
         """
@@ -165,13 +165,13 @@ _Node = tuple[
 ]  # Rail's columns, then the edge it lies on, or -1
 
 
-def lay(passed: list[Corner]) -> Rail:
+def blend(passed: list[Corner]) -> BlendedPath:
     """Lay the rail through corners at which the motion does not rest, except at the first and the
     last.
     """
     *columns, edges = zip(*_nodes(passed), strict=True)
     on = np.array(edges)
-    return Rail(
+    return BlendedPath(
         *(np.array(column) for column in columns), straight=(on[:-1] == on[1:]) & (on[1:] >= 0)
     )
 
@@ -229,10 +229,10 @@ def _straight(
 ) -> Iterator[_Node]:
     """Return the part of an edge that belongs to neither corner, with nodes at both ends."""
     u, zero = first.after, np.zeros_like(first.after)
-    begin, end = first.taken, extent - last.taken
+    begin, end = first.blend_length, extent - last.blend_length
     parts = int(np.clip(np.ceil((end - begin) / STEP), 1, MOST))
     for i, offset in enumerate(np.linspace(begin, end, parts + 1)):
-        at_end = i == parts and not last.taken
+        at_end = i == parts and not last.blend_length
         position = last.vertex if at_end else first.vertex + offset * u
         bends = (first.bend if i == 0 else zero, last.bend if i == parts else zero)
         yield position, station + offset, u, np.abs(u), *bends, edge
@@ -240,4 +240,4 @@ def _straight(
 
 def _covered(first: Corner, last: Corner, extent: float) -> bool:
     """Check whether the corners at both ends take the whole edge."""
-    return first.taken + last.taken > (1.0 - 1e-6) * extent
+    return first.blend_length + last.blend_length > (1.0 - 1e-6) * extent

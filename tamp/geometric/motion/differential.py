@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 EdgeTest = Callable[[Array, Array], bool]
 
-YAW = (2,)
-REACH = 1.5
+YAW_COLUMNS = (2,)
+MAX_EDGE_M = 1.5
 """The longest edge of the trees, metres."""
 
-NEAR = 1e-9
+SAME_STATION_M = 1e-9
 """Metres: stations nearer to each other than this are one."""
 
-RETREATS = (0.3, 0.6)
+RETREATS_M = (0.3, 0.6)
 """Metres to back away straight from furniture before turning, and to come from before the goal."""
 
 
@@ -70,7 +70,7 @@ def turn_and_drive(
     plane = PlaneSpace(room.x, room.y)
     tree, _ = connect(
         plane, start, [goal], lambda a, b: legs(a, b) is not None, seed=seed, checks=checks,
-        deadline=deadline, reach=REACH,
+        deadline=deadline, reach=MAX_EDGE_M,
     )  # fmt: skip
     if tree is None:
         return None
@@ -89,7 +89,7 @@ def ways(a: Float[Array, " 3"], b: Float[Array, " 3"]) -> list[Float[Array, "k 3
     one that turns less first; each shape (k, 3).
     """
     step = b[:2] - a[:2]
-    if float(np.linalg.norm(step)) < NEAR:
+    if float(np.linalg.norm(step)) < SAME_STATION_M:
         return [_path([a, np.array([a[0], a[1], b[2]])])]
     heading = math.atan2(step[1], step[0])
     found: list[tuple[float, Array]] = []
@@ -103,7 +103,7 @@ def ways(a: Float[Array, " 3"], b: Float[Array, " 3"]) -> list[Float[Array, "k 3
 
 def _path(rows: list[Array]) -> Array:
     """Make a path of rows, the yaw unwrapped, without those that repeat."""
-    path = unwrap(np.array(rows), YAW)
+    path = unwrap(np.array(rows), YAW_COLUMNS)
     kept = [path[0]]
     for row in path[1:]:
         if np.abs(row - kept[-1]).max() > 1e-12:
@@ -122,7 +122,7 @@ def _vias(start: Array, goal: Array, room: Room) -> list[list[Array]]:
 
 def _behind(base: Array, room: Room) -> list[Array]:
     found: list[Array] = []
-    for distance in RETREATS:
+    for distance in RETREATS_M:
         x = base[0] - distance * math.cos(base[2])
         y = base[1] - distance * math.sin(base[2])
         if room.x[0] <= x <= room.x[1] and room.y[0] <= y <= room.y[1]:
@@ -134,7 +134,7 @@ def _through(stations: list[Array], legs: Callable[[Array, Array], Array | None]
     """Join the legs from station to station."""
     rows = [stations[0]]
     for station in stations[1:]:
-        found = legs(rows[-1], nearest(rows[-1], station, YAW))
+        found = legs(rows[-1], nearest(rows[-1], station, YAW_COLUMNS))
         if found is None:
             return None
         rows += list(found[1:])

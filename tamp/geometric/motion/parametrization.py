@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tamp.geometric.motion.corner_blending import Rail
-from tamp.geometric.motion.without_pyplot import undrawn
+from tamp.geometric.motion.corner_blending import BlendedPath
+from tamp.geometric.motion.without_pyplot import without_pyplot
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-with undrawn():
+with without_pyplot():
     from toppra.algorithm import TOPPRA
     from toppra.constraint import LinearConstraint
 
 
 def speeds(
-    rail: Rail, velocity: Float[Array, " d"], acceleration: Float[Array, " d"]
+    rail: BlendedPath, velocity: Float[Array, " d"], acceleration: Float[Array, " d"]
 ) -> Float[Array, " m"] | None:
     """Compute the fastest rate of the station at each node, from rest to rest.
 
@@ -55,10 +55,10 @@ class _Limits(LinearConstraint):
     toppra's own joint limits know one second derivative per node; a rail has one on either side.
     """
 
-    def __init__(self, rail: Rail, velocity: Array, acceleration: Array) -> None:
+    def __init__(self, rail: BlendedPath, velocity: Array, acceleration: Array) -> None:
         super().__init__()
         self.identical = True
-        before, after = rail.bends_before, rail.bends_after
+        before, after = rail.curvature_before, rail.curvature_after
         gaps = np.diff(rail.stations)[:, None]
         start = rail.tangents, after
         # At the interval's end x is x + 2 gap u.
@@ -68,7 +68,7 @@ class _Limits(LinearConstraint):
         ]
         self.limits = np.tile(acceleration, 4)
         with np.errstate(divide="ignore"):
-            fastest = np.min(velocity / rail.steepest, axis=1)
+            fastest = np.min(velocity / rail.max_derivative, axis=1)
         self.bounds = np.stack([np.zeros(len(fastest)), fastest**2], axis=1)
 
     def compute_constraint_params(
@@ -91,6 +91,6 @@ class _Limits(LinearConstraint):
 class _Interval:
     """All that toppra asks of a path when the constraints bring their own derivatives."""
 
-    def __init__(self, rail: Rail) -> None:
+    def __init__(self, rail: BlendedPath) -> None:
         self.path_interval = np.array([rail.stations[0], rail.stations[-1]])
         self.dof = rail.positions.shape[1]

@@ -27,22 +27,22 @@ from tamp.geometric.stability.slices import cut, distances
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-FINEST = 0.03
+MIN_CELL_M = 0.03
 """Side of the cells into which the floor is divided at least, metres."""
 
-CELLS = 40_000
+MAX_CELLS = 40_000
 """Cells of the floor at most; a larger room has larger ones."""
 
-COARSEST = 0.08
+MAX_CELL_M = 0.08
 """Larger cells than this tell nothing of doors, metres."""
 
-SLICES = (0.1, 0.5, 0.9)
+SLICE_SHARES = (0.1, 0.5, 0.9)
 """Heights of the base, as shares, at which the fixed bodies are cut."""
 
-LOOK = 0.05
+LOOK_SPACING_M = 0.05
 """Spacing of the points that are looked at along a straight way, metres."""
 
-DOOR = 1.2
+DOOR_SHARE = 1.2
 """Gaps wider than this times the base are no doors that anybody would blame."""
 
 
@@ -68,7 +68,7 @@ class Gap:
     @property
     def text(self) -> str:
         """Say it in words."""
-        if self.width < 2 * FINEST:
+        if self.width < 2 * MIN_CELL_M:
             return f"no way leads there: {' and '.join(self.bodies)} in between"
         return f"the door is {self.width:.2f} m, the base {self.base:.2f} m wide"
 
@@ -86,8 +86,8 @@ class Passage:
         box = _base(robot)
         self.radius, self._heights = (0.0, (0.0, 0.0)) if box is None else box
         x, y = scene.room.x, scene.room.y
-        self.cell = max(FINEST, math.sqrt((x[1] - x[0]) * (y[1] - y[0]) / CELLS))
-        self.known = box is not None and self.cell <= COARSEST
+        self.cell = max(MIN_CELL_M, math.sqrt((x[1] - x[0]) * (y[1] - y[0]) / MAX_CELLS))
+        self.known = box is not None and self.cell <= MAX_CELL_M
         self._start = np.array(scene.robot.base[:2])
         self._open: list[tuple[float, float]] = []
 
@@ -106,7 +106,7 @@ class Passage:
             for part in body.parts:
                 vertices, triangles = part_mesh(part)
                 placed = body.pose.apply(vertices)
-                for share in SLICES:
+                for share in SLICE_SHARES:
                     corners = cut(placed, triangles, low + share * (high - low))
                     if corners is not None:
                         found.append(Slice(name, corners))
@@ -153,7 +153,7 @@ class Passage:
     def _free(self, corners: list[Array]) -> bool:
         points: list[Array] = []
         for a, b in pairwise(corners):
-            count = max(2, math.ceil(float(np.linalg.norm(b - a)) / LOOK))
+            count = max(2, math.ceil(float(np.linalg.norm(b - a)) / LOOK_SPACING_M))
             points += [a + share * (b - a) for share in np.linspace(0.0, 1.0, count)]
         return bool((self.clearance(np.array(points)) >= self.radius).all())
 
@@ -231,7 +231,7 @@ class Passage:
         )
         gap = self._gap(target)
         beside = math.dist(gap.place, goal[:2]) < self.radius
-        return gap if gap.width <= DOOR * gap.base and not beside else None
+        return gap if gap.width <= DOOR_SHARE * gap.base and not beside else None
 
     def _gap(self, target: int) -> Gap:
         """Find the narrowest place on the way to a cell."""

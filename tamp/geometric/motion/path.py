@@ -16,7 +16,7 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-TURN = 2.0 * np.pi
+FULL_TURN_RAD = 2.0 * np.pi
 
 
 def nearest(
@@ -27,9 +27,9 @@ def nearest(
     """
     moved = np.array(conf, dtype=float)
     for i in periodic:
-        turns = round((reference[i] - moved[i]) / TURN)
+        turns = round((reference[i] - moved[i]) / FULL_TURN_RAD)
         if turns:  # zero turns leave the number exactly as it was given
-            moved[i] += TURN * turns
+            moved[i] += FULL_TURN_RAD * turns
     return moved
 
 

@@ -19,7 +19,7 @@ class Failure(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Planned:
+class MotionResult:
     """The outcome of one motion query.
 
     Attributes:

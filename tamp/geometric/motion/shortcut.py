@@ -19,7 +19,7 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-GAIN = 0.01  # a cut that saves less than this share of the path is not worth an edge check
+MIN_GAIN = 0.01  # a cut that saves less than this share of the path is not worth an edge check
 
 
 def shortcut(
@@ -71,7 +71,7 @@ def shortcut(
         )
 
         landing = nearest(first, second, periodic)
-        if (high - low) * total - math.dist(first * scale, landing * scale) < GAIN * total:
+        if (high - low) * total - math.dist(first * scale, landing * scale) < MIN_GAIN * total:
             continue
 
         checks += 1

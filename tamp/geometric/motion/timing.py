@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.motion.corner_blending import TICK, Corner, Rail, corners, lay
+from tamp.geometric.motion.corner_blending import TICK, BlendedPath, Corner, blend, corners
 from tamp.geometric.motion.path import without_repeats
 from tamp.geometric.scene.pose import Array
 
@@ -66,7 +66,7 @@ def time_path(
     if len(path) == 1:
         return Timed(np.zeros(1), path)
     passed = corners(path, acceleration, edge_free)
-    rests = [k for k, corner in enumerate(passed) if not corner.taken]
+    rests = [k for k, corner in enumerate(passed) if not corner.blend_length]
     return _joined([_piece(passed[i : j + 1], velocity, acceleration) for i, j in pairwise(rests)])
 
 
@@ -86,7 +86,7 @@ def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
     if len(passed) > 2:
         from tamp.geometric.motion.parametrization import speeds  # toppra takes 0.75 s to import
 
-        rail = lay(passed)
+        rail = blend(passed)
         rates = speeds(rail, velocity, acceleration)
         if rates is not None:
             return _slowed(_sampled(rail, rates), velocity, acceleration)
@@ -122,7 +122,7 @@ def _joined(pieces: list[Timed]) -> Timed:
     )
 
 
-def _sampled(rail: Rail, rates: Array) -> Timed:
+def _sampled(rail: BlendedPath, rates: Array) -> Timed:
     """Return the nodes at their times, and more samples on the straight parts; the acceleration is
     constant between nodes.
     """

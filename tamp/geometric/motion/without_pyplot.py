@@ -11,7 +11,7 @@ PLOTTING = ("matplotlib", "matplotlib.pyplot")
 
 
 @contextmanager
-def undrawn() -> Iterator[None]:
+def without_pyplot() -> Iterator[None]:
     """Give imports in the block that ask for pyplot an empty module, unless it is there already.
 
     toppra imports pyplot for plots that nobody here asks for, and that takes longer than solving a

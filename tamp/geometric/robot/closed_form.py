@@ -15,7 +15,7 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-TOLERANCE = 1e-6
+FK_TOLERANCE = 1e-6
 """Metres, and entries of the rotation matrix, by which a solution's FK may miss the pose."""
 
 
@@ -100,7 +100,7 @@ class ClosedForm:
 
     def _valid(self, T_base_tool: Array, batch: list[Array]) -> Array:
         candidates = np.ascontiguousarray(np.concatenate(batch))
-        return keep_valid(*self._chain.arrays, T_base_tool, candidates, TOLERANCE)
+        return keep_valid(*self._chain.arrays, T_base_tool, candidates, FK_TOLERANCE)
 
     def _solver(self, seventh: float) -> HPRobot:
         return HPRobot(self._axes, self._offsets, fixed_axes=[(6, float(seventh))])

@@ -13,17 +13,17 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-SEEDS = 128
+MAX_STARTS = 128
 """Starts after which a pose counts as out of reach, one that lies beyond the arm's length at once:
 of poses within reach one in a thousand needs more than 30."""
 
-LOOKED = 48
+STARTS_FOR_MORE = 48
 """Starts that are gone through for further solutions once there is one."""
 
-MOST = 24
+MAX_SOLUTIONS = 24
 """Solutions that are looked for, at most."""
 
-BEYOND = 1e-3
+REACH_SLACK_M = 1e-3
 """Metres that are added to the arm's length, for rounding."""
 
 
@@ -38,7 +38,7 @@ class Numerical:
 
     def __init__(self, chain: Chain) -> None:
         self._chain = chain
-        spread = np.array([_halton(index, len(chain.lower)) for index in range(1, SEEDS)])
+        spread = np.array([_halton(index, len(chain.lower)) for index in range(1, MAX_STARTS)])
         self._spread = np.concatenate([np.full((1, len(chain.lower)), 0.5), spread])
         # A joint that turns freely begins within half a turn of home.
         wide = chain.upper - chain.lower > 2 * np.pi
@@ -52,7 +52,7 @@ class Numerical:
         enough: int | None = None,
         rng: np.random.Generator | None = None,
     ) -> Float[Array, "n joints"]:
-        """Solve as `ArmIK.solve` says; at most MOST solutions, each found from another start."""
+        """Solve as `ArmIK.solve` says; at most MAX_SOLUTIONS, each from another start."""
         chain = self._chain
         if float(np.linalg.norm(T_base_tool[:3, 3] - self._centre)) > self._length:
             return np.empty((0, len(chain.lower)))
@@ -61,8 +61,8 @@ class Numerical:
             spread = (spread + rng.random(len(chain.lower))) % 1.0
         seeds = self._low + spread * (self._high - self._low)
         target = np.ascontiguousarray(T_base_tool, dtype=float)
-        most = MOST if enough is None else enough
-        looked = LOOKED if enough is None else SEEDS
+        most = MAX_SOLUTIONS if enough is None else enough
+        looked = STARTS_FOR_MORE if enough is None else MAX_STARTS
         found, count = damped_least_squares(*chain.arrays, chain.home, target, seeds, looked, most)
         return found[:count]
 
@@ -71,7 +71,7 @@ def _length(chain: Chain) -> tuple[Array, float]:
     """Return a point in the base's frame and the tool's greatest distance from it, metres, bounded
     from above by the lengths of the links.
     """
-    reach = float(np.linalg.norm(chain.T_flange_tool[:3, 3])) + BEYOND
+    reach = float(np.linalg.norm(chain.T_flange_tool[:3, 3])) + REACH_SLACK_M
     for index in range(len(chain.origins)):
         if index > 0:
             reach += float(np.linalg.norm(chain.origins[index, :3, 3]))
@@ -80,7 +80,7 @@ def _length(chain: Chain) -> tuple[Array, float]:
     return chain.origins[0, :3, 3].copy(), reach
 
 
-PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
+HALTON_BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 """The bases of Halton's sequence, one a joint."""
 
 
@@ -88,7 +88,7 @@ def _halton(index: int, count: int) -> list[float]:
     """Return the point of that index of Halton's sequence in [0, 1)^count."""
     point: list[float] = []
     for joint in range(count):
-        base, value, scale, rest = PRIMES[joint % len(PRIMES)], 0.0, 1.0, index
+        base, value, scale, rest = HALTON_BASES[joint % len(HALTON_BASES)], 0.0, 1.0, index
         while rest:
             scale /= base
             value += scale * (rest % base)

@@ -18,12 +18,12 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-BROAD = 0.1
+BROAD_SHARE = 0.1
 """The share of samples that do not follow the table, so that every base pose within reach can be
 drawn.
 """
 
-FRONT = math.radians(25)
+FRONT_SPREAD_RAD = math.radians(25)
 """Standard deviation of the tool's bearing as seen from the arm's foot: the base mostly faces its
 work.
 """
@@ -100,9 +100,13 @@ class Reachability:
 
         distance, heading, bearing = self._broad(rng, count)
         if 0 <= level < len(self._heights) and self._cumulative[level, direction, -1] > 0:
-            follow = rng.random(count) >= BROAD
+            follow = rng.random(count) >= BROAD_SHARE
             drawn = self._from_table(level, direction, rng, count)
-            bounded = np.clip(rng.normal(0.0, FRONT, count), -2.5 * FRONT, 2.5 * FRONT)
+            bounded = np.clip(
+                rng.normal(0.0, FRONT_SPREAD_RAD, count),
+                -2.5 * FRONT_SPREAD_RAD,
+                2.5 * FRONT_SPREAD_RAD,
+            )
             distance, heading = (
                 np.where(follow, drawn[0], distance),
                 np.where(follow, drawn[1], heading),

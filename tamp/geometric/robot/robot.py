@@ -10,7 +10,7 @@ from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Part
 
-MARGIN = math.radians(0.5)
+LIMIT_MARGIN_RAD = math.radians(0.5)
 """Radians that plans keep from a joint's limits; of one that slides a tenth as many metres."""
 
 DRIVES = ("omnidirectional", "differential", "fixed")
@@ -43,8 +43,8 @@ class Robot:
         T_hand_tool: The tool in the hand's frame: between the pads, z along the fingers, y the
             closing direction.
         fingers: The left and the right finger's prismatic joint; at opening w each stands at w / 2.
-        lower, upper: The range of the arm's joints in plans: the maker's, MARGIN less on both
-            sides.
+        lower, upper: The range of the arm's joints in plans: the maker's, LIMIT_MARGIN_RAD less on
+            both sides.
         velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second
             (squared).
         home: The arm's compact carrying configuration, in which the base drives.

@@ -19,20 +19,20 @@ Grounding = Generator | Classifier
 """What grounds a relation: its generator, its classifier, or an object that is both."""
 
 Registry = Mapping[str, Mapping[str, Callable[..., Grounding]]]
-"""Relation to sampler name to what makes it, f(); it may raise InputError. See ANY."""
+"""Relation to sampler name to what makes it, f(); it may raise InputError. See ANY_RELATION."""
 
-ANY = "*"
+ANY_RELATION = "*"
 """The relation under which a registry has suffixes of files for names; what reads such a file is
 f(relation, file)."""
 
-GIVEN = "given"
+USER_OBJECT = "given"
 """The name of an object that was given in the place of a name."""
 
-MODES = ("mixed", "alone")
+SAMPLER_MODES = ("mixed", "alone")
 
 
 @dataclass(frozen=True)
-class Choice:
+class SamplerSpec:
     """A sampler, by name, for a relation.
 
     Attributes:
@@ -55,7 +55,9 @@ HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
 """The samplers that are alone unless it is said that they are mixed."""
 
 
-def parse_choice(relation: str, text: str, known: Registry, folder: Path | None = None) -> Choice:
+def parse_choice(
+    relation: str, text: str, known: Registry, folder: Path | None = None
+) -> SamplerSpec:
     """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole
     path.
 
@@ -70,16 +72,20 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
     """
     name, colon, mode = (
         text.rpartition(":")
-        if text.endswith(tuple(f":{mode}" for mode in MODES))
+        if text.endswith(tuple(f":{mode}" for mode in SAMPLER_MODES))
         else (text, "", "")
     )
-    if Path(name).suffix in known.get(ANY, {}):
-        return Choice(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
+    if Path(name).suffix in known.get(ANY_RELATION, {}):
+        return SamplerSpec(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
 
     name, colon, mode = text.partition(":")
-    if relation not in known or relation == ANY:
-        choices = [other for other in known if other != ANY]
-        remedy = f"Of one's own: {relation}=FILE{next(iter(known[ANY]))}" if known.get(ANY) else ""
+    if relation not in known or relation == ANY_RELATION:
+        choices = [other for other in known if other != ANY_RELATION]
+        remedy = (
+            f"Of one's own: {relation}=FILE{next(iter(known[ANY_RELATION]))}"
+            if known.get(ANY_RELATION)
+            else ""
+        )
         raise InputError(
             f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
         )
@@ -89,13 +95,16 @@ def parse_choice(relation: str, text: str, known: Registry, folder: Path | None 
             f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation]
         )
 
-    if colon and mode not in MODES:
+    if colon and mode not in SAMPLER_MODES:
         remedy = f"For example: {relation}={name}:alone"
         raise InputError(
-            f"unknown mode '{mode}' of sampler '{name}'", found=mode, choices=MODES, remedy=remedy
+            f"unknown mode '{mode}' of sampler '{name}'",
+            found=mode,
+            choices=SAMPLER_MODES,
+            remedy=remedy,
         )
 
-    return Choice(name, alone=mode == "alone" if colon else name in HAND_MADE)
+    return SamplerSpec(name, alone=mode == "alone" if colon else name in HAND_MADE)
 
 
 def sampler_files(samplers: Iterable[str]) -> list[Path]:
@@ -106,14 +115,14 @@ def sampler_files(samplers: Iterable[str]) -> list[Path]:
     return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
-def maker(relation: str, choice: Choice, known: Registry) -> Callable[[], Grounding]:
+def maker(relation: str, choice: SamplerSpec, known: Registry) -> Callable[[], Grounding]:
     """Return what makes the chosen sampler; it may raise InputError."""
     if choice.name in known.get(relation, {}):
         return known[relation][choice.name]
-    return partial(known[ANY][Path(choice.name).suffix], relation, Path(choice.name))
+    return partial(known[ANY_RELATION][Path(choice.name).suffix], relation, Path(choice.name))
 
 
-def mix(relation: str, choice: Choice, generator: Generator) -> Mixture:
+def make_mixture(relation: str, choice: SamplerSpec, generator: Generator) -> Mixture:
     """Mix the chosen generator with the relation's hand-made one, unless it is to be alone."""
     trusted = next(iter(SAMPLERS.get(relation, {})), None)
     if choice.alone or trusted is None or choice.name == trusted:

@@ -20,15 +20,15 @@ from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
 
-FAR = 1000.0
+MAX_DISTANCE_M = 1000.0
 """Metres from the room beyond which a position is taken for a mistake."""
 
 
-class Misbehaved(Exception):
+class SamplerFault(Exception):
     """A generator did what no generator should; the message says what, with "it" for its name."""
 
 
-def ask(
+def propose_safely(
     generator: Generator,
     scene: Scene,
     arguments: Sequence[str],
@@ -56,17 +56,17 @@ def ask(
     try:
         if math.isinf(seconds):  # the alarm of the run will do
             return _proposed(generator, scene, arguments, count, rng)
-        alarm = Alarm(limit, grace=0.0, again=0.02, strangers=STRANGERS)
+        alarm = Alarm(limit, grace=0.0, again=0.02, strangers=FOREIGN_CODE)
         return alarm.run(lambda: _proposed(generator, scene, arguments, count, rng))
     except OutOfTime:
         if deadline.passed:
             raise
-        raise Misbehaved(f"it took more than {seconds:.2f} s to propose poses") from None
-    except Misbehaved:
+        raise SamplerFault(f"it took more than {seconds:.2f} s to propose poses") from None
+    except SamplerFault:
         raise
     except (Exception, SystemExit, GeneratorExit) as error:
         text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise Misbehaved(f"it raised {text}") from error
+        raise SamplerFault(f"it raised {text}") from error
 
 
 def _proposed(
@@ -90,17 +90,17 @@ class _Limits:
 
 def _proposals(proposed: object, count: int, limits: _Limits) -> list[Placement | Pose]:
     if not isinstance(proposed, Iterable):
-        raise Misbehaved(f"it proposes a {type(proposed).__name__}, not a list of poses")
+        raise SamplerFault(f"it proposes a {type(proposed).__name__}, not a list of poses")
     proposals: list[Placement | Pose] = []
     wrong = ""
     for item in islice(proposed, count):
         try:
             checked = _placement if isinstance(item, Placement) else _pose
             proposals.append(checked(item, limits))
-        except Misbehaved as error:
+        except SamplerFault as error:
             wrong = str(error)
     if wrong and not proposals:
-        raise Misbehaved(wrong)
+        raise SamplerFault(wrong)
     return proposals
 
 
@@ -109,44 +109,44 @@ def _placement(item: Placement, limits: _Limits) -> Placement:
         region, face = str(item.region), operator.index(item.face)
         x, y, yaw = (float(number) for number in (item.x, item.y, item.yaw))
     except (TypeError, ValueError):
-        raise Misbehaved("it proposes a placement without three numbers and a face") from None
+        raise SamplerFault("it proposes a placement without three numbers and a face") from None
     if region not in limits.regions:
-        raise Misbehaved(f"it proposes a placement in '{region:.40}', which there is not")
+        raise SamplerFault(f"it proposes a placement in '{region:.40}', which there is not")
 
     stable = None if limits.body is None else stable_faces_of(limits.body)
     ways = 0 if stable is None else len(stable.ways)
     if stable is not None and face >= ways:
         ways += len(stable.curved)
     if not 0 <= face < ways:
-        raise Misbehaved(f"it proposes face {face} of a body that rests on {ways}")
+        raise SamplerFault(f"it proposes face {face} of a body that rests on {ways}")
     if not all(math.isfinite(number) for number in (x, y, yaw)):
-        raise Misbehaved("it proposes numbers that are not finite, or no rotation")
-    if max(abs(x), abs(y)) > FAR:
-        raise Misbehaved(f"it proposes a position more than {FAR:g} m away")
+        raise SamplerFault("it proposes numbers that are not finite, or no rotation")
+    if max(abs(x), abs(y)) > MAX_DISTANCE_M:
+        raise SamplerFault(f"it proposes a position more than {MAX_DISTANCE_M:g} m away")
     return Placement(region, face, x, y, yaw)
 
 
 def _pose(item: object, limits: _Limits) -> Pose:
     if not isinstance(item, Pose):
-        raise Misbehaved(f"it proposes a {type(item).__name__}, not a pose")
+        raise SamplerFault(f"it proposes a {type(item).__name__}, not a pose")
     room = limits.room
     try:
         x, y, z = (float(number) for number in item.position)
         a, b, c, d = (float(number) for number in item.quaternion)
     except (TypeError, ValueError):
-        raise Misbehaved("it proposes a pose that does not consist of seven numbers") from None
+        raise SamplerFault("it proposes a pose that does not consist of seven numbers") from None
     norm = math.hypot(a, b, c, d)
     if not (
         math.isfinite(norm) and norm > 1e-6 and all(math.isfinite(number) for number in (x, y, z))
     ):
-        raise Misbehaved("it proposes numbers that are not finite, or no rotation")
+        raise SamplerFault("it proposes numbers that are not finite, or no rotation")
     beyond = max(room.x[0] - x, x - room.x[1], room.y[0] - y, y - room.y[1], abs(z))
-    if beyond > FAR:
-        raise Misbehaved(f"it proposes a position more than {FAR:g} m away")
+    if beyond > MAX_DISTANCE_M:
+        raise SamplerFault(f"it proposes a position more than {MAX_DISTANCE_M:g} m away")
     if abs(norm - 1.0) < 1e-9:  # as it is, to the last bit
         norm = 1.0
     return Pose((x, y, z), (a / norm, b / norm, c / norm, d / norm))
 
 
-STRANGERS = tuple(function.__code__ for function in (_proposed, _proposals, _placement, _pose))
+FOREIGN_CODE = tuple(function.__code__ for function in (_proposed, _proposals, _placement, _pose))
 """Of an alarm: what here runs a generator's own code."""

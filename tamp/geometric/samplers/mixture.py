@@ -12,24 +12,24 @@ from typing import Any
 from tamp.geometric.samplers.sampler import Generator
 from tamp.system.deadline import Deadline
 
-VAIN = 20.0
+WASTED_POSE_WORK = 20.0
 """Work, in proposals judged, of a pose that was passed on and asked for anew: grasps, reaches and
 tests in vain."""
 
-PRIOR = 20.0
+PRIOR_WORK = 20.0
 """Work with one success that every generator is credited with before its first proposal."""
 
-ENOUGH = 4.0
+EXPECTED_SUCCESSES = 4.0
 """A generator without a success is sidelined when the other one would have had this many from the
 same work."""
 
-PATIENCE = 0.1
+FREE_SECONDS = 0.1
 """Seconds that a generator beside the hand-made one may take in a run whatever comes of it."""
 
-PORTION = 0.1
+SHARE_OF_TIME = 0.1
 """Further seconds for each second of the run so far."""
 
-LEDGER = "ledger of "
+MEMORY_PREFIX = "ledger of "
 """What the ledgers are called in the memory of a run."""
 
 
@@ -47,14 +47,14 @@ class Mixture:
 
 
 @dataclass
-class Account:
+class SamplerRecord:
     """The account of one generator's proposals in one run.
 
     Attributes:
         judged: Proposals that were looked at.
         kept: Poses passed on and, as far as is known, of use: nobody asked for another one in their
             place.
-        work: Proposals judged, and VAIN for each pose that was passed on in vain.
+        work: Proposals judged, and WASTED_POSE_WORK for each pose that was passed on in vain.
         seconds: Inside the generator; only an outer limit looks at it.
         stale: Batches that repeated what had been proposed.
         reasons: Why proposals were of no use.
@@ -71,14 +71,14 @@ class Account:
     out: str | None = None
 
     @property
-    def debt(self) -> float:
+    def work_per_success(self) -> float:
         """Work per acceptance: whoever has the least is next, so that work is shared in proportion
         to acceptance.
         """
-        return self.work * (self.work + PRIOR) / (self.kept + 1.0)
+        return self.work * (self.work + PRIOR_WORK) / (self.kept + 1.0)
 
 
-class Ledger:
+class SamplerStatistics:
     """The accounts of a mixture in one run. Counted work divides the shares, never the clock: a
     seed repeats a plan.
 
@@ -89,18 +89,18 @@ class Ledger:
 
     def __init__(self, relation: str, mixture: Mixture) -> None:
         self.relation = relation
-        self.accounts = [Account(name) for name in mixture.names]
-        self._pending: dict[tuple[str, ...], Account] = {}
+        self.accounts = [SamplerRecord(name) for name in mixture.names]
+        self._pending: dict[tuple[str, ...], SamplerRecord] = {}
 
     @classmethod
-    def of(cls, relation: str, mixture: Mixture, memory: dict[str, Any]) -> Ledger:
+    def of(cls, relation: str, mixture: Mixture, memory: dict[str, Any]) -> SamplerStatistics:
         """Return the run's ledger of a relation."""
-        return memory.setdefault(f"{LEDGER}{relation}", cls(relation, mixture))
+        return memory.setdefault(f"{MEMORY_PREFIX}{relation}", cls(relation, mixture))
 
     def order(self) -> list[int]:
         """List indices of the generators that are still asked, the next one first."""
         usable = [index for index, account in enumerate(self.accounts) if account.out is None]
-        return sorted(usable, key=lambda index: self.accounts[index].debt)
+        return sorted(usable, key=lambda index: self.accounts[index].work_per_success)
 
     def asked(self, arguments: tuple[str, ...]) -> None:
         """Note that a pose is wanted for these arguments: the one that was passed on before has not
@@ -109,22 +109,22 @@ class Ledger:
         account = self._pending.pop(arguments, None)
         if account is not None:
             account.kept -= 1
-            account.work += VAIN
+            account.work += WASTED_POSE_WORK
             account.reasons["led nowhere"] += 1
 
-    def passed_on(self, account: Account, arguments: tuple[str, ...]) -> None:
+    def accepted(self, account: SamplerRecord, arguments: tuple[str, ...]) -> None:
         """Note that a pose of this generator goes to the planner."""
         account.kept += 1
         self._pending[arguments] = account
 
-    def judged(self, account: Account, reason: str | None) -> None:
+    def judged(self, account: SamplerRecord, reason: str | None) -> None:
         """Note that a proposal was looked at; `reason` says why it is of no use."""
         account.judged += 1
         account.work += 1.0
         if reason is not None:
             account.reasons[reason] += 1
 
-    def useless(self) -> Account | None:
+    def useless(self) -> SamplerRecord | None:
         """Find a chosen generator that has shown to be useless beside the hand-made one; it is
         asked no more from now on.
         """
@@ -133,7 +133,7 @@ class Ledger:
         chosen, trusted = self.accounts[0], self.accounts[-1]
         if chosen.out is not None or chosen.kept > 0 or trusted.kept == 0:
             return None
-        if trusted.kept / trusted.work * chosen.work < ENOUGH:
+        if trusted.kept / trusted.work * chosen.work < EXPECTED_SUCCESSES:
             return None
         most, count = chosen.reasons.most_common(1)[0]
         chosen.out = (
@@ -141,27 +141,29 @@ class Ledger:
         )
         return chosen
 
-    def allowance(self, account: Account, deadline: Deadline) -> float:
+    def allowance(self, account: SamplerRecord, deadline: Deadline) -> float:
         """Return the seconds that a generator beside the trusted one may still take; infinite for
         the only or the trusted one.
         """
         if len(self.accounts) < 2 or account is self.accounts[-1]:
             return float("inf")
-        return PATIENCE + PORTION * deadline.elapsed() - account.seconds
+        return FREE_SECONDS + SHARE_OF_TIME * deadline.elapsed() - account.seconds
 
-    def sideline(self, account: Account, reason: str) -> None:
+    def sideline(self, account: SamplerRecord, reason: str) -> None:
         """Ask this generator no more in this run."""
         account.out = reason
 
 
-def sidelined(relation: str, account: Account, rest: Sequence[str]) -> str:
+def sidelined(relation: str, account: SamplerRecord, rest: Sequence[str]) -> str:
     """Return the sentence for the user."""
     out = f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}"
     return f"{out}; {', '.join(rest)} goes on without it"
 
 
-def accounts(memory: Mapping[str, object]) -> dict[str, tuple[Account, ...]]:
+def accounts(memory: Mapping[str, object]) -> dict[str, tuple[SamplerRecord, ...]]:
     """Return the accounts of all relations in the memory of a run."""
     return {
-        item.relation: tuple(item.accounts) for item in memory.values() if isinstance(item, Ledger)
+        item.relation: tuple(item.accounts)
+        for item in memory.values()
+        if isinstance(item, SamplerStatistics)
     }

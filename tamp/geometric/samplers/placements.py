@@ -19,7 +19,7 @@ from tamp.geometric.stability.stable_poses import Face, stable_faces_of
 KEEP_FACE = 0.85
 """The share of `surface` placements that keep the face that is down at the start, when it fits."""
 
-GROWTH = 0.5
+BOX_GROWTH_SHARE = 0.5
 """`uniform` samples in the first argument's box grown on each side by this much of its largest half
 extent."""
 
@@ -73,7 +73,7 @@ class UniformPlacements:
         region = scene.region(arguments[1])
         support = scene.bodies[region.body]
         low, high = bounds(support.parts, support.pose)
-        margin = GROWTH * float((high - low).max()) / 2
+        margin = BOX_GROWTH_SHARE * float((high - low).max()) / 2
         positions = rng.uniform(low - margin, high + margin, size=(count, 3))
         quaternions = rng.normal(size=(count, 4))
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)

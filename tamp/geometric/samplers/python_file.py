@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tamp.errors import InputError
-from tamp.geometric.samplers.choice import GIVEN, MODES, Grounding
+from tamp.geometric.samplers.choice import SAMPLER_MODES, USER_OBJECT, Grounding
 from tamp.geometric.samplers.sampler import Classifier, Generator
 from tamp.system.python_object import NAME, python_object
 
-SUFFIX = ".py"
+PYTHON_SUFFIX = ".py"
 
 
 def given_by_files(
@@ -33,15 +33,15 @@ def given_by_files(
     names, objects = dict(samplers), dict[str, Grounding]()
     for relation, text in samplers.items():
         file, mode = parted(text)
-        if Path(file).suffix == SUFFIX:
+        if Path(file).suffix == PYTHON_SUFFIX:
             objects[relation] = python_grounding(Path(file), (sources or {}).get(file))
-            names[relation] = f"{GIVEN}{mode}"
+            names[relation] = f"{USER_OBJECT}{mode}"
     return names, objects
 
 
 def parted(text: str) -> tuple[str, str]:
     """Split a sampler's name or file from its mode with the colon before it, if it has one."""
-    mode = next((f":{mode}" for mode in MODES if text.endswith(f":{mode}")), "")
+    mode = next((f":{mode}" for mode in SAMPLER_MODES if text.endswith(f":{mode}")), "")
     return text.removesuffix(mode) if mode else text, mode
 
 

@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 
 from tamp.geometric.scene.scene import Scene
 
-LIKELY = 0.5
+LIKELY_PROBABILITY = 0.5
 """A relation holds when its classifier gives at least this probability."""
 
 

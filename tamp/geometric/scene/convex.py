@@ -15,11 +15,11 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
-TOLERANCE = 0.0005
+HULL_TOLERANCE_M = 0.0005
 """Metres that a point may lie outside of a simplified hull."""
 
-_BLOCK = 20_000
-_THINNEST = 0.001
+_BLOCK_ROWS = 20_000
+_THINNEST_M = 0.001
 
 
 def hull_of(
@@ -54,7 +54,7 @@ def simplified(points: Float[Array, "n 3"]) -> Float[Array, "m 3"]:
         except QhullError:  # the few corners lie in a plane
             return corners
         outermost, beyond = _outermost(corners, equations)
-        farthest = np.unique(outermost[beyond > TOLERANCE])
+        farthest = np.unique(outermost[beyond > HULL_TOLERANCE_M])
         if not len(farthest):
             return corners[chosen]
         chosen = np.union1d(chosen, farthest)
@@ -66,8 +66,8 @@ def _outermost(points: Array, equations: Array) -> tuple[NDArray[np.int64], Arra
     points at a time.
     """
     best, index = np.full(len(equations), -np.inf), np.zeros(len(equations), dtype=np.int64)
-    for start in range(0, len(points), _BLOCK):
-        beyond = points[start : start + _BLOCK] @ equations[:, :3].T + equations[:, 3]
+    for start in range(0, len(points), _BLOCK_ROWS):
+        beyond = points[start : start + _BLOCK_ROWS] @ equations[:, :3].T + equations[:, 3]
         found = np.argmax(beyond, axis=0)
         height = beyond[found, np.arange(len(equations))]
         higher = height > best
@@ -81,11 +81,11 @@ def thickened(points: Float[Array, "n 3"]) -> Float[Array, "m 3"]:
     # The right singular vector of the least singular value is the normal of the best plane.
     _, vectors = np.linalg.eigh(centred.T @ centred)
     normal = vectors[:, 0]
-    if np.ptp(centred @ normal) >= _THINNEST:
+    if np.ptp(centred @ normal) >= _THINNEST_M:
         return points
     if np.ptp(centred @ vectors[:, 1]) < 1e-6:
         raise ValueError("all its points lie on one line")
-    return np.concatenate([points + normal * _THINNEST / 2, points - normal * _THINNEST / 2])
+    return np.concatenate([points + normal * _THINNEST_M / 2, points - normal * _THINNEST_M / 2])
 
 
 def directions(count: int) -> Float[Array, "n 3"]:

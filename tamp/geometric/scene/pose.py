@@ -130,5 +130,24 @@ def quaternion_from_matrix(rotation: Float[Array, "3 3"]) -> tuple[float, float,
     return (x, y, z, w)
 
 
+def pose_difference(T_first: Array, T_second: Array) -> tuple[float, float]:
+    """Measure metres and radians between two poses of shape (4, 4)."""
+    cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
+    skew = T_first[:3, :3].T @ T_second[:3, :3]
+    sine = (
+        np.linalg.norm([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]])
+        / 2
+    )
+    return float(np.linalg.norm(T_first[:3, 3] - T_second[:3, 3])), math.atan2(
+        float(sine), float(cosine)
+    )
+
+
+def base_difference(first: Array, second: Array) -> float:
+    """Measure the largest difference of two base configurations x, y, yaw; a full turn is none."""
+    turn = (first[2] - second[2] + math.pi) % (2 * math.pi) - math.pi
+    return float(max(np.abs(first[:2] - second[:2]).max(), abs(turn)))
+
+
 def _floats3(values: Array) -> tuple[float, float, float]:
     return (float(values[0]), float(values[1]), float(values[2]))

@@ -15,7 +15,7 @@ from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, S
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-SIDES = 32
+CYLINDER_SIDES = 32
 """Sides of the prism that stands for a cylinder."""
 
 Triangles = NDArray[np.int64]
@@ -69,7 +69,7 @@ def _mesh(shape: Shape) -> tuple[Array, Triangles]:
         half = np.array(shape.size) / 2
         return _prism(np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]]) * half[:2], half[2])
     if isinstance(shape, Cylinder):
-        angles = np.arange(SIDES) * 2 * math.pi / SIDES
+        angles = np.arange(CYLINDER_SIDES) * 2 * math.pi / CYLINDER_SIDES
         return _prism(
             shape.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1), shape.height / 2
         )

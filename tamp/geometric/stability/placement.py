@@ -21,7 +21,7 @@ SNAP_HEIGHT = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
 for `on`), metres."""
 
-BALANCE = 0.015
+BALANCE_MARGIN_M = 0.015
 """How far inside the supported part of an overhanging base the centre of mass must lie, metres."""
 
 
@@ -165,7 +165,7 @@ def _too_tall(face: Face, region: Surface | Cavity) -> Rejection | None:
 
 def _balanced(base: Array, centre: Array, half: Array) -> bool:
     """Check whether the centre of mass lies well inside both the base and the surface."""
-    if (np.abs(centre) > half - BALANCE).any():
+    if (np.abs(centre) > half - BALANCE_MARGIN_M).any():
         return False
     edges = np.roll(base, -1, axis=0) - base
     lengths = np.linalg.norm(edges, axis=1)
@@ -173,4 +173,4 @@ def _balanced(base: Array, centre: Array, half: Array) -> bool:
     distances = (edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0]) / np.maximum(
         lengths, 1e-12
     )
-    return bool((distances > BALANCE).all())
+    return bool((distances > BALANCE_MARGIN_M).all())

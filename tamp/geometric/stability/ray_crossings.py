@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Planes = NDArray[np.intp]
 
-SEAM = 5e-4
+SEAM_WIDTH_M = 5e-4
 """Parts nearer to each other than this along a line count as one solid, metres."""
 
 
@@ -33,7 +33,7 @@ class Contact:
     end_normal: Array
 
 
-class Solid:
+class ConvexUnion:
     """A body's parts as intersections of half-spaces, and its surface as triangles. All in the
     body's frame, metres.
     """
@@ -119,18 +119,22 @@ class Solid:
             row[0] for row in self.crossings(origin[None], direction)
         )
         crossed = np.flatnonzero(ends > starts)
-        here = crossed[(starts[crossed] <= SEAM) & (ends[crossed] >= -SEAM)]
+        here = crossed[(starts[crossed] <= SEAM_WIDTH_M) & (ends[crossed] >= -SEAM_WIDTH_M)]
         if len(here) == 0:
             return None
+
         first, last = here[np.argmin(starts[here])], here[np.argmax(ends[here])]
         for _ in range(len(crossed)):  # parts that touch the stretch lengthen it, one after another
             low = crossed[
-                (starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM)
+                (starts[crossed] < starts[first]) & (ends[crossed] >= starts[first] - SEAM_WIDTH_M)
             ]
-            high = crossed[(ends[crossed] > ends[last]) & (starts[crossed] <= ends[last] + SEAM)]
+            high = crossed[
+                (ends[crossed] > ends[last]) & (starts[crossed] <= ends[last] + SEAM_WIDTH_M)
+            ]
             if len(low) == 0 and len(high) == 0:
                 break
             first = low[np.argmin(starts[low])] if len(low) else first
             last = high[np.argmax(ends[high])] if len(high) else last
+
         normals = self._normals[start_planes[first]], self._normals[end_planes[last]]
         return Contact(float(starts[first]), float(ends[last]), *normals)

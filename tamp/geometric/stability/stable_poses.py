@@ -23,25 +23,25 @@ SNAP_TILT = math.radians(15.0)
 """A proposal tilted less than this from a stable face, or than the face withstands, is laid onto
 that face."""
 
-FLAT = 0.0005
+FACE_HEIGHT_M = 0.0005
 """Vertices within this height of the lowest one belong to the face that is down, metres."""
 
-SLACK = 0.002
+WIDTH_SLACK_M = 0.002
 """What half a degree can change of a body's width, metres."""
 
-STABLE = math.radians(8.0)
+STABLE_TILT_RAD = math.radians(8.0)
 """A face is stable when the body must be tilted at least this much before it tips over the face's
 edge."""
 
 
-ROUND = 0.0015
+CURVED_HEIGHT_M = 0.0015
 """Points this little above the lowest one count as touching where a body lies on a curved side,
 metres."""
 
-LEAN = 0.002
+CURVED_MARGIN_M = 0.002
 """By so much a curved side carries beyond its lowest points: meshes have few of them, metres."""
 
-AROUND = math.radians(40.0)
+CURVED_SIDE_ANGLE_RAD = math.radians(40.0)
 """Curved sides that a body might lie on are at least so far apart: of a can every one is like the
 next."""
 
@@ -89,8 +89,8 @@ class StableFaces:
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """Return all ways to rest that withstand a tilt of STABLE: the present one, then the
-        steadiest.
+        """Return all ways to rest that withstand a tilt of STABLE_TILT_RAD: the present one, then
+        the steadiest.
         """
         down = -self.body.pose.rotation[2]
         faces = stable_faces(self.body)
@@ -185,11 +185,13 @@ def fits(face: Face, size: Sequence[float]) -> bool:
     directions = np.stack([np.cos(angles), np.sin(angles)])
     widths = np.ptp(face.outline @ directions, axis=0)
     depths = np.ptp(face.outline @ np.stack([-directions[1], directions[0]]), axis=0)
-    return bool(((widths <= size[0] + SLACK) & (depths <= size[1] + SLACK)).any())
+    return bool(((widths <= size[0] + WIDTH_SLACK_M) & (depths <= size[1] + WIDTH_SLACK_M)).any())
 
 
 def stable_faces(body: Body) -> list[Face]:
-    """List the ways in which a body rests and withstands a tilt of STABLE, largest facets first."""
+    """List the ways in which a body rests and withstands a tilt of STABLE_TILT_RAD, the largest
+    facets first.
+    """
     vertices, triangles = body_hull(body)
     centre_of_mass_ = centre_of_mass(body)
     faces: list[Face] = []
@@ -197,7 +199,7 @@ def stable_faces(body: Body) -> list[Face]:
         rotation = rotation_to_down(normal)
         turned = vertices @ rotation.T
         low = float(turned[:, 2].min())
-        touching = turned[turned[:, 2] < low + FLAT, :2]
+        touching = turned[turned[:, 2] < low + FACE_HEIGHT_M, :2]
         centre = rotation @ centre_of_mass_
 
         # Within the base no edge is farther from the centre of mass than the base's box: most
@@ -205,7 +207,7 @@ def stable_faces(body: Body) -> list[Face]:
         room = float(
             np.minimum(centre[:2] - touching.min(axis=0), touching.max(axis=0) - centre[:2]).min()
         )
-        if room < math.tan(STABLE) * max(float(centre[2]) - low, 1e-6) - FLAT:
+        if room < math.tan(STABLE_TILT_RAD) * max(float(centre[2]) - low, 1e-6) - FACE_HEIGHT_M:
             continue
 
         base = outline(touching)
@@ -213,7 +215,7 @@ def stable_faces(body: Body) -> list[Face]:
             continue
 
         angle = tipping_angle(base, centre[:2], float(centre[2]) - low)
-        if angle < STABLE:
+        if angle < STABLE_TILT_RAD:
             continue
 
         extent = float(np.ptp(turned[:, 2]))
@@ -256,7 +258,7 @@ def curved_faces(body: Body, ways: Sequence[Face]) -> tuple[Face, ...]:
     apart: list[Face] = []
     for face in found:
         others = [float(face.rotation[2] @ other.rotation[2]) for other in (*ways, *apart)]
-        if max(others, default=-1.0) < math.cos(AROUND):
+        if max(others, default=-1.0) < math.cos(CURVED_SIDE_ANGLE_RAD):
             apart.append(face)
     return tuple(apart)
 
@@ -270,8 +272,8 @@ def curved_face(body: Body, rotation: Float[Array, "3 3"]) -> Face | None:
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
     low, high = bounds(body.parts, Pose.from_matrix(matrix))
-    touching = turned[turned[:, 2] < float(turned[:, 2].min()) + ROUND, :2]
-    corners = LEAN * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    touching = turned[turned[:, 2] < float(turned[:, 2].min()) + CURVED_HEIGHT_M, :2]
+    corners = CURVED_MARGIN_M * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     base = outline((touching[:, None] + corners).reshape(-1, 2))
     centre = rotation @ centre_of_mass(body)
     angle = tipping_angle(base, centre[:2], float(centre[2] - low[2]))

@@ -18,20 +18,20 @@ from tamp.stream import Call, Rejection
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-LIFT = 0.02
+LIFT_DISTANCE_M = 0.02
 """How far a held body is lifted straight up before it is drawn back, metres."""
 
-RETREAT = 0.10
+RETREAT_DISTANCE_M = 0.10
 """How far the tool draws back along its own axis, metres."""
 
-FLAT = 0.02
+FLAT_BODY_HEIGHT_M = 0.02
 """Height of a body, metres, below which the fingers may not get deep enough beside it, nor under
 it."""
 
-PROBES = (0.0, 0.5, 1.0)
+APPROACH_SHARES = (0.0, 0.5, 1.0)
 """Where on the way the hand is looked at."""
 
-SLIDES = 9
+DEPARTURE_LOOKS = 9
 """Where on each stretch of the way out a body is looked at that leaves what it touches."""
 
 
@@ -71,7 +71,9 @@ def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
         (below[0][:2] < high[:2]).all() and (below[1][:2] > low[:2]).all() and below[0][2] < low[2]
     )
     return (
-        f"too flat to be grasped ({1000 * tall:.0f} mm tall): " if tall < FLAT and carries else ""
+        f"too flat to be grasped ({1000 * tall:.0f} mm tall): "
+        if tall < FLAT_BODY_HEIGHT_M and carries
+        else ""
     )
 
 
@@ -83,9 +85,9 @@ def approach_hits(
     """
     standing = list(others)
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
-    back = -RETREAT * T_world_tool[:3, 2]
-    up = context.touching.way_out(grasp.body, pose, LIFT)
-    out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in PROBES)]
+    back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
+    up = context.touching.way_out(grasp.body, pose, LIFT_DISTANCE_M)
+    out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in APPROACH_SHARES)]
     hand, touching = context.hand, context.touching
     hit = open_hand_hits(context, T_world_tool, standing)
     if hit is not None:
@@ -93,9 +95,12 @@ def approach_hits(
 
     leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
     if leaving:  # the hand must not touch them, the body in it only while it leaves them
-        steps = [_moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, SLIDES)]
+        steps = [
+            _moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, DEPARTURE_LOOKS)
+        ]
         steps += [
-            _moved(T_world_tool, up + share * back) for share in np.linspace(0.0, 1.0, SLIDES)[1:]
+            _moved(T_world_tool, up + share * back)
+            for share in np.linspace(0.0, 1.0, DEPARTURE_LOOKS)[1:]
         ]
         bodies = [step @ grasp.T_tool_body.matrix for step in steps]
         for name in leaving:
@@ -111,8 +116,8 @@ def open_hand_hits(
     context: Context, T_world_tool: Float[Array, "4 4"], others: Iterable[tuple[str, Pose]]
 ) -> str | None:
     """Return the first of other bodies that the open hand hits on its way to a tool pose (4, 4)."""
-    back = -RETREAT * T_world_tool[:3, 2]
-    away = [_moved(T_world_tool, share * back) for share in PROBES]
+    back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
+    away = [_moved(T_world_tool, share * back) for share in APPROACH_SHARES]
     return context.hand.hits(away, context.robot.opening, None, others)
 
 

@@ -15,25 +15,25 @@ from tamp.geometric.streams.reach import arm_length
 from tamp.geometric.values import BaseConf, Grasp, Reach
 from tamp.stream import Call, Rejection
 
-NEIGHBOUR = 0.003
+NEIGHBOUR_CLEARANCE_M = 0.003
 """Metres of air that a placed body keeps to other movable ones."""
 
-HAIR = 0.0005
+REACH_CLEARANCE_M = 0.0005
 """Metres of air that the robot and what it holds keep to them while it reaches."""
 
 
 def near(context: Context, body: str, pose: Pose, other: str, other_pose: Pose) -> bool:
-    """Check whether two movable bodies are nearer than NEIGHBOUR, but for one that rests on the
-    other: it is no nearer than CONTACT_GAP, and only because it is above.
+    """Check whether two movable bodies are nearer than NEIGHBOUR_CLEARANCE_M, but for one that
+    rests on the other: it is no nearer than CONTACT_GAP, and only because it is above.
     """
     pair = context.collisions.pair
-    if not pair(body, pose, other, other_pose, NEIGHBOUR):
+    if not pair(body, pose, other, other_pose, NEIGHBOUR_CLEARANCE_M):
         return False
-    if pair(body, pose, other, other_pose, HAIR):
+    if pair(body, pose, other, other_pose, REACH_CLEARANCE_M):
         return True
-    up, down = (Pose((0.0, 0.0, z)) @ pose for z in (NEIGHBOUR, -NEIGHBOUR))
-    return pair(body, up, other, other_pose, NEIGHBOUR) and pair(
-        body, down, other, other_pose, NEIGHBOUR
+    up, down = (Pose((0.0, 0.0, z)) @ pose for z in (NEIGHBOUR_CLEARANCE_M, -NEIGHBOUR_CLEARANCE_M))
+    return pair(body, up, other, other_pose, NEIGHBOUR_CLEARANCE_M) and pair(
+        body, down, other, other_pose, NEIGHBOUR_CLEARANCE_M
     )
 
 
@@ -79,9 +79,9 @@ def test_reach_clear(
     out = lift[-1]
     aside = np.array([approach[0], out])
     if (
-        empty.path_hits(approach, padding=HAIR)
-        or lift_hits(context, pose, grasp, lift, place, HAIR)
-        or empty.path_hits(aside, padding=HAIR)
+        empty.path_hits(approach, padding=REACH_CLEARANCE_M)
+        or lift_hits(context, pose, grasp, lift, place, REACH_CLEARANCE_M)
+        or empty.path_hits(aside, padding=REACH_CLEARANCE_M)
     ):
         return Rejection.hits(other, blockers=(other,))
 

@@ -17,7 +17,7 @@ from tamp.geometric.values import Grasp
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-FINE = 4
+LOOKS_PER_STEP = 4
 """Looks between two configurations at how a body leaves what it touches."""
 
 
@@ -69,7 +69,9 @@ def lift_hits(
     if hit is not None:
         return hit
 
-    path = np.concatenate([lift[:1], *(np.linspace(a, b, FINE + 1)[1:] for a, b in pairwise(lift))])
+    path = np.concatenate(
+        [lift[:1], *(np.linspace(a, b, LOOKS_PER_STEP + 1)[1:] for a, b in pairwise(lift))]
+    )
     bodies = [context.kinematics.tool(conf) @ grasp.T_tool_body.matrix for conf in path]
     stays = (name for name in leaving if not context.touching.separates(body, bodies, name))
     return next(((body, name) for name in stays), None)

@@ -20,27 +20,27 @@ from tamp.geometric.scene.scene import Body
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-GRAVITY = 9.81
+GRAVITY_M_S2 = 9.81
 """Metres per second squared."""
 
-SHAKE = 0.3
+SHAKE_SHARE = 0.3
 """Accelerations of the hand while it carries, in any direction, as a share of gravity."""
 
-FIRM = 0.5
+FIRM_STRAIN = 0.5
 """The strain up to which a grasp is taken for firm; at 1 the body is about to slip or turn in the
 hand."""
 
-FAIR = 0.75
+FAIR_STRAIN = 0.75
 """The strain up to which a grasp at the body's middle is not put off for random ones, of which few
 are firmer."""
 
-SIDES = np.concatenate([np.eye(3), -np.eye(3)])
+SHAKE_DIRECTIONS = np.concatenate([np.eye(3), -np.eye(3)])
 """Directions (6, 3) in which the hand may accelerate."""
 
 PAD_FRICTION = 1.0
 """Coulomb's coefficient of the pads, by which a body's own is multiplied."""
 
-EDGE = 0.002
+PATCH_MARGIN_M = 0.002
 """Half the distance of the points at which a patch is felt: it reaches so much farther, metres."""
 
 
@@ -67,17 +67,19 @@ def strain(
             tool's frame.
     """
     lever = T_body_tool[:3, :3].T @ (centre - T_body_tool[:3, 3])
-    weight = body.mass * GRAVITY
+    weight = body.mass * GRAVITY_M_S2
     grip = PAD_FRICTION * body.friction * force
     spread = [patch[:, [0, 2]] - patch[:, [0, 2]].mean(axis=0) for patch in patches]
     about_closing = sum(
-        grip * (EDGE / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread
+        grip * (PATCH_MARGIN_M / 2 + float(np.linalg.norm(one, axis=1).mean())) for one in spread
     )
-    reach = np.min([np.ptp(patch[:, [0, 2]], axis=0) for patch in patches], axis=0) / 2 + EDGE
+    reach = (
+        np.min([np.ptp(patch[:, [0, 2]], axis=0) for patch in patches], axis=0) / 2 + PATCH_MARGIN_M
+    )
     holds = np.array(
         [2 * force * reach[1] + grip * width, about_closing, 2 * force * reach[0] + grip * width]
     )
-    shaken = np.concatenate([up + SHAKE * SIDES for up in ups])
+    shaken = np.concatenate([up + SHAKE_SHARE * SHAKE_DIRECTIONS for up in ups])
     turns = np.cross(lever, weight * shaken) / holds
-    slip = (1.0 + SHAKE) * weight / (2 * grip)
+    slip = (1.0 + SHAKE_SHARE) * weight / (2 * grip)
     return float(np.hypot(np.linalg.norm(turns, axis=1).max(), slip))

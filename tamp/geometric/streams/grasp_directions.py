@@ -10,15 +10,15 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Sphere
-from tamp.geometric.stability.ray_crossings import Solid
+from tamp.geometric.stability.ray_crossings import ConvexUnion
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-STEP = math.radians(15)
+DIRECTION_STEP_RAD = math.radians(15)
 """Spacing of approach directions about the closing axis."""
 
-LEVEL = 0.1
+MAX_UPWARD_PART = 0.1
 """Approaches whose upward part is larger come from below: of use only after the body was turned
 over."""
 
@@ -32,7 +32,10 @@ def straight(
 ) -> list[tuple[Float[Array, " 3"], Float[Array, " 3"]]]:
     """List closing and approach directions from above and from the sides."""
     return [
-        (axis, a) for axis in axes for a in _approaches(axis, up, math.pi / 2) if a @ up < LEVEL
+        (axis, a)
+        for axis in axes
+        for a in _approaches(axis, up, math.pi / 2)
+        if a @ up < MAX_UPWARD_PART
     ]
 
 
@@ -42,12 +45,15 @@ def slanted(
     """List closing and approach directions 30, 45 and 60 degrees from straight down."""
     level = [axis for axis in axes if abs(axis @ up) < LEVEL_CLOSING]
     return [
-        (axis, a) for axis in level for a in _approaches(axis, up, STEP) if -0.9 < a @ up < -0.4
+        (axis, a)
+        for axis in level
+        for a in _approaches(axis, up, DIRECTION_STEP_RAD)
+        if -0.9 < a @ up < -0.4
     ]
 
 
 def closing_axes(
-    body: Body, solid: Solid, up: Float[Array, " 3"], widest: float, rng: np.random.Generator
+    body: Body, solid: ConvexUnion, up: Float[Array, " 3"], widest: float, rng: np.random.Generator
 ) -> list[Float[Array, " 3"]]:
     """List directions (3,) in which the fingers may close, each with both signs.
 

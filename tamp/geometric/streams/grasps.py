@@ -4,7 +4,6 @@ convex pieces.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -13,20 +12,21 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.ray_crossings import Solid
-from tamp.geometric.streams.firmness import FAIR, FIRM, strain
+from tamp.geometric.stability.ray_crossings import ConvexUnion
+from tamp.geometric.streams.antipodal import GRASP_DEPTHS_M, antipodal_grasps, at_depth, tool_pose
+from tamp.geometric.streams.firmness import FAIR_STRAIN, FIRM_STRAIN, strain
 from tamp.geometric.streams.grasp_directions import (
-    LEVEL,
     LEVEL_CLOSING,
-    STEP,
-    across,
-    angles,
+    MAX_UPWARD_PART,
     closing_axes,
-    cross,
     slanted,
     straight,
 )
-from tamp.geometric.streams.hand_fit import CONE, ROOMY, Closed, HandFit
+from tamp.geometric.streams.hand_fit import (
+    ROOMY_CLEARANCE_M,
+    Closed,
+    GraspChecker,
+)
 from tamp.geometric.streams.narrow_ways import promising
 from tamp.geometric.values import Grasp
 from tamp.stream import Rejection
@@ -34,36 +34,20 @@ from tamp.stream import Rejection
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-TIP = 0.009
-"""Metres by which the finger tips reach beyond the tool's origin."""
-
-DEPTH = (0.006, 0.030)
-"""Least and largest depth of the tool's origin in the body along the approach: finger tips 1.5 to 4
-cm deep, metres."""
-
-SHALLOW = 0.012
+SLANTED_DEPTH_M = 0.012
 """Depth below the top of a slanted hand's tool, metres: deeper, the palm would meet the body."""
 
 HALF_HAND = 0.035
 """Half the hand's thickness and some air, metres: a side grasp keeps this far from what the body
 stands on."""
 
-STEEP = 0.7
-"""Random closing axes whose upward part is larger than this"""
-
-UNDER = 0.1
-"""are kept with this probability."""
-
-BATCH = 64
-"""Surface points drawn at once."""
-
-TOGETHER = 12
+GRASPS_PER_BATCH = 12
 """Random grasps that are drawn together, and given with the least strained first."""
 
 LOOKED_AT = 150
 """Random grasps looked at for those, at most: most may be of no use."""
 
-PATIENCE = 4000
+MAX_FAILED_GRASPS = 4000
 """Random proposals in a row that may fail before the stream ends: the body cannot be grasped, or in
 no new way."""
 
@@ -108,8 +92,8 @@ def sample_grasps(
         free: Whether the open hand's way to T_body_tool is free where the body stands at the start;
             in a narrow place most random grasps are such.
     """
-    solid = Solid(body)
-    fit = HandFit(body, solid, robot)
+    solid = ConvexUnion(body)
+    fit = GraspChecker(body, solid, robot)
     up = body.pose.rotation[2]
 
     def strained(closed: Closed) -> float:
@@ -121,7 +105,7 @@ def sample_grasps(
             body, solid.centre, closed.T_body_tool, closed.opening, closed.patches, robot.force,
             (held, *ups),
         )  # fmt: skip
-        return much + FIRM if robot.opening - closed.opening < ROOMY else much
+        return much + FIRM_STRAIN if robot.opening - closed.opening < ROOMY_CLEARANCE_M else much
 
     waiting: list[tuple[float, Grasp]] = []
     for group in _canonical(body, solid, fit, up, rng):
@@ -130,19 +114,19 @@ def sample_grasps(
             why = refused(grasp)
             if why is not None:
                 yield why
-            elif much <= FIRM:
+            elif much <= FIRM_STRAIN:
                 yield grasp
             else:
                 waiting.append((much, grasp))
         waiting.sort(key=_strain)
-        while waiting and waiting[0][0] <= FAIR:
+        while waiting and waiting[0][0] <= FAIR_STRAIN:
             yield waiting.pop(0)[1]
 
     failures = 0
-    proposals = promising(_antipodal(solid, up, fit.widest, rng), free)
-    while failures < PATIENCE:
-        wanted, looked = len(waiting) + TOGETHER, 0
-        while len(waiting) < wanted and failures < PATIENCE and looked < LOOKED_AT:
+    proposals = promising(antipodal_grasps(solid, up, fit.widest, rng), free)
+    while failures < MAX_FAILED_GRASPS:
+        wanted, looked = len(waiting) + GRASPS_PER_BATCH, 0
+        while len(waiting) < wanted and failures < MAX_FAILED_GRASPS and looked < LOOKED_AT:
             proposal = next(proposals)
             closed = None if proposal is None else fit.close(proposal)
             failures = failures + 1 if closed is None else 0
@@ -157,7 +141,7 @@ def sample_grasps(
                 continue
 
             much = strained(closed)
-            if much <= FIRM:
+            if much <= FIRM_STRAIN:
                 yield grasp
                 wanted -= 1
             else:
@@ -174,14 +158,14 @@ def _strain(weighed: tuple[float, Grasp]) -> float:
 
 
 def _canonical(
-    body: Body, solid: Solid, fit: HandFit, up: Array, rng: np.random.Generator
+    body: Body, solid: ConvexUnion, fit: GraspChecker, up: Array, rng: np.random.Generator
 ) -> Iterator[Iterator[Closed]]:
     """List, in groups, the grasps that an engineer would try first."""
     axes = closing_axes(body, solid, up, fit.widest, rng)
     upright = straight(axes, up)
     level = [pair for pair in upright if abs(pair[0] @ up) < LEVEL_CLOSING]
     rest = [pair for pair in upright if abs(pair[0] @ up) >= LEVEL_CLOSING]
-    sides = [pair for pair in level if abs(pair[1] @ up) < LEVEL]
+    sides = [pair for pair in level if abs(pair[1] @ up) < MAX_UPWARD_PART]
     tall = solid.extent(up)[1] - solid.centre @ up > 2 * HALF_HAND
     for directions, high in (
         (level, False),
@@ -204,7 +188,7 @@ def _grasp(body: Body, closed: Closed) -> Grasp:
 
 
 def _at_middle(
-    solid: Solid, closing: Array, approach: Array, up: Array, near_top: bool = False
+    solid: ConvexUnion, closing: Array, approach: Array, up: Array, near_top: bool = False
 ) -> Array:
     """Put the tool at the body's centre line, no deeper than its centre; a side grasp leaves room
     above the support.
@@ -221,79 +205,16 @@ def _at_middle(
         )
         point += (min(wanted, high - 0.01) - point @ up) * up * sideways
     depth = float(point @ approach) - solid.extent(approach)[0]
-    return _tool(
-        closing, approach, _deep(solid, point, approach, max(min(depth, DEPTH[1]), DEPTH[0]))
+    return tool_pose(
+        closing,
+        approach,
+        at_depth(solid, point, approach, max(min(depth, GRASP_DEPTHS_M[1]), GRASP_DEPTHS_M[0])),
     )
 
 
-def _at_top(solid: Solid, approach: Array, closing: Array, up: Array) -> Array:
+def _at_top(solid: ConvexUnion, approach: Array, closing: Array, up: Array) -> Array:
     """Put the tool just below the body's top, over its centre, where a slanted hand has the least
     lever arm.
     """
-    point = solid.centre + (solid.extent(up)[1] - SHALLOW - solid.centre @ up) * up
-    return _tool(closing, approach, point)
-
-
-def _deep(solid: Solid, point: Array, approach: Array, depth: float) -> Array:
-    """Move the point to `depth` in the body along the approach; tips stay in a thin one."""
-    low, high = solid.extent(approach)
-    surface = solid.solid_at(point, approach)
-    start = point @ approach + surface.start if surface is not None else low
-    thickness = (point @ approach + surface.end if surface is not None else high) - start
-    return point + (start + min(depth, thickness - TIP - 0.003) - point @ approach) * approach
-
-
-def _antipodal(
-    solid: Solid, up: Array, widest: float, rng: np.random.Generator
-) -> Iterator[Array | None]:
-    """Draw tool poses whose closing line meets the surface squarely on both sides; None for a draw
-    without.
-    """
-    while True:
-        points, normals = solid.surface_points(rng, BATCH)
-        tilts = rng.normal(0.0, math.radians(4), (BATCH, 3))
-        closings = tilts - (np.einsum("ij,ij->i", tilts, normals) + 1.0)[:, None] * normals
-        closings /= np.linalg.norm(closings, axis=1, keepdims=True)
-        _, ends, _, planes = solid.crossings(points, closings)
-        square = np.einsum("ipj,ij->ip", solid.normals(planes), closings) >= math.cos(CONE)
-        narrow = np.any((ends > 0.002) & (ends <= widest) & square, axis=1)
-        narrow &= (np.abs(closings @ up) < STEEP) | (rng.random(BATCH) < UNDER)
-        # Far from under or over the centre of mass the body would turn in the hand.
-        aside = solid.centre - points
-        for along in (closings, np.broadcast_to(up, closings.shape)):
-            aside = aside - np.einsum("ij,ij->i", aside, along)[:, None] * along
-
-        near = rng.random(BATCH) < np.exp(-np.sum(aside**2, axis=1) / 0.03**2) + 0.1
-        yield from (
-            _around(solid, points[i], closings[i], up, widest, rng)
-            if narrow[i] and near[i]
-            else None
-            for i in range(BATCH)
-        )
-
-
-def _around(
-    solid: Solid, point: Array, closing: Array, up: Array, widest: float, rng: np.random.Generator
-) -> Array | None:
-    """Draw a tool pose with a random approach about the line through a surface point."""
-    width = solid.solid_at(point, closing)
-    if width is None or width.start < -0.002 or width.end > widest:
-        return None
-    if -(width.start_normal @ closing) < math.cos(CONE) or width.end_normal @ closing < math.cos(
-        CONE
-    ):
-        return None
-    angle = angles(STEP)[rng.integers(len(angles(STEP)))]
-    first, second = across(closing, up)
-    approach = math.cos(angle) * first + math.sin(angle) * second
-    if approach @ up > LEVEL and rng.random() > 0.15:
-        return None
-    middle = point + closing * (width.start + width.end) / 2
-    return _tool(closing, approach, _deep(solid, middle, approach, rng.uniform(*DEPTH)))
-
-
-def _tool(closing: Array, approach: Array, origin: Array) -> Array:
-    """Build T_body_tool (4, 4): y along the closing axis, z along the approach."""
-    T = np.eye(4)
-    T[:3, 0], T[:3, 1], T[:3, 2], T[:3, 3] = cross(closing, approach), closing, approach, origin
-    return T
+    point = solid.centre + (solid.extent(up)[1] - SLANTED_DEPTH_M - solid.centre @ up) * up
+    return tool_pose(closing, approach, point)

@@ -14,31 +14,31 @@ from tamp.geometric.collision.fcl_bodies import FclBody, touch
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.ray_crossings import Solid
+from tamp.geometric.stability.ray_crossings import ConvexUnion
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-CONE = math.atan(0.4)
+FRICTION_CONE_RAD = math.atan(0.4)
 """Half angle of the friction cone at a contact, radians."""
 
-CLEARANCE = 0.001
+HAND_CLEARANCE_M = 0.001
 """Metres that the open hand needs beside what it grasps, on both sides together."""
 
-ROOMY = 0.005
+ROOMY_CLEARANCE_M = 0.005
 """A grasp that leaves the open hand less is weak: where the arm is not exact, a finger may push the
 body away."""
 
-SLACK = 5e-4
+OPENING_SLACK_M = 5e-4
 """Metres by which the opening exceeds the body's width, so that holding is not a collision."""
 
-NEAR = 1.5e-3
+PAD_GIVE_M = 1.5e-3
 """A pad, which gives a little, touches what is within this of its plane, metres."""
 
 CLEAR_APPROACH = 0.10
 """The open hand must be free of the body while it draws back this far, metres."""
 
-PAD = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
+PAD_POINTS_M = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
 """Sample points of a pad (9, 3) around the tool's origin: it is 17 mm wide and high."""
 
 
@@ -53,10 +53,10 @@ class Closed:
     patches: tuple[Array, Array]
 
 
-class HandFit:
+class GraspChecker:
     """The hand and one body, as FCL objects in the body's frame."""
 
-    def __init__(self, body: Body, solid: Solid, robot: Robot) -> None:
+    def __init__(self, body: Body, solid: ConvexUnion, robot: Robot) -> None:
         self._solid, self._robot = solid, robot
         self._body = FclBody(body.parts)
         self._parts = [self._body.place(index, np.eye(4)) for index in range(len(body.parts))]
@@ -71,7 +71,7 @@ class HandFit:
     @property
     def widest(self) -> float:
         """Return the largest width that is grasped, metres."""
-        return self._robot.opening - CLEARANCE
+        return self._robot.opening - HAND_CLEARANCE_M
 
     def close(self, T_body_tool: Float[Array, "4 4"]) -> Closed | None:
         """Close the hand at a pose (4, 4).
@@ -88,7 +88,7 @@ class HandFit:
             return None
         T = T_body_tool.copy()
         T[:3, 3] += T[:3, 1] * (left - right) / 2
-        opening = left + right + SLACK
+        opening = left + right + OPENING_SLACK_M
         patches = self._opposed(T, opening)
         if patches is None:
             return None
@@ -145,20 +145,20 @@ class HandFit:
         slip; None where not.
         """
         closing = T_body_tool[:3, 1]
-        origins = PAD @ T_body_tool[:3, :3].T + T_body_tool[:3, 3]
+        origins = PAD_POINTS_M @ T_body_tool[:3, :3].T + T_body_tool[:3, 3]
         starts, ends, start_planes, end_planes = self._solid.crossings(origins, closing)
         between = (ends > starts) & (starts < opening / 2) & (ends > -opening / 2)
         patches: list[Array] = []
         for side, places, planes in ((1.0, ends, end_planes), (-1.0, -starts, start_planes)):
             reach = np.where(between, places, -np.inf)
             outermost = np.argmax(reach, axis=1)
-            rows = np.arange(len(PAD))
-            touching = reach[rows, outermost] > opening / 2 - NEAR
+            rows = np.arange(len(PAD_POINTS_M))
+            touching = reach[rows, outermost] > opening / 2 - PAD_GIVE_M
             normals = self._solid.normals(planes[rows, outermost])
-            square = touching & (side * normals @ closing > math.cos(CONE))
+            square = touching & (side * normals @ closing > math.cos(FRICTION_CONE_RAD))
             if square.sum() < 3:
                 return None
-            patches.append(PAD[square])
+            patches.append(PAD_POINTS_M[square])
         if np.linalg.norm(patches[0].mean(axis=0) - patches[1].mean(axis=0)) >= 0.005:
             return None
         return patches[0], patches[1]

@@ -12,41 +12,41 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.robot.kinematics import base_matrix
 from tamp.geometric.scene.pose import Array
-from tamp.geometric.streams.approach import LIFT
+from tamp.geometric.streams.approach import LIFT_DISTANCE_M
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-ABOVE = 0.9
+LOW_HEIGHT_M = 0.9
 """Nothing below this is too high for the arm, metres: no need to measure."""
 
-RINGS = np.arange(0.10, 1.0, 0.05)
+FOOT_DISTANCES_M = np.arange(0.10, 1.0, 0.05)
 """Distances between the arm's foot and the tool that are looked at, metres."""
 
-FURTHER = (0.0, 0.05, 0.10)
+EXTRA_DISTANCES_M = (0.0, 0.05, 0.10)
 """How much farther than it must stand the robot is thought to stand in the measurement, metres."""
 
-BEARINGS = 16
+BEARING_COUNT = 16
 """Directions from which the robot is thought to come."""
 
-PITCHES = np.radians((0.0, 15.0, 30.0, 45.0))
+HAND_PITCHES_RAD = np.radians((0.0, 15.0, 30.0, 45.0))
 """How much the hand is thought to look down: what stands on something is in the way of one that
 looks up."""
 
-PRECISION = 0.005
+HEIGHT_PRECISION_M = 0.005
 """Of the measured height, metres."""
 
-AROUND = 0.05
+SAME_PLACE_M = 0.05
 """Places nearer to each other than this are taken for one, metres."""
 
 
 def too_high(context: Context, point: Float[Array, " 3"]) -> str | None:
     """Say that a point (3,) is higher than the hand reaches there; None where it is not."""
     x, y, z = (float(value) for value in point)
-    if z < ABOVE:
+    if z < LOW_HEIGHT_M:
         return None
     reached = highest(context, x, y)
-    if reached is None or z + LIFT <= reached:
+    if reached is None or z + LIFT_DISTANCE_M <= reached:
         return None
     return f"too high: the hand reaches to {reached:.2f} m here"
 
@@ -57,7 +57,7 @@ def highest(context: Context, x: float, y: float) -> float | None:
 
     The hand looks level or down by up to 45 degrees, towards the point.
     """
-    key = (round(x / AROUND), round(y / AROUND))
+    key = (round(x / SAME_PLACE_M), round(y / SAME_PLACE_M))
     if key not in context.heights:
         distance = _nearest_stand(context, x, y)
         context.heights[key] = None if distance is None else _measured(context, distance)
@@ -73,8 +73,8 @@ def _nearest_stand(context: Context, x: float, y: float) -> float | None:
         return float(math.hypot(x - T[0, 3], y - T[1, 3]))
     room, foot = context.scene.room, float(np.linalg.norm(context.robot.T_base_arm.position[:2]))
     among = context.fixed_only(None)
-    for distance in RINGS:
-        for angle in np.arange(BEARINGS) * 2 * math.pi / BEARINGS:
+    for distance in FOOT_DISTANCES_M:
+        for angle in np.arange(BEARING_COUNT) * 2 * math.pi / BEARING_COUNT:
             base = np.array((x, y, 0.0)) - (distance + foot) * np.array(
                 (math.cos(angle), math.sin(angle), 0.0)
             )
@@ -91,14 +91,14 @@ def _measured(context: Context, distance: float) -> float | None:
     """
     foot = context.robot.T_base_arm.position
     best = None
-    for pitch in PITCHES:
+    for pitch in HAND_PITCHES_RAD:
         approach = np.array((math.cos(pitch), 0.0, -math.sin(pitch)))
         for closing in (np.array((0.0, 1.0, 0.0)), np.cross(approach, (0.0, 1.0, 0.0))):
-            for more in FURTHER:
+            for more in EXTRA_DISTANCES_M:
                 T = np.eye(4)
                 T[:3, 0], T[:3, 1], T[:3, 2] = np.cross(closing, approach), closing, approach
                 T[:3, 3] = (foot[0] + distance + more, 0.0, foot[2])
-                height = _top(context, T, best or ABOVE - 0.4)
+                height = _top(context, T, best or LOW_HEIGHT_M - 0.4)
                 best = height if best is None else max(best, height or best)
     return best
 
@@ -115,7 +115,7 @@ def _top(context: Context, T: Array, least: float) -> float | None:
     if not reached(least):
         return None
     step = 0.32
-    while step > PRECISION / 2:
+    while step > HEIGHT_PRECISION_M / 2:
         if reached(least + step):
             least += step
         else:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.streams.approach import LIFT, RETREAT
+from tamp.geometric.streams.approach import LIFT_DISTANCE_M, RETREAT_DISTANCE_M
 from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.heights import too_high
 from tamp.geometric.values import BaseConf, Grasp, Reach
@@ -20,34 +20,34 @@ from tamp.stream import Call, Rejection, RejectionKind
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-STEP = 0.01
+TOOL_STEP_M = 0.01
 """Spacing of the tool poses along the last stretch, metres,"""
 
-FINE = 0.0025
+FINE_TOOL_STEP_M = 0.0025
 """and near singularities, where the joints move fast."""
 
-TURN = 0.1
+MAX_JOINT_TURN_RAD = 0.1
 """The most that a joint may turn from one to the next, radians: in between, the tool strays by less
 than 1.5 mm."""
 
-BATCH = 16
+BASE_POSES_PER_TRY = 16
 """Base poses looked at in one try: most stand in some furniture, which is found out quickly."""
 
-WAY_OUT = 0.5
+BASE_RETREAT_M = 0.5
 """A base pose is worth trying when the robot can slide this far away from it, metres,"""
 
-NOOK = 0.05
+KEEP_ENCLOSED_PROBABILITY = 0.05
 """or, so that no place is ruled out for good, with this probability."""
 
-PATIENCE = 12
+MAX_FAILED_TRIES = 12
 """Tries without a success after which a grasp there is given up. Poses and grasps are drawn without
 end, so that no solution is lost for good, and another of those is the better bet than the
 thousandth place for the base."""
 
-SOLUTIONS = 24
+MAX_ARM_SOLUTIONS = 24
 """Arm solutions looked at from one base pose,"""
 
-BRANCHES = 3
+MAX_APPROACHES = 3
 """and those of them from which the approach is tried."""
 
 
@@ -58,15 +58,15 @@ def inverse_kinematics(
     with the body in it.
 
     The approach is a straight line along the tool's axis; with the body in hand it is lifted
-    straight up first, so that it does not scrape along its support. Ends after PATIENCE tries
+    straight up first, so that it does not scrape along its support. Ends after MAX_FAILED_TRIES
     without any success.
     """
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     failures = 0.0
-    while failures < PATIENCE:
+    while failures < MAX_FAILED_TRIES:
         reason: Rejection | None = None
-        for base in context.stands(T_world_tool, call.rng, BATCH):
-            refused = _standing(context, body, grasp, base, call)
+        for base in context.stands(T_world_tool, call.rng, BASE_POSES_PER_TRY):
+            refused = _base_conf_collides(context, body, grasp, base, call)
             if refused is not None:
                 reason = reason or refused
                 continue
@@ -84,7 +84,7 @@ def inverse_kinematics(
                 high = too_high(context, T_world_tool[:3, 3])
                 reason = reason if high is None else replace(reason, reason=high)
             failures += 1
-            yield reason if failures < PATIENCE else replace(reason, given_up=True)
+            yield reason if failures < MAX_FAILED_TRIES else replace(reason, given_up=True)
 
 
 def inverse_kinematics_here(
@@ -94,18 +94,18 @@ def inverse_kinematics_here(
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     stand = np.array(base.array)
     failures = 0.0
-    while failures < PATIENCE:
-        refused = _standing(context, body, grasp, stand, call)
+    while failures < MAX_FAILED_TRIES:
+        refused = _base_conf_collides(context, body, grasp, stand, call)
         found = refused or _reaching(context, pose, grasp, stand, T_world_tool, call)
         if not isinstance(found, Rejection):
             failures = -math.inf
             yield found[1]
             continue
         failures += 1
-        yield found if failures < PATIENCE else replace(found, given_up=True)
+        yield found if failures < MAX_FAILED_TRIES else replace(found, given_up=True)
 
 
-def _standing(
+def _base_conf_collides(
     context: Context, body: str, grasp: Grasp, base: Array, call: Call
 ) -> Rejection | None:
     """Say why the robot cannot stand there with the arm at home, with the body or without; cheap,
@@ -118,14 +118,18 @@ def _standing(
     for held, who in ((None, "base"), (grasp, f"{body} carried here")):
         among = context.fixed_only(held)
         if not among.free(home):
-            return _collision(among.hits(home, PROBE), who)
+            return _collision(among.hits(home, NAMING_PADDING_M), who)
     fixed = context.robot.drive == "fixed"
-    if not fixed and not _can_leave(context, grasp, base, home) and call.rng.random() >= NOOK:
+    if (
+        not fixed
+        and not _can_retreat(context, grasp, base, home)
+        and call.rng.random() >= KEEP_ENCLOSED_PROBABILITY
+    ):
         return Rejection("base stands in a nook", kind=RejectionKind.NO_STANCE)
     return None
 
 
-def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool:
+def _can_retreat(context: Context, grasp: Grasp, base: Array, home: Array) -> bool:
     """Check whether the robot can slide out of this place, backwards or to a side, with the body in
     hand.
     """
@@ -133,7 +137,7 @@ def _can_leave(context: Context, grasp: Grasp, base: Array, home: Array) -> bool
     for angle in (math.pi, 0.75 * math.pi, -0.75 * math.pi, 0.5 * math.pi, -0.5 * math.pi):
         heading = base[2] + angle
         away = home.copy()
-        away[:2] += WAY_OUT * np.array([math.cos(heading), math.sin(heading)])
+        away[:2] += BASE_RETREAT_M * np.array([math.cos(heading), math.sin(heading)])
         if loaded.edge_free(home, away):
             return True
     return False
@@ -157,13 +161,13 @@ def _reaching(
     )
     reason = Rejection("no straight approach", kind=RejectionKind.UNREACHABLE)
     up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
-        grasp.body, pose, LIFT
+        grasp.body, pose, LIFT_DISTANCE_M
     )
 
-    confs = [context.conf(base, q) for q in solutions[order[:SOLUTIONS]]]
+    confs = [context.conf(base, q) for q in solutions[order[:MAX_ARM_SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs
-    for conf in clear[:BRANCHES]:
+    for conf in clear[:MAX_APPROACHES]:
         hit = empty.hits(conf)
         if hit is not None:
             reason = _collision(hit)
@@ -199,7 +203,7 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
     (3,), then back.
     """
     back = T_base_tool[:3, 2]
-    away = follow_line(context, T_base_tool, -RETREAT * back, q)
+    away = follow_line(context, T_base_tool, -RETREAT_DISTANCE_M * back, q)
     if away is None:
         return None
     up = follow_line(context, T_base_tool, lift, q)
@@ -207,7 +211,7 @@ def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Re
         return None
     lifted = T_base_tool.copy()
     lifted[:3, 3] += lift
-    out = follow_line(context, lifted, -RETREAT * back, up[-1])
+    out = follow_line(context, lifted, -RETREAT_DISTANCE_M * back, up[-1])
     if out is None:
         return None
     return Reach(away[::-1].copy(), np.concatenate([up, out[1:]]))
@@ -223,17 +227,17 @@ def follow_line(
     base frame, from q.
     """
     length = float(np.linalg.norm(offset))
-    for step in (STEP, FINE):
+    for step in (TOOL_STEP_M, FINE_TOOL_STEP_M):
         count = max(1, math.ceil(length / step))
         targets = np.repeat(T_base_tool[None], count, axis=0)
         targets[:, :3, 3] += np.linspace(1 / count, 1.0, count)[:, None] * offset
-        path = context.ik.follow(list(targets), q, TURN)
+        path = context.ik.follow(list(targets), q, MAX_JOINT_TURN_RAD)
         if path is not None:
             return np.concatenate([q[None], path])
     return None
 
 
-PROBE = 0.002
+NAMING_PADDING_M = 0.002
 """The padding of `free`, metres, with which its verdict is named."""
 
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.collisions import Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.context import Context
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.result import Failure
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.streams.collisions import HAIR, test_reach_clear
+from tamp.geometric.streams.collisions import REACH_CLEARANCE_M, test_reach_clear
 from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.values import BaseConf, Grasp, Grip, Load, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
@@ -23,17 +23,17 @@ from tamp.stream import Call, Rejection, RejectionKind
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-TILT = math.radians(10.0)
+LOADED_TILT_RAD = math.radians(10.0)
 """Radians by which a body may lean while others stand on it: a third of what their friction would
 bear."""
 
-EVEN = math.radians(1.0)
+LEVEL_TILT_RAD = math.radians(1.0)
 """Radians by which it may lean while the base drives, and when it is lifted."""
 
-TURN = 0.04
+LOOK_STEP_RAD = 0.04
 """Radians of a joint between two looks at the tilt, at most."""
 
-HARDEST = 2
+MAX_LEVEL_EFFORT = 2
 """The greatest effort of a level motion; another grasp or base is the better bet soon."""
 
 
@@ -73,13 +73,13 @@ class Level:
 
     def free(self, conf: Float[Array, " conf"]) -> bool:
         """Check whether nothing touches at `conf`, and the body is level."""
-        return self.tilt(conf) <= TILT and self.arrangement.free(conf)
+        return self.tilt(conf) <= LOADED_TILT_RAD and self.arrangement.free(conf)
 
     def edge_free(self, start: Float[Array, " conf"], end: Float[Array, " conf"]) -> bool:
         """Check whether nothing touches on the straight line, and the body stays level."""
-        count = max(1, math.ceil(float(np.abs(end - start)[3:].max()) / TURN))
+        count = max(1, math.ceil(float(np.abs(end - start)[3:].max()) / LOOK_STEP_RAD))
         shares = np.linspace(0.0, 1.0, count + 1)
-        if any(self.tilt(start + share * (end - start)) > TILT for share in shares):
+        if any(self.tilt(start + share * (end - start)) > LOADED_TILT_RAD for share in shares):
             return False
         return self.arrangement.edge_free(start, end)
 
@@ -105,7 +105,7 @@ def plan_loaded_pick(
     carried = whole.collisions.arrangement(others, whole.attachment(grasp))
     level = Level(context, carried, grasp, pose.rotation[2])
     among = whole.collisions.arrangement({**others, body: pose})
-    for effort in range(HARDEST + 1):
+    for effort in range(MAX_LEVEL_EFFORT + 1):
         planned = plan_arm(
             level, stand, context.home, out, context.robot, call.rng, call.deadline, effort=effort
         )
@@ -144,7 +144,7 @@ def _refused(
     """
     up = grasp.T_tool_body.rotation @ pose.rotation[2]
     tilt = math.acos(min(1.0, float(up @ context.carrying_up)))
-    if tilt > EVEN:
+    if tilt > LEVEL_TILT_RAD:
         what = f"{grasp.body} would lean by {math.degrees(tilt):.0f} degrees at home"
         return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE)
 
@@ -152,7 +152,9 @@ def _refused(
     lift = np.array([context.conf(base.array, arm) for arm in reach.lift])
     riders = {name: pose @ T_body_rider for name, T_body_rider in load}
     empty = context.collisions.arrangement(riders, None, fixed=False)
-    hit = empty.path_hits(approach, padding=HAIR) or lift_hits(whole, pose, grasp, lift)
+    hit = empty.path_hits(approach, padding=REACH_CLEARANCE_M) or lift_hits(
+        whole, pose, grasp, lift
+    )
     if hit is not None:
         return Rejection.hits(hit[1])
     for other, other_pose in others.items():

@@ -10,21 +10,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from tamp.geometric.collision.collisions import Arrangement
+from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.context import Context
 from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.loads import load_of, plan_loaded_pick, standing
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
 
-HARDEST = 4
+MAX_EFFORT = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
 before."""
 
-LOOKS = 33
+STRAIGHT_WAY_CONFS = 33
 """Configurations on the straight way that are looked at to say what is in it."""
 
 
@@ -38,7 +38,7 @@ class _Query:
         ends: Start and goal as configurations (10,).
     """
 
-    plan: Callable[[Arrangement, int], Planned]
+    plan: Callable[[Arrangement, int], MotionResult]
     confs: Callable[[Array], Array]
     ends: tuple[Array, Array]
 
@@ -52,7 +52,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
         context = context.loaded(held.body, load_of(call, held.body))
     opening = context.robot.opening if held is None else held.opening
 
-    def plan(arrangement: Arrangement, effort: int) -> Planned:
+    def plan(arrangement: Arrangement, effort: int) -> MotionResult:
         ends = np.array(start.array), np.array(goal.array)
         return plan_base(
             arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
@@ -129,7 +129,7 @@ def _transits(
     stand = np.array(base.array)
     out = reach.lift[-1]
 
-    def plan(arrangement: Arrangement, effort: int) -> Planned:
+    def plan(arrangement: Arrangement, effort: int) -> MotionResult:
         return plan_arm(
             arrangement,
             stand,
@@ -166,7 +166,7 @@ def _attempts(
     """Yield paths, or why there is none, with growing effort; end when a failure is final."""
     attachment = None if held is None else context.attachment(held)
     arrangement = context.collisions.arrangement(poses, attachment)
-    for effort in range(HARDEST + 1):
+    for effort in range(MAX_EFFORT + 1):
         planned = query.plan(arrangement, effort)
         while planned.path is not None:
             yield planned.path
@@ -193,7 +193,8 @@ def _diagnosed(
         )
         failed = failure.value if gap is None else gap.text
         what = f"no motion even without the movable bodies: {failed}{where}"
-        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(ahead))
+        bodies = dict.fromkeys((*ahead, *(() if gap is None else gap.bodies)))
+        return Rejection(what, kind=RejectionKind.NO_MOTION, bodies=tuple(bodies))
 
     attachment = None if held is None else context.attachment(held)
     confs = query.confs(relaxed.path)
@@ -214,7 +215,8 @@ def _straight_ahead(context: Context, held: Grasp | None, query: _Query) -> list
     start, goal = query.ends
     arrangement = context.fixed_only(held)
     hits = [
-        arrangement.hits(start + share * (goal - start)) for share in np.linspace(0.0, 1.0, LOOKS)
+        arrangement.hits(start + share * (goal - start))
+        for share in np.linspace(0.0, 1.0, STRAIGHT_WAY_CONFS)
     ]
     return list(dict.fromkeys(hit[1] for hit in hits if hit is not None))
 

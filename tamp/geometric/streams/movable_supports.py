@@ -20,30 +20,30 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.geometric.stability.hulls import body_hull, centre_of_mass
 from tamp.geometric.stability.placement import (
-    BALANCE,
+    BALANCE_MARGIN_M,
     Placement,
     certified_pose,
     placement_of,
 )
 from tamp.geometric.stability.stable_poses import Face
-from tamp.geometric.streams.proposal_stream import draw
+from tamp.geometric.streams.proposal_stream import certified_poses
 from tamp.geometric.streams.refusals import no_fit
 from tamp.stream import Call, Rejection, RejectionKind
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-LEVEL = math.cos(math.radians(1.0))
+LEVEL_COSINE = math.cos(math.radians(1.0))
 """Cosine of the tilt from which on a place carries nothing."""
 
-MARGIN = 0.008
+STACK_MARGIN_M = 0.008
 """Metres by which a centre of mass must be inside of all bases and places below it."""
 
-CENTRED = 0.25
+CENTRED_SHARE = 0.25
 """Share of its way from the middle that a body keeps which is larger than the place under it: a
 tower stands the better the less its bodies are beside each other."""
 
-FLAT = 0.001
+BASE_CORNER_HEIGHT_M = 0.001
 """Metres above the lowest point of a body up to which its corners belong to its base."""
 
 
@@ -112,7 +112,7 @@ def _placements(
 
     mixture = context.mixtures[relation]
     at = {below: below_pose}
-    yield from draw(context, relation, mixture, (body, region.name), judge, call, at)
+    yield from certified_poses(context, relation, mixture, (body, region.name), judge, call, at)
 
 
 def stood_on(
@@ -123,7 +123,7 @@ def stood_on(
     """
     under = footing(context, below, below_pose)
     centre = pose.apply(centre_of_mass(context.scene.bodies[body])[None])[0, :2]
-    if min(inside(centre, polygon) for polygon in under) < MARGIN:
+    if min(inside(centre, polygon) for polygon in under) < STACK_MARGIN_M:
         what = f"would tip {below}, or what that stands on"
         return Rejection(what, kind=RejectionKind.UNSTABLE, bodies=(below,))
 
@@ -146,7 +146,7 @@ def _no_room(
         what = f"{region.name} is too small to carry {body} ({size} cm)"
         return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
 
-    if T_world_region.rotation[2, 2] < LEVEL:
+    if T_world_region.rotation[2, 2] < LEVEL_COSINE:
         what = f"{region.name} is not level: {region.body} lies on another side"
         return Rejection(what, given_up=True, kind=RejectionKind.UNSTABLE, bodies=(region.body,))
     return None
@@ -155,7 +155,7 @@ def _no_room(
 def _carries(face: Face, surface: Surface) -> bool:
     """Check whether a body on this face can stand on a surface, within it or balanced over it."""
     from_middle = np.linalg.norm(face.base - face.centre, axis=1).max()
-    return min(surface.size) / 2 > min(BALANCE, float(from_middle))
+    return min(surface.size) / 2 > min(BALANCE_MARGIN_M, float(from_middle))
 
 
 def _centred(face: Face, placement: Placement, region: Surface | Cavity) -> Placement:
@@ -167,7 +167,7 @@ def _centred(face: Face, placement: Placement, region: Surface | Cavity) -> Plac
     corners = face.base @ turn.T + shift
     if (np.abs(corners) <= np.array(region.size) / 2).all():
         return placement
-    x, y = shift - (1.0 - CENTRED) * (turn @ face.centre + shift)
+    x, y = shift - (1.0 - CENTRED_SHARE) * (turn @ face.centre + shift)
     return replace(placement, x=float(x), y=float(y))
 
 
@@ -209,14 +209,14 @@ def _stands(context: Context, body: str, pose: Pose, surface: Surface, there: Po
     low = float(pose.apply(vertices)[:, 2].min())
     centre = pose.apply(centre_of_mass(context.scene.bodies[body])[None])[0, :2]
     height = abs(low - there.position[2])
-    return height < 3 * FLAT and inside(centre, _corners(surface, there)) >= 0.0
+    return height < 3 * BASE_CORNER_HEIGHT_M and inside(centre, _corners(surface, there)) >= 0.0
 
 
 def base(context: Context, body: str, pose: Pose) -> Float[Array, "n 2"]:
     """Compute the outline (n, 2) of what a body at a pose stands on, counterclockwise, metres."""
     vertices, _ = body_hull(context.scene.bodies[body])
     placed = pose.apply(vertices)
-    return outline(placed[placed[:, 2] < placed[:, 2].min() + FLAT, :2])
+    return outline(placed[placed[:, 2] < placed[:, 2].min() + BASE_CORNER_HEIGHT_M, :2])
 
 
 def _corners(region: Surface | Cavity, T_world_region: Pose) -> Float[Array, "4 2"]:

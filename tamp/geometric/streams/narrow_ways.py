@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 LOOKED_AT = 60
 """Random tool poses after which it is known how narrow the place is."""
 
-NARROW = 0.25
+NARROW_SHARE = 0.25
 """The share of them on whose way the hand is free, up to which the place is narrow."""
 
-ALIKE = math.cos(math.radians(30.0))
+SAME_APPROACH_COSINE = math.cos(math.radians(30.0))
 """Cosine of the angle between approaches up to which one that is free speaks for another."""
 
-ANYWAY = 10
+KEEP_EVERY = 10
 """Of what is not promising every tenth comes through."""
 
 
@@ -54,13 +54,13 @@ def promising(
             yield proposal
             continue
 
-        if len(approaches) > NARROW * LOOKED_AT and looked == LOOKED_AT:
+        if len(approaches) > NARROW_SHARE * LOOKED_AT and looked == LOOKED_AT:
             yield proposal
             yield from proposals
             return
 
         looked += 1
-        alike = not approaches or max(np.array(approaches) @ proposal[:3, 2]) > ALIKE
+        alike = not approaches or max(np.array(approaches) @ proposal[:3, 2]) > SAME_APPROACH_COSINE
         if alike and free(proposal):
             if len(approaches) < LOOKED_AT:
                 approaches.append(proposal[:3, 2])
@@ -68,5 +68,5 @@ def promising(
             continue
 
         dropped += 1
-        if dropped % ANYWAY == 0:
+        if dropped % KEEP_EVERY == 0:
             yield proposal

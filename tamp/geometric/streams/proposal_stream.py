@@ -14,8 +14,8 @@ from types import MappingProxyType
 from numpy.random import Generator as Random
 
 from tamp.geometric.context import Context
-from tamp.geometric.samplers.guarded_call import Misbehaved, ask
-from tamp.geometric.samplers.mixture import Account, Ledger, Mixture, sidelined
+from tamp.geometric.samplers.guarded_call import SamplerFault, propose_safely
+from tamp.geometric.samplers.mixture import Mixture, SamplerRecord, SamplerStatistics, sidelined
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
@@ -23,14 +23,14 @@ from tamp.geometric.stability.placement import Placement, placed_pose
 from tamp.geometric.streams.collisions import near
 from tamp.stream import Call, Rejection, RejectionKind
 
-BATCH = 16
+POSES_PER_BATCH = 16
 """Poses asked of a generator at once."""
 
-PROBATION = 2 * BATCH
+PROBATION_PROPOSALS = 2 * POSES_PER_BATCH
 """Proposals of which none is of use, after which a generator that is new to the run gives way in
 this try."""
 
-STALE = 3
+MAX_STALE_BATCHES = 3
 """Batches without anything new, or misbehaviours of a generator that is alone, after which it is
 asked no more."""
 
@@ -41,7 +41,7 @@ Judge = Callable[[Proposal], Pose | Rejection]
 """Certifies that a proposal rests, and where, or says why not."""
 
 
-def draw(
+def certified_poses(
     context: Context,
     relation: str,
     mixture: Mixture,
@@ -65,20 +65,22 @@ def draw(
         call: Of the stream that draws.
         at: Where bodies are wanted in the scene, whatever the plan has.
     """
-    ledger = Ledger.of(relation, mixture, call.memory)
+    ledger = SamplerStatistics.of(relation, mixture, call.memory)
     poses: dict[str, Pose] = {
         name: pose for _, name, pose in call.fluents if name != arguments[0]
     } | dict(at)
     alone = len(mixture.generators) == 1
-    sources: list[_Source] = []
+    sources: list[_SamplerState] = []
     for index, (generator, account) in enumerate(
         zip(mixture.generators, ledger.accounts, strict=True)
     ):
         # The trusted one draws the numbers that it would draw alone; each has a scene of its own.
         rng = call.rng if index == len(mixture.generators) - 1 else call.rng.spawn(1)[0]
-        sources.append(_Source(generator, account, context.scene_at(poses, arguments[0]), rng))
+        sources.append(
+            _SamplerState(generator, account, context.scene_at(poses, arguments[0]), rng)
+        )
 
-    drawer = _Drawer(context, ledger, sources, poses, arguments, judge, call, alone)
+    drawer = _ProposalLoop(context, ledger, sources, poses, arguments, judge, call, alone)
     while any(source.account.out is None and not source.ended for source in sources):
         if not call.ahead:
             ledger.asked(arguments)
@@ -89,7 +91,11 @@ def draw(
         yield result
 
     unruly = next(
-        (source for source in sources if source.account.out is not None or source.strikes >= STALE),
+        (
+            source
+            for source in sources
+            if source.account.out is not None or source.faults >= MAX_STALE_BATCHES
+        ),
         None,
     )
     if unruly is not None:
@@ -98,41 +104,41 @@ def draw(
 
 
 @dataclass
-class _Source:
+class _SamplerState:
     """One generator in one stream call.
 
     Attributes:
         batch: Proposals not yet judged.
         clear: Whether one of the batch was clear of the other bodies.
-        clash: The first of the batch that was not.
+        deferred: The first of the batch that was not.
         seen: All proposals, rounded.
-        strikes: Misbehaviours.
+        faults: Misbehaviours.
         wrong: The latest one.
     """
 
     generator: Generator
-    account: Account
+    account: SamplerRecord
     scene: Scene
     rng: Random
     ended: bool = False
     batch: deque[Proposal] = field(default_factory=deque[Proposal])
     clear: bool = False
-    clash: Pose | None = None
+    deferred: Pose | None = None
     seen: set[tuple[object, ...]] = field(default_factory=set[tuple[object, ...]])
-    strikes: int = 0
+    faults: int = 0
     wrong: str = ""
 
-    def take_clash(self) -> Pose | None:
+    def take_deferred(self) -> Pose | None:
         """Return the pose that is kept for the end of the batch, once."""
-        pose, self.clash = self.clash, None
+        pose, self.deferred = self.deferred, None
         return pose
 
 
 @dataclass
-class _Drawer:
+class _ProposalLoop:
     context: Context
-    ledger: Ledger
-    sources: list[_Source]
+    ledger: SamplerStatistics
+    sources: list[_SamplerState]
     poses: Mapping[str, Pose]
     arguments: tuple[str, ...]
     judge: Judge
@@ -144,20 +150,21 @@ class _Drawer:
         refused: Counter[Rejection] = Counter()
         for index in self.ledger.order():
             source = self.sources[index]
-            batches = 1
-            if not self.alone and index == 0 and source.account.judged + BATCH < PROBATION:
-                batches = 2
+            new = source.account.judged + POSES_PER_BATCH < PROBATION_PROPOSALS
+            batches = 2 if new and index == 0 and not self.alone else 1
+
             for _ in range(batches):
                 pose = self._from(source, refused)
                 if pose is not None:
-                    self.ledger.passed_on(source.account, self.arguments)
+                    self.ledger.accepted(source.account, self.arguments)
                     self.dismiss()
                     return pose
+
         for index in self.ledger.order():
             source = self.sources[index]
-            pose = source.take_clash()
+            pose = source.take_deferred()
             if pose is not None:
-                self.ledger.passed_on(source.account, self.arguments)
+                self.ledger.accepted(source.account, self.arguments)
                 return pose
         return refused.most_common(1)[0][0] if refused else None
 
@@ -167,11 +174,11 @@ class _Drawer:
         if useless is not None:
             self._sideline(useless)
 
-    def _sideline(self, account: Account) -> None:
+    def _sideline(self, account: SamplerRecord) -> None:
         names = [other.name for other in self.ledger.accounts if other is not account]
         self.call.warn(sidelined(self.ledger.relation, account, names))
 
-    def _from(self, source: _Source, refused: Counter[Rejection]) -> Pose | None:
+    def _from(self, source: _SamplerState, refused: Counter[Rejection]) -> Pose | None:
         """Return the next pose of a generator's batch that is clear; a new batch is asked for when
         the last one is used up.
         """
@@ -186,7 +193,7 @@ class _Drawer:
             if isinstance(pose, Rejection):
                 refused[pose] += 1
                 self.ledger.judged(source.account, pose.reason)
-                self.call.refused(self._posed(proposal), pose.reason)
+                self.call.refused(self._posed(proposal), pose)
                 continue
 
             hit = next((name for name in self.poses if self._near(pose, name)), None)
@@ -195,34 +202,35 @@ class _Drawer:
                 source.clear = True
                 return pose
 
-            self.ledger.judged(source.account, f"hits {hit}")
-            self.call.refused(pose, f"hits {hit}")
-            source.clash = source.clash or pose
+            rejection = Rejection.hits(hit)
+            self.ledger.judged(source.account, rejection.reason)
+            self.call.refused(pose, rejection)
+            source.deferred = source.deferred or pose
 
-        return source.take_clash() if source.clear else None
+        return source.take_deferred() if source.clear else None
 
     def _near(self, pose: Pose, other: str) -> bool:
         return near(self.context, self.arguments[0], pose, other, self.poses[other])
 
-    def _ask(self, source: _Source, refused: Counter[Rejection]) -> None:
+    def _ask(self, source: _SamplerState, refused: Counter[Rejection]) -> None:
         account = source.account
-        source.clear, source.clash = False, None
+        source.clear, source.deferred = False, None
 
         allowed = self.ledger.allowance(account, self.call.deadline)
         started = time.perf_counter()
         try:
             if allowed <= 0.0:
-                raise Misbehaved(f"it took {account.seconds:.2f} s to propose poses")
-            proposals = ask(
+                raise SamplerFault(f"it took {account.seconds:.2f} s to propose poses")
+            proposals = propose_safely(
                 source.generator,
                 source.scene,
                 self.arguments,
-                BATCH,
+                POSES_PER_BATCH,
                 source.rng,
                 self.call.deadline,
                 allowed,
             )
-        except Misbehaved as error:
+        except SamplerFault as error:
             self._misbehaved(source, str(error), refused)
             return
         finally:
@@ -239,10 +247,12 @@ class _Drawer:
         if len(fresh) <= len(proposals) // 8:
             refused[Rejection("proposed again")] += 1
             account.stale += 1
-            if not self.alone and (account.stale >= STALE or len(proposals) == BATCH):
+            if not self.alone and (
+                account.stale >= MAX_STALE_BATCHES or len(proposals) == POSES_PER_BATCH
+            ):
                 self._misbehaved(source, "it proposes one pose again and again", refused)
 
-    def _misbehaved(self, source: _Source, what: str, refused: Counter[Rejection]) -> None:
+    def _misbehaved(self, source: _SamplerState, what: str, refused: Counter[Rejection]) -> None:
         """Ask a generator beside the trusted one no more; alone it has a few more tries."""
         refused[Rejection(f"{source.account.name}: {what}", kind=RejectionKind.FAULT)] += 1
         source.wrong = what
@@ -252,8 +262,8 @@ class _Drawer:
             self._sideline(source.account)
             return
         self.call.warn(f"sampler '{source.account.name}' for '{self.ledger.relation}': {what}")
-        source.strikes += 1
-        source.ended = source.strikes >= STALE
+        source.faults += 1
+        source.ended = source.faults >= MAX_STALE_BATCHES
 
     def _posed(self, proposal: Proposal) -> Pose:
         """Return T_world_body of what was proposed."""
@@ -264,7 +274,7 @@ class _Drawer:
         T_world_body = self.poses.get(region.body, scene.bodies[region.body].pose)
         return placed_pose(faces, proposal, T_world_body @ region.pose)
 
-    def _is_new(self, source: _Source, proposal: Proposal) -> bool:
+    def _is_new(self, source: _SamplerState, proposal: Proposal) -> bool:
         """Check whether the generator has not proposed this, to a tenth of a millimetre, in this
         call before.
         """

@@ -18,7 +18,7 @@ from tamp.stream import Call, Rejection, RejectionKind
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-PAD = 0.02
+FINGERTIP_MARGIN_M = 0.02
 """How far the fingers reach beyond the tool's origin, metres."""
 
 
@@ -30,7 +30,7 @@ def test_reachable(context: Context, body: str, pose: Pose, call: Call) -> bool 
     """
     flat = too_flat(context, body, pose)
     if flat is not None:
-        return Rejection(flat, kind=RejectionKind.NO_GRASP)
+        return flat
     return within_reach(context, *bounds(context.scene.bodies[body].parts, pose))
 
 
@@ -64,11 +64,11 @@ def within_reach(
     if robot.drive == "fixed":
         return _from_where_it_is(context, low, high, span)
     gap = context.passage.closed(low[:2], high[:2], offset + math.sqrt(span**2 - vertical**2))
-    return True if gap is None else _out_of_reach(gap.text)
+    return True if gap is None else _out_of_reach(gap.text, gap.bodies)
 
 
-def _out_of_reach(how: str) -> Rejection:
-    return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE)
+def _out_of_reach(how: str, bodies: tuple[str, ...] = ()) -> Rejection:
+    return Rejection(f"out of reach ({how})", kind=RejectionKind.UNREACHABLE, bodies=bodies)
 
 
 def _from_where_it_is(context: Context, low: Array, high: Array, span: float) -> bool | Rejection:
@@ -94,7 +94,7 @@ def arm_length(robot: Robot) -> float:
         for low, high, slides in zip(robot.lower, robot.upper, robot.prismatic, strict=True)
         if slides
     )
-    return sum(math.hypot(*piece.position) for piece in pieces) + slides + PAD
+    return sum(math.hypot(*piece.position) for piece in pieces) + slides + FINGERTIP_MARGIN_M
 
 
 def _shoulder(robot: Robot) -> Array:

@@ -27,11 +27,11 @@ from tamp.geometric.stability.hulls import body_hull, part_mesh
 from tamp.geometric.stability.placement import room_above
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
-from tamp.geometric.streams.hand_fit import CONE
+from tamp.geometric.streams.hand_fit import FRICTION_CONE_RAD
 from tamp.geometric.streams.reach import within_reach
 from tamp.stream import Rejection, RejectionKind
 
-ROUNDED = 0.97
+SURE_SHARE_OF_WIDTH = 0.97
 """Of a width measured on the polyhedron that stands for a curved body, so much is certain."""
 
 HALF_MILLIMETRE = 5e-4
@@ -41,16 +41,16 @@ MOST_FACETS = 300
 """Ways up that are looked at for a proof; a body with more is taken for a curved one, of which
 nothing is proven."""
 
-FINE = 0.004
+PLACE_SPACING_M = 0.004
 """Spacing of the places that are looked at for a proof that all are taken, metres,"""
 
-PLACES = 40_000
+MAX_PLACES = 40_000
 """and how many they are at most: in a larger region they are farther apart."""
 
 JUST_ABOVE = 0.002
 """Height above a region at which a body on it and what is in its way are cut, metres."""
 
-HEADROOM = 2.0
+GRASP_HEADROOM_M = 2.0
 """Metres above a surface up to which a body on it may be grasped."""
 
 
@@ -93,8 +93,8 @@ def narrowest(body: Body) -> float | None:
     if isinstance(shape, Box):
         return min(shape.size)
     if isinstance(shape, Cylinder):
-        return min(shape.height, 2 * shape.radius * math.cos(CONE))
-    return 2 * shape.radius * math.cos(CONE) if isinstance(shape, Sphere) else None
+        return min(shape.height, 2 * shape.radius * math.cos(FRICTION_CONE_RAD))
+    return 2 * shape.radius * math.cos(FRICTION_CONE_RAD) if isinstance(shape, Sphere) else None
 
 
 def no_room(context: Context, body: str, region: Surface | Cavity) -> Rejection | None:
@@ -158,7 +158,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     ways = (*stable.ways, *low)
 
     radius = min(_room_around(face) * max(0.0, 1.0 - 4 * JUST_ABOVE / face.extent) for face in ways)
-    cell = max(FINE, math.sqrt(region.size[0] * region.size[1] / PLACES))
+    cell = max(PLACE_SPACING_M, math.sqrt(region.size[0] * region.size[1] / MAX_PLACES))
     if radius <= cell:
         return None
 
@@ -203,7 +203,7 @@ def _out_of_reach(
     surface.
     """
     beyond = 2 * context.radius(body) if isinstance(region, Surface) else 0.0
-    height = min(room, HEADROOM)
+    height = min(room, GRASP_HEADROOM_M)
     box = Part(
         Box((region.size[0] + beyond, region.size[1] + beyond, height)),
         Pose((0.0, 0.0, height / 2)),
@@ -223,9 +223,10 @@ def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
     sides = facets(body, MOST_FACETS)
     if sides is None:
         return True
-    low = [side for side in sides if ROUNDED * side.extent - HALF_MILLIMETRE <= room]
+    low = [side for side in sides if SURE_SHARE_OF_WIDTH * side.extent - HALF_MILLIMETRE <= room]
     return any(
-        cavity is None or fits(side, [length / ROUNDED for length in cavity.size]) for side in low
+        cavity is None or fits(side, [length / SURE_SHARE_OF_WIDTH for length in cavity.size])
+        for side in low
     )
 
 

@@ -11,14 +11,14 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, placement_of
 from tamp.geometric.streams.approach import open_hand_hits
-from tamp.geometric.streams.firmness import GRAVITY, PAD_FRICTION
+from tamp.geometric.streams.firmness import GRAVITY_M_S2, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
-from tamp.geometric.streams.proposal_stream import draw
+from tamp.geometric.streams.proposal_stream import certified_poses
 from tamp.geometric.streams.refusals import covered, no_grasp, no_room
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection, RejectionKind
 
-HOPELESS = 32
+TRIES_BEFORE_PROOF = 32
 """Tries without any success after which it is worth asking whether a region is covered altogether.
 """
 
@@ -60,7 +60,7 @@ def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
             f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg",
             kind=RejectionKind.TOO_HEAVY,
         )
-    holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY
+    holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY_M_S2
     if body.mass > holds:
         what = (
             f"{body.name} weighs {body.mass:g} kg and would slip: "
@@ -105,11 +105,11 @@ def _placements(
         return pose if hit is None else Rejection.hits(hit)
 
     failures = 0.0
-    for result in draw(
+    for result in certified_poses(
         context, relation, context.mixtures[relation], (body, region.name), judge, call
     ):
         failures = failures + 1 if isinstance(result, Rejection) else -math.inf
-        if failures == HOPELESS and (proof := covered(context, body, region)) is not None:
+        if failures == TRIES_BEFORE_PROOF and (proof := covered(context, body, region)) is not None:
             yield proof
             return
         yield result

@@ -12,12 +12,12 @@ from typing import Any
 from tamp.geometric.context import Context
 from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.samplers.sampler import Generator
-from tamp.geometric.scene.classifier import LIKELY, Classifier, probability
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier, probability
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.geometric.stability.placement import Placement, certified_pose, snap_to_region
 from tamp.geometric.streams.movable_supports import stood_on
-from tamp.geometric.streams.proposal_stream import draw
+from tamp.geometric.streams.proposal_stream import certified_poses
 from tamp.stream import Call, Rejection, RejectionKind
 
 
@@ -78,7 +78,7 @@ def sample_relation(
         answer = _answer(_asked(context, classifier, names, {**at, body: pose}, call))
         return answer if isinstance(answer, Rejection) else pose
 
-    yield from draw(
+    yield from certified_poses(
         context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
     )
 
@@ -131,7 +131,7 @@ def fails_relation(
     number = _probability(context, arguments, classifier, call)
     if math.isnan(number):
         return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
-    if number < LIKELY:
+    if number < LIKELY_PROBABILITY:
         return True
     return Rejection(f"likely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 
@@ -139,7 +139,7 @@ def fails_relation(
 def _answer(number: float) -> bool | Rejection:
     if math.isnan(number):
         return Rejection("cannot tell", kind=RejectionKind.UNLIKELY)
-    if number >= LIKELY:
+    if number >= LIKELY_PROBABILITY:
         return True
     return Rejection(f"unlikely ({number:.2f})", kind=RejectionKind.UNLIKELY)
 

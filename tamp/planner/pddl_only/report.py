@@ -72,6 +72,7 @@ def document(solution: SymbolicSolution) -> dict[str, Any]:
         "outcome": solution.outcome.name.lower(),
         "message": solution.outcome.value,
         "explanation": list(solution.explanation),
+        "causes": [cause.document() for cause in solution.causes],
         "problem": solution.problem.name,
         **_plan(solution),
         **_optimization(solution),

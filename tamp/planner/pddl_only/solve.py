@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tamp.errors import InputError
 from tamp.planner.pddl_only.problem import SymbolicProblem
+from tamp.symbolic.algorithms.cause import Cause, CauseKind, distinct_causes
 from tamp.symbolic.algorithms.explanation.explanation import explain_infeasible
 from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import type_facts
@@ -44,7 +45,7 @@ class SymbolicSolution:
     Attributes:
         plan: Operators in order, empty unless solved.
         optimal: Whether the search proves that no plan is cheaper.
-        explanation: Why there is no plan, a line a cause.
+        causes: Why there is no plan; `explanation` has their texts.
         operators: How many operators the task has.
         facts: How many facts may change.
         history: The plans on the way to this one and itself, where the first was not enough:
@@ -61,7 +62,7 @@ class SymbolicSolution:
     heuristic: str
     plan: tuple[Operator, ...] = ()
     optimal: bool = False
-    explanation: tuple[str, ...] = ()
+    causes: tuple[Cause, ...] = ()
     expanded: int = 0
     evaluated: int = 0
     operators: int = 0
@@ -70,6 +71,11 @@ class SymbolicSolution:
     bound: float = 0.0
     seconds: dict[str, float] = field(default_factory=dict[str, float])
     refuted: int = 0
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Return why there is no plan, a line a cause."""
+        return tuple(cause.text for cause in self.causes)
 
     @property
     def solved(self) -> bool:
@@ -170,7 +176,7 @@ def _solve(
         optimal=found.plan is not None
         and name == "astar"
         and ADMISSIBLE.issuperset(split_heuristics(heuristic)),
-        explanation=tuple(dict.fromkeys(refuted))
+        causes=distinct_causes(Cause(text, CauseKind.REFUTED) for text in refuted)
         + (_why(problem, instantiated, deadline) if infeasible else ()),
         expanded=found.expanded,
         evaluated=found.evaluated,
@@ -221,7 +227,7 @@ def refutation(task: Task, plan: Plan | None) -> str | None:
 
 def _why(
     problem: SymbolicProblem, instantiated: InstantiatedTask, deadline: Deadline
-) -> tuple[str, ...]:
+) -> tuple[Cause, ...]:
     task = problem.task
     facts = {*task.initial, *type_facts(task), *instantiated.reachable, *instantiated.initial}
     missing = UnachievableFacts(task, (), facts, {**task.domain.constants, **task.objects})

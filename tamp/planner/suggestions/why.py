@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -182,8 +181,7 @@ class _Trial:
 
     def run(self) -> Suggestions:
         """Run all trials, as far as the time goes."""
-        said = "\n".join(self._solution.explanation).lower()
-        told = set(re.findall(r"[\w-]+", said))
+        told = {name for cause in self._solution.causes for name in cause.objects}
         order = sorted(
             changes(self._solution.problem),
             key=lambda change: (not told & {name.lower() for name in change.about}, change.size),

@@ -6,6 +6,7 @@ from functools import partial
 
 from tamp.symbolic.algorithms.binding.binder import substitute
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
+from tamp.symbolic.algorithms.cause import Cause
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, failure_counts
 from tamp.symbolic.algorithms.explanation.explanation import (
     explain_attempts,
@@ -58,7 +59,7 @@ def infeasible_result(run: Run) -> Result:
     )
 
     with run.effort.explaining():
-        reasons = explain_infeasible(
+        causes = explain_infeasible(
             task.problem,
             instantiated,
             knowledge.exhausted_calls,
@@ -69,8 +70,8 @@ def infeasible_result(run: Run) -> Result:
         # what failed in the states that plans lead through is the cause
         if knowledge.experience.failing_states:
             failures = explain_failures(task.problem, run.streams, _failure_counts(run), True)
-            reasons = (*failures, *reasons)
-    return end_result(run, outcome, reasons)
+            causes = (*failures, *causes)
+    return end_result(run, outcome, causes)
 
 
 def _with_goal(run: Run, goal: Formula) -> InstantiatedTask:
@@ -97,7 +98,7 @@ def interrupted_result(run: Run, error: OutOfTime | KeyboardInterrupt) -> Result
 def end_result(
     run: Run,
     outcome: Outcome,
-    explanation: tuple[str, ...] | None = None,
+    causes: tuple[Cause, ...] | None = None,
     *,
     solution: Skeleton | None = None,
 ) -> Result:
@@ -106,14 +107,14 @@ def end_result(
     Args:
         run: The run.
         outcome: How it ends.
-        explanation: Why there is no plan; by default what failed most.
+        causes: Why there is no plan; by default what failed most.
         solution: The skeleton that became the plan.
     """
     with run.effort.explaining():
         counts = () if outcome is Outcome.SOLVED else _failure_counts(run)
-        if explanation is None:
+        if causes is None:
             tried = run.latest is not None
-            explanation = explain_failures(run.task.problem, run.streams, counts, tried)
+            causes = explain_failures(run.task.problem, run.streams, counts, tried)
 
     run.effort.draws = run.binder.draws
     skeletons = list(run.skeletons.values())
@@ -122,7 +123,7 @@ def end_result(
         objects=run.task.objects,
         statistics=run.streams.statistics,
         effort=run.effort,
-        explanation=explanation,
+        causes=causes,
         tallies=counts,
         warnings=tuple(run.streams.warnings),
         memory=run.streams.memory,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import Enum
 
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.bound_stream import BoundStream, Objects
+from tamp.symbolic.algorithms.cause import Cause, named_objects
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
@@ -47,6 +48,11 @@ class StreamTask:
     functions: tuple[BoundFunction, ...] = ()
     by_value: bool = False
     posteriors: Mapping[str, Posterior] = field(default_factory=dict[str, Posterior])
+
+    def named(self, words: Iterable[str]) -> tuple[str, ...]:
+        """Return those of the words that name objects a user knows: not poses, grasps, paths."""
+        known = (*self.task.objects, *self.task.domain.constants)
+        return named_objects(words, {x for x in known if isinstance(self.values.get(x, x), str)})
 
 
 @dataclass(frozen=True)
@@ -132,7 +138,7 @@ class Result:
         actions: The plan, empty unless solved.
         certified: Static facts that streams certified and the plan rests on.
         objects: Names, types and values of everything in it.
-        explanation: Why there is no plan, a line a cause.
+        causes: Why there is no plan.
         tallies: What was tried for which action, where there is no plan.
         memory: What the streams have learned in the run, as they keep it.
         attempts: Says which skeletons were tried, to those who ask.
@@ -145,12 +151,17 @@ class Result:
     certified: tuple[Fact, ...] = ()
     statistics: dict[str, StreamStatistics] = field(default_factory=dict[str, StreamStatistics])
     effort: SearchStatistics = field(default_factory=SearchStatistics)
-    explanation: tuple[str, ...] = ()
+    causes: tuple[Cause, ...] = ()
     tallies: tuple[FailureCount, ...] = ()
     warnings: tuple[str, ...] = ()
     memory: Mapping[str, object] = field(default_factory=dict[str, object])
     attempts: Callable[[], tuple[SkeletonAttempt, ...]] = _none
     skeleton: Skeleton | None = None
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Return why there is no plan, a line a cause."""
+        return tuple(cause.text for cause in self.causes)
 
 
 Progress = Callable[[SearchStatistics], None]

@@ -102,6 +102,19 @@ class Goal:
     static: Facts = NONE
 
 
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """The subformula that an auxiliary fact stands for.
+
+    Attributes:
+        text: In PDDL or in words, to show to people.
+        terms: Of its atoms from left to right, variables too.
+    """
+
+    text: str
+    terms: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class InstantiatedTask:
     """A task without variables.
@@ -113,8 +126,7 @@ class InstantiatedTask:
             relaxation.
         axioms: Sorted by stratum; only those that an operator or the goal may need.
         reachable: Fluent and derived facts that hold in some state of the delete relaxation.
-        meanings: For the auxiliary facts that stand for a subformula ("or 1" ...), a few words to
-            show to people.
+        meanings: For the auxiliary facts that stand for a subformula ("or 1" ...), by name.
     """
 
     initial: Facts
@@ -122,4 +134,4 @@ class InstantiatedTask:
     operators: tuple[Operator, ...]
     axioms: tuple[Axiom, ...]
     reachable: Facts
-    meanings: Mapping[str, str]
+    meanings: Mapping[str, Meaning]

@@ -11,7 +11,8 @@ import pytest
 
 from benchmarks.collision import compare
 from benchmarks.collision_reference import PlainFcl, random_confs, random_pose, random_scene
-from tamp.geometric.collision.collisions import PADDING, Attachment, Collisions
+from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M
+from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.collision.fcl_bodies import FclBody
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
@@ -89,14 +90,14 @@ def test_states_and_edges_agree_with_plain_fcl(
 
 
 def test_free_means_padding_and_no_more(robot: Robot, kinematics: Kinematics) -> None:
-    for gap, expected in ((PADDING - 1e-4, False), (PADDING + 1e-4, True)):
+    for gap, expected in ((TRANSIT_CLEARANCE_M - 1e-4, False), (TRANSIT_CLEARANCE_M + 1e-4, True)):
         wall = body("wall", Box((0.1, 2.0, 2.0)), -0.4 - gap - 0.05, 0.0, 1.02, movable=False)
         conf = at(robot)  # the arm is in front: only the base is near the wall
         arrangement = Collisions(scene_of(wall), robot, kinematics).arrangement({})
         assert arrangement.free(conf) is expected
         assert arrangement.hits(conf) is None
         if not expected:
-            assert arrangement.hits(conf, PADDING) == ("base", "wall")
+            assert arrangement.hits(conf, TRANSIT_CLEARANCE_M) == ("base", "wall")
 
 
 @pytest.mark.parametrize("thickness", [0.02, 0.001, 1e-5])
@@ -127,7 +128,9 @@ def test_a_free_edge_has_free_ends_and_half_the_padding_between(
     for start, end in free:
         assert arrangement.free(start) and arrangement.free(end)
         for s in np.linspace(0, 1, 50):
-            assert arrangement.hits(start + s * (end - start), PADDING / 2 - 1e-6) is None
+            assert (
+                arrangement.hits(start + s * (end - start), TRANSIT_CLEARANCE_M / 2 - 1e-6) is None
+            )
 
 
 def test_the_attached_body_counts_and_leaves_its_place(

@@ -13,19 +13,19 @@ from tamp.geometric.collision.fcl_bodies import FclBody, depth, gap, touch
 from tamp.geometric.collision.tables import (
     BOX,
     CENTRE,
+    COVER_COUNT,
+    COVER_ERROR,
+    COVER_SPHERES,
     CYLINDER,
     HULL,
     KIND,
-    LEAF_COUNT,
-    LEAVES,
-    MARGIN,
+    PART_COLUMNS,
     POINT,
     RADIUS,
+    RADIUS_OFFSET,
     SIZE,
-    SLACK,
     VERTEX_COUNT,
     VERTICES,
-    WIDTH,
     Rows,
     pose_rows,
     world_box,
@@ -53,11 +53,13 @@ def test_a_row_has_the_box_and_the_sphere_around_a_part(
     shape: Shape, kind: int, half: list, centre: list, radius: float, margin: float
 ) -> None:
     row = Rows().row(Part(shape))
-    assert row.shape == (WIDTH,) and row[KIND] == kind
+    assert row.shape == (PART_COLUMNS,) and row[KIND] == kind
     assert row[SIZE : SIZE + 3] == pytest.approx(half) and row[
         CENTRE : CENTRE + 3
     ] == pytest.approx(centre)
-    assert (row[RADIUS], row[MARGIN], row[SLACK]) == pytest.approx((radius, margin, radius))
+    assert (row[RADIUS], row[RADIUS_OFFSET], row[COVER_ERROR]) == pytest.approx(
+        (radius, margin, radius)
+    )
 
 
 def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
@@ -76,7 +78,7 @@ def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
     leaves = np.array([[0.0, 0.0, 0.1, 0.05], [0.0, 0.0, -0.1, 0.05]])
     rows.row(Part(Sphere(1.0)), (leaves[:1], 0.01))
     covered = rows.row(Part(Box((1, 1, 1))), (leaves, 0.02))
-    assert (covered[LEAVES], covered[LEAF_COUNT], covered[SLACK]) == (1, 2, 0.02)
+    assert (covered[COVER_SPHERES], covered[COVER_COUNT], covered[COVER_ERROR]) == (1, 2, 0.02)
     assert (rows.leaves()[1:] == leaves).all()
 
 

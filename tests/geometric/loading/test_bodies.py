@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError
-from tamp.geometric.loading.bodies import COLOURS, Draft
+from tamp.geometric.loading.bodies import COLOURS, UnplacedBody
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Sphere
 from tests.geometric.making import drafts
 
 
-def read(folder: Path, text: str) -> Draft:
+def read(folder: Path, text: str) -> UnplacedBody:
     (draft,) = drafts(folder, f"thing: {text}").values()
     return draft
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError
-from tamp.geometric.loading.initial_poses import FARTHEST, place_bodies
+from tamp.geometric.loading.initial_poses import MAX_COORDINATE_M, place_bodies
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
 from tests.geometric.making import drafts
 
@@ -115,7 +115,7 @@ def test_a_fixed_body_stays_where_it_was_given(tmp_path: Path) -> None:
             "a: it reaches 0.010 m below the floor. Or say 'fixed: true'",
         ),
         (
-            f"a: {{sphere: 0.1, at: [{2 * FARTHEST}, 0, 1]}}",
+            f"a: {{sphere: 0.1, at: [{2 * MAX_COORDINATE_M}, 0, 1]}}",
             "a: it is farther than 100000 m from the world's origin",
         ),
     ],

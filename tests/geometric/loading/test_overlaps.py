@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from tamp.geometric.loading.overlaps import TOLERANCE, Overlap, find_overlaps
+from tamp.geometric.loading.overlaps import OVERLAP_TOLERANCE_M, Overlap, find_overlaps
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
 from tests.geometric.making import body, cuboid, hull, scene
@@ -38,7 +38,8 @@ def test_a_ball_in_a_box_and_a_ball_in_a_ball() -> None:
 
 
 @pytest.mark.parametrize(
-    ("gap", "count"), [(0.01, 0), (0.0, 0), (-0.5 * TOLERANCE, 0), (-2.0 * TOLERANCE, 1)]
+    ("gap", "count"),
+    [(0.01, 0), (0.0, 0), (-0.5 * OVERLAP_TOLERANCE_M, 0), (-2.0 * OVERLAP_TOLERANCE_M, 1)],
 )
 def test_touching_within_a_millimetre_is_no_overlap(gap: float, count: int) -> None:
     assert len(overlaps(body("a", CUBE, (0, 0, 0)), body("b", CUBE, (0.2 + gap, 0, 0)))) == count

@@ -10,7 +10,7 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.geometric.loading.initial_poses import place_bodies
-from tamp.geometric.loading.steadying import TIP, steady, tip
+from tamp.geometric.loading.steadying import MAX_TIP_RAD, steady, tip
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Sphere
 from tests.geometric.making import body, drafts, hull
@@ -49,7 +49,7 @@ def test_an_upright_box_needs_no_turn() -> None:
 
 
 def test_beyond_the_limit_it_is_not_rolled() -> None:
-    assert math.degrees(TIP) == pytest.approx(20.0)
+    assert math.degrees(MAX_TIP_RAD) == pytest.approx(20.0)
     assert tip(leaning(25.0)) is None
 
 
@@ -96,7 +96,7 @@ def test_what_is_round_lies_still_as_it_is() -> None:
 def test_a_ball_is_a_polyhedron_that_rolls_a_little_at_most() -> None:
     turn = tip(body("ball", Sphere(0.05), (0, 0, 1)))
     assert turn is not None
-    assert math.acos(min(1.0, (np.trace(turn) - 1) / 2)) < TIP
+    assert math.acos(min(1.0, (np.trace(turn) - 1) / 2)) < MAX_TIP_RAD
 
 
 def test_a_tilted_body_is_laid_down_with_a_word_about_it(tmp_path: Path) -> None:

@@ -5,9 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.arm import CHECKS, plan_arm
+from tamp.geometric.motion.arm import MAX_EDGE_CHECKS, plan_arm
 from tamp.geometric.motion.path import length
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 from tests.clock import unhindered
@@ -17,7 +17,7 @@ START, GOAL = np.array([-1.0, *[0.0] * 6]), np.array([1.0, *[0.0] * 6])
 BASE = np.array([0.3, -0.2, 1.0])
 
 
-def _plan(checker: Sampled, goals: Array = GOAL, seed: int = 0, **options: int) -> Planned:
+def _plan(checker: Sampled, goals: Array = GOAL, seed: int = 0, **options: int) -> MotionResult:
     return plan_arm(
         checker,
         BASE,
@@ -55,12 +55,12 @@ def test_the_checks_are_counted_and_bounded() -> None:
     checker = Sampled(lambda conf: abs(conf[3]) < 0.2, 0.1)  # a wall without a gap
     planned = _plan(checker, effort=0)
     assert not planned and planned.failure is Failure.EXHAUSTED
-    assert planned.checks == checker.edges <= CHECKS + 5
+    assert planned.checks == checker.edges <= MAX_EDGE_CHECKS + 5
 
 
 def test_more_effort_allows_more_checks() -> None:
     checker = Sampled(lambda conf: abs(conf[3]) < 0.2, 0.2)
-    assert _plan(checker, effort=1).checks >= 4 * CHECKS
+    assert _plan(checker, effort=1).checks >= 4 * MAX_EDGE_CHECKS
 
 
 def test_the_failure_names_the_end_that_collides() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion.base import plan_base
-from tamp.geometric.motion.result import Failure, Planned
+from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
@@ -19,7 +19,7 @@ START, GOAL = np.array([-2.0, 0.0, 3.0]), np.array([2.0, 0.0, -3.0])
 
 def _plan(
     checker: Sampled, start: Array = START, goal: Array = GOAL, seed: int = 0, steering: str = "se2"
-) -> Planned:
+) -> MotionResult:
     return plan_base(
         checker,
         ARM,

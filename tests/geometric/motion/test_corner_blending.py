@@ -16,8 +16,8 @@ from tamp.geometric.motion.corner_blending import (
     SHARE,
     STEP,
     Corner,
+    blend,
     corners,
-    lay,
 )
 
 PUSH = np.array([2.0, 2.0])
@@ -34,7 +34,7 @@ def nowhere(start: np.ndarray, end: np.ndarray) -> bool:
 
 def test_without_a_checker_the_motion_rests_at_each_sharp_corner() -> None:
     first, elbow, last = corners(ELBOW, PUSH)
-    assert (first.taken, elbow.taken, last.taken) == (0.0, 0.0, 0.0)
+    assert (first.blend_length, elbow.blend_length, last.blend_length) == (0.0, 0.0, 0.0)
     assert (elbow.before.tolist(), elbow.after.tolist()) == ([1.0, 0.0], [0.0, 1.0])
     assert elbow.bend.tolist() == [0.0, 0.0]
 
@@ -45,7 +45,7 @@ def test_a_free_corner_is_rounded_by_a_share_of_the_shorter_edge_up_to_a_limit(
 ) -> None:
     path = np.array([[0.0, 0.0], [edge, 0.0], [edge, 9.0]])
     _, elbow, _ = corners(path, PUSH, anywhere)
-    assert elbow.reach == pytest.approx(reach) and elbow.taken == elbow.reach
+    assert elbow.reach == pytest.approx(reach) and elbow.blend_length == elbow.reach
 
 
 def test_the_rounding_is_the_parabola_that_touches_both_edges() -> None:
@@ -85,7 +85,7 @@ def test_smaller_roundings_are_tried_where_larger_ones_hit() -> None:
 
 def test_where_no_rounding_is_free_the_motion_rests() -> None:
     _, elbow, _ = corners(ELBOW, PUSH, nowhere)
-    assert elbow.taken == 0.0
+    assert elbow.blend_length == 0.0
 
 
 def test_close_samples_of_a_curve_are_passed_as_they_are() -> None:
@@ -93,7 +93,7 @@ def test_close_samples_of_a_curve_are_passed_as_they_are() -> None:
     curve = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     first, *inner, last = corners(curve, PUSH, nowhere)
     assert all(corner.window > 0.0 and corner.reach == 0.0 for corner in inner)
-    assert first.taken == last.taken == 0.0
+    assert first.blend_length == last.blend_length == 0.0
 
 
 def test_a_straight_vertex_is_passed_whatever_the_limits() -> None:
@@ -103,7 +103,7 @@ def test_a_straight_vertex_is_passed_whatever_the_limits() -> None:
 
 
 def test_a_rail_runs_through_the_rounding_and_its_stations_grow() -> None:
-    rail = lay(corners(ELBOW, PUSH, anywhere))
+    rail = blend(corners(ELBOW, PUSH, anywhere))
     assert rail.positions[0].tolist() == [0.0, 0.0] and rail.positions[-1].tolist() == [1.0, 1.0]
     assert (np.diff(rail.stations) > 0.0).all()
     assert rail.stations[-1] == pytest.approx(2.0)  # a rounding counts as its two legs
@@ -114,26 +114,28 @@ def test_a_rail_runs_through_the_rounding_and_its_stations_grow() -> None:
 
 
 def test_tangents_are_what_the_positions_do_by_station() -> None:
-    rail = lay(corners(ELBOW, PUSH, anywhere))
+    rail = blend(corners(ELBOW, PUSH, anywhere))
     slopes = np.diff(rail.positions, axis=0) / np.diff(rail.stations)[:, None]
     middles = 0.5 * (rail.tangents[1:] + rail.tangents[:-1])
     assert slopes == pytest.approx(middles, abs=1e-9)  # exact for lines and parabolas
-    assert (rail.steepest >= np.abs(rail.tangents) - 1e-12).all()
+    assert (rail.max_derivative >= np.abs(rail.tangents) - 1e-12).all()
 
 
 def test_bends_act_within_the_rounding_alone() -> None:
     passed = corners(ELBOW, PUSH, anywhere)
-    rail = lay(passed)
+    rail = blend(passed)
     inside = np.linalg.norm(rail.positions - [1.0, 0.0], axis=1) < passed[1].reach - 1e-9
-    assert rail.bends_before[inside] == pytest.approx(
+    assert rail.curvature_before[inside] == pytest.approx(
         np.tile(passed[1].bend, (int(inside.sum()), 1))
     )
     outside = np.linalg.norm(rail.positions - [1.0, 0.0], axis=1) > passed[1].reach + 1e-9
-    assert (rail.bends_before[outside] == 0.0).all() and (rail.bends_after[outside] == 0.0).all()
+    assert (rail.curvature_before[outside] == 0.0).all() and (
+        rail.curvature_after[outside] == 0.0
+    ).all()
 
 
 @pytest.mark.parametrize(("length", "parts"), [(0.05, 1), (0.45, 5), (7.0, MOST)])
 def test_a_straight_part_has_nodes_a_step_apart_up_to_a_number(length: float, parts: int) -> None:
-    rail = lay(corners(np.array([[0.0, 0.0], [length, 0.0]]), PUSH))
+    rail = blend(corners(np.array([[0.0, 0.0], [length, 0.0]]), PUSH))
     assert len(rail.stations) == parts + 1 and rail.straight.all()
     assert parts == MOST or np.diff(rail.stations).max() <= STEP + 1e-12

@@ -7,18 +7,18 @@ import math
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.corner_blending import Rail, corners, lay
+from tamp.geometric.motion.corner_blending import BlendedPath, blend, corners
 from tamp.geometric.motion.parametrization import speeds
 
 FAST = np.array([1e3, 1e3])
 
 
-def straight(end: tuple[float, float], count: int = 201) -> Rail:
+def straight(end: tuple[float, float], count: int = 201) -> BlendedPath:
     """A straight rail with many nodes, at which the acceleration may change."""
     station = np.linspace(0.0, math.hypot(*end), count)
     u = np.array(end) / math.hypot(*end)
     rows, zero = np.tile(u, (count, 1)), np.zeros((count, 2))
-    return Rail(
+    return BlendedPath(
         station[:, None] * u,
         station,
         rows,
@@ -67,13 +67,13 @@ def test_it_begins_and_ends_at_rest() -> None:
 def test_through_a_rounding_it_goes_no_faster_than_the_bend_allows() -> None:
     push = np.array([1.0, 1.0])
     passed = corners(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]), push, lambda a, b: True)
-    rail = lay(passed)
+    rail = blend(passed)
     rates = speeds(rail, FAST, push)
     assert rates is not None
     # At a constant rate r the acceleration is bend r^2 in each coordinate; there is no slower way than that.
-    bent = np.abs(rail.bends_before).max(axis=1) > 0.0
+    bent = np.abs(rail.curvature_before).max(axis=1) > 0.0
     assert bent.any()
-    assert (np.abs(rail.bends_before[bent]) * rates[bent, None] ** 2 <= push + 1e-6).all()
+    assert (np.abs(rail.curvature_before[bent]) * rates[bent, None] ** 2 <= push + 1e-6).all()
     assert rates[bent].min() > 0.5 * math.sqrt(
         1.0 / np.abs(passed[1].bend).max()
     )  # and not needlessly slow

@@ -13,7 +13,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
-from tamp.geometric.robot.reachability import BROAD, Reachability, asset
+from tamp.geometric.robot.reachability import BROAD_SHARE, Reachability, asset
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 
@@ -75,7 +75,7 @@ def test_every_reachable_placement_can_be_drawn(robot: Robot, reachability: Reac
     bases = reachability.sample(TOP, rng, 4000)
     feet = np.array([(base_matrix(base) @ [*foot, 1.0])[:2] for base in bases])
     drawn = np.linalg.norm(feet - TOP[:2, 3], axis=1)
-    assert BROAD > 0 and np.max(drawn) > max(distances) - 0.01 and np.min(drawn) < 0.1
+    assert BROAD_SHARE > 0 and np.max(drawn) > max(distances) - 0.01 and np.min(drawn) < 0.1
 
 
 def test_a_tool_pose_outside_the_table_still_gets_samples(reachability: Reachability) -> None:

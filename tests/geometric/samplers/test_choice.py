@@ -9,10 +9,10 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.geometric.samplers.choice import (
-    ANY,
-    Choice,
+    ANY_RELATION,
+    SamplerSpec,
+    make_mixture,
     maker,
-    mix,
     parse_choice,
     sampler_choices,
     sampler_files,
@@ -27,20 +27,20 @@ def learned(relation: str = "", file: Path | None = None) -> UniformPlacements:
     return made
 
 
-KNOWN = {**SAMPLERS, "on": {**SAMPLERS["on"], "learned": learned}, ANY: {".npz": learned}}
+KNOWN = {**SAMPLERS, "on": {**SAMPLERS["on"], "learned": learned}, ANY_RELATION: {".npz": learned}}
 
 
 @pytest.mark.parametrize(
     ("text", "choice"),
     [
-        ("surface", Choice("surface", alone=True)),  # hand-made ones are alone by themselves
-        ("surface:mixed", Choice("surface", alone=False)),
-        ("learned", Choice("learned", alone=False)),
-        ("learned:alone", Choice("learned", alone=True)),
-        ("learned:mixed", Choice("learned", alone=False)),
+        ("surface", SamplerSpec("surface", alone=True)),  # hand-made ones are alone by themselves
+        ("surface:mixed", SamplerSpec("surface", alone=False)),
+        ("learned", SamplerSpec("learned", alone=False)),
+        ("learned:alone", SamplerSpec("learned", alone=True)),
+        ("learned:mixed", SamplerSpec("learned", alone=False)),
     ],
 )
-def test_a_name_with_or_without_a_mode(text: str, choice: Choice) -> None:
+def test_a_name_with_or_without_a_mode(text: str, choice: SamplerSpec) -> None:
     found = parse_choice("on", text, KNOWN)
     assert found == choice
     assert parse_choice("on", found.text, KNOWN) == choice  # what is written down is read back
@@ -52,7 +52,7 @@ def test_a_name_with_or_without_a_mode(text: str, choice: Choice) -> None:
     ("relation", "text", "words"),
     [
         ("un", "surface", "unknown relation 'un'.*Choices: on, inside.*Of one's own: un=FILE.npz"),
-        (ANY, "surface", r"unknown relation '\*'"),
+        (ANY_RELATION, "surface", r"unknown relation '\*'"),
         ("on", "surfase", "unknown sampler 'surfase' for 'on'.*Did you mean 'surface'?"),
         (
             "on",
@@ -72,23 +72,28 @@ def test_what_nobody_knows_is_refused_with_the_choices(
 
 def test_a_file_serves_any_relation_by_its_whole_path(tmp_path: Path) -> None:
     found = parse_choice("upright", "w:1.npz:alone", KNOWN, tmp_path)
-    assert found == Choice(str(tmp_path / "w:1.npz"), alone=True)  # a colon in a name is part of it
-    assert parse_choice("on", "w.npz", KNOWN) == Choice(os.path.abspath("w.npz"), alone=False)
+    assert found == SamplerSpec(
+        str(tmp_path / "w:1.npz"), alone=True
+    )  # a colon in a name is part of it
+    assert parse_choice("on", "w.npz", KNOWN) == SamplerSpec(os.path.abspath("w.npz"), alone=False)
     assert parse_choice("on", "/a/../b.npz", KNOWN).name == "/b.npz"
 
 
 def test_who_makes_it() -> None:
-    assert isinstance(maker("on", Choice("surface", True), KNOWN)(), SurfacePlacements)
-    made = maker("upright", Choice("/w.npz", False), KNOWN)()
+    assert isinstance(maker("on", SamplerSpec("surface", True), KNOWN)(), SurfacePlacements)
+    made = maker("upright", SamplerSpec("/w.npz", False), KNOWN)()
     assert made.made_of == ("upright", Path("/w.npz"))  # type: ignore[union-attr]
 
 
 def test_a_mixture_has_the_hand_made_one_beside_it_unless_alone() -> None:
     given = UniformPlacements()
-    assert list(mix("on", Choice("learned", False), given).names) == ["learned", "surface"]
-    assert list(mix("on", Choice("learned", True), given).names) == ["learned"]
-    assert list(mix("on", Choice("surface", False), given).names) == ["surface"]
-    assert list(mix("upright", Choice("/x/w.npz", False), given).names) == ["w.npz"]
+    assert list(make_mixture("on", SamplerSpec("learned", False), given).names) == [
+        "learned",
+        "surface",
+    ]
+    assert list(make_mixture("on", SamplerSpec("learned", True), given).names) == ["learned"]
+    assert list(make_mixture("on", SamplerSpec("surface", False), given).names) == ["surface"]
+    assert list(make_mixture("upright", SamplerSpec("/x/w.npz", False), given).names) == ["w.npz"]
 
 
 def test_files_among_samplers_come_with_their_cards() -> None:

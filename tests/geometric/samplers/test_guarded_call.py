@@ -11,7 +11,7 @@ import pytest
 from numpy.random import Generator as Random
 
 import tamp
-from tamp.geometric.samplers.guarded_call import Misbehaved, ask
+from tamp.geometric.samplers.guarded_call import SamplerFault, propose_safely
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.placement import Placement
 from tamp.system.deadline import Deadline
@@ -33,7 +33,9 @@ class Says:
 
 def asked(*items: Any, count: int = 4) -> list[Any]:
     rng = np.random.default_rng(0)
-    return ask(Says(*items), SCENE, (BODY, REGION), count, rng, Deadline(10.0), seconds=5.0)
+    return propose_safely(
+        Says(*items), SCENE, (BODY, REGION), count, rng, Deadline(10.0), seconds=5.0
+    )
 
 
 def test_placements_and_poses_may_be_mixed() -> None:
@@ -64,6 +66,6 @@ def test_numbers_of_numpy_become_plain_ones() -> None:
     ],
 )
 def test_what_cannot_be_used_is_named_when_nothing_else_was_proposed(wrong: Any, said: str) -> None:
-    with pytest.raises(Misbehaved, match=said):
+    with pytest.raises(SamplerFault, match=said):
         asked(wrong)
     assert asked(wrong, GOOD) == [GOOD]

@@ -11,7 +11,13 @@ import pytest
 from numpy.random import Generator as Random
 
 from tamp import load_problem, solve
-from tamp.geometric.samplers.mixture import ENOUGH, PATIENCE, VAIN, Ledger, Mixture
+from tamp.geometric.samplers.mixture import (
+    EXPECTED_SUCCESSES,
+    FREE_SECONDS,
+    WASTED_POSE_WORK,
+    Mixture,
+    SamplerStatistics,
+)
 from tamp.geometric.samplers.placements import SurfacePlacements, UniformPlacements
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.placement import Placement
@@ -60,7 +66,7 @@ def test_a_hostile_generator_costs_no_success(name: str, without: Solution) -> N
         assert len(solution.warnings) <= 1
     (account,) = [account for account in solution.samplers["on"] if account.name == "given"]
     assert (
-        account.seconds < 2 * PATIENCE + 0.1 * solution.seconds["total"] + 0.3
+        account.seconds < 2 * FREE_SECONDS + 0.1 * solution.seconds["total"] + 0.3
     )  # the last: a busy machine
 
 
@@ -146,18 +152,20 @@ def test_hand_made_ones_are_alone_unless_mixed(
     assert problem.samplers["on"] == text
 
 
-def ledger() -> Ledger:
-    return Ledger("on", Mixture(("new", "trusted"), (Learned(), Learned())))
+def ledger() -> SamplerStatistics:
+    return SamplerStatistics("on", Mixture(("new", "trusted"), (Learned(), Learned())))
 
 
-def run(ledger: Ledger, acceptance: tuple[float, float], steps: int, rng: Random) -> None:
+def run(
+    ledger: SamplerStatistics, acceptance: tuple[float, float], steps: int, rng: Random
+) -> None:
     """Judge one proposal of whoever is next, `steps` times."""
     for step in range(steps):
         account = ledger.accounts[ledger.order()[0]]
         accepted = rng.random() < acceptance[ledger.accounts.index(account)]
         ledger.judged(account, None if accepted else "no")
         if accepted:
-            ledger.passed_on(account, (f"body{step}",))
+            ledger.accepted(account, (f"body{step}",))
 
 
 def test_work_is_shared_in_proportion_to_acceptance(rng: Random) -> None:
@@ -173,14 +181,14 @@ def test_a_pose_that_is_asked_for_anew_was_in_vain() -> None:
     new, trusted = book.accounts
     for number in range(3):
         book.judged(new, None)
-        book.passed_on(new, ("mug",))
-        assert new.kept == 1 and new.work == 1.0 + (1.0 + VAIN) * number
+        book.accepted(new, ("mug",))
+        assert new.kept == 1 and new.work == 1.0 + (1.0 + WASTED_POSE_WORK) * number
         book.asked(("mug",))
         assert new.kept == 0
     assert book.useless() is None  # nothing is known yet of the other one
     book.judged(trusted, None)
-    book.passed_on(trusted, ("mug",))
-    assert new.work > ENOUGH
+    book.accepted(trusted, ("mug",))
+    assert new.work > EXPECTED_SUCCESSES
     assert book.useless() is new and new.out is not None and "led nowhere" in new.out
     assert book.order() == [1] and book.useless() is None
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.samplers.placements import (
-    GROWTH,
+    BOX_GROWTH_SHARE,
     KEEP_FACE,
     SurfacePlacements,
     UniformPlacements,
@@ -91,7 +91,7 @@ def test_uniform_poses_fill_the_grown_box_of_the_regions_body() -> None:
     poses = UniformPlacements().propose(SCENE, ("brick", "table"), 3000, np.random.default_rng(0))
     positions = np.array([pose.position for pose in poses])
     # The table is 1 x 0.6 x 0.5 m about (1, -0.5, 0.25); it grows by half of half a metre on each side.
-    grown = GROWTH * 0.5
+    grown = BOX_GROWTH_SHARE * 0.5
     low, high = np.array([0.5, -0.8, 0.0]) - grown, np.array([1.5, -0.2, 0.5]) + grown
     assert (positions >= low).all() and (positions <= high).all()
     assert positions.mean(axis=0) == pytest.approx((low + high) / 2, abs=0.03)

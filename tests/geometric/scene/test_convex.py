@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tamp.geometric.scene.convex import TOLERANCE, directions, hull_of, simplified, thickened
+from tamp.geometric.scene.convex import HULL_TOLERANCE_M, directions, hull_of, simplified, thickened
 from tests.geometric.making import cuboid
 
 
@@ -72,7 +72,7 @@ def test_a_simplified_ball_has_fewer_corners_and_lies_within_half_a_millimetre()
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     beyond = ball @ normals.T - np.einsum("ij,ij->i", a, normals)
-    assert beyond.max() <= TOLERANCE + 1e-12
+    assert beyond.max() <= HULL_TOLERANCE_M + 1e-12
 
 
 def test_a_simplified_box_keeps_its_corners() -> None:

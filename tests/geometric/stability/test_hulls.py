@@ -9,7 +9,7 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
-from tamp.geometric.stability.hulls import SIDES, body_hull, centre_of_mass, part_mesh
+from tamp.geometric.stability.hulls import CYLINDER_SIDES, body_hull, centre_of_mass, part_mesh
 from tests.geometric.making import cuboid, hull
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -29,7 +29,10 @@ def volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
     [
         (Box((0.2, 0.3, 0.4)), 0.024),
         # A regular prism of n sides in the circle: n / 2 sin(2 pi / n) r^2 h.
-        (Cylinder(0.1, 0.5), SIDES / 2 * math.sin(2 * math.pi / SIDES) * 0.01 * 0.5),
+        (
+            Cylinder(0.1, 0.5),
+            CYLINDER_SIDES / 2 * math.sin(2 * math.pi / CYLINDER_SIDES) * 0.01 * 0.5,
+        ),
         (hull(TETRAHEDRON), 1 / 6),
     ],
     ids=["box", "cylinder", "tetrahedron"],

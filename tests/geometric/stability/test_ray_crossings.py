@@ -9,17 +9,17 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part
-from tamp.geometric.stability.ray_crossings import SEAM, Solid
+from tamp.geometric.stability.ray_crossings import SEAM_WIDTH_M, ConvexUnion
 from tests.geometric.making import cuboid, hull
 
 X = np.array([1.0, 0.0, 0.0])
 
 
-def solid(*parts: Part) -> Solid:
-    return Solid(Body("thing", parts, Pose((9.0, 9.0, 9.0)), True))
+def solid(*parts: Part) -> ConvexUnion:
+    return ConvexUnion(Body("thing", parts, Pose((9.0, 9.0, 9.0)), True))
 
 
-def boxes(*middles: float, width: float = 0.2) -> Solid:
+def boxes(*middles: float, width: float = 0.2) -> ConvexUnion:
     """Boxes of one width in a row along x."""
     return solid(*(Part(Box((width, 0.2, 0.2)), Pose((x, 0.0, 0.0))) for x in middles))
 
@@ -49,7 +49,9 @@ def test_outside_of_the_solid_there_is_no_contact() -> None:
     assert row.solid_at(np.array([-2.0, 0.0, 0.0]), X) is None  # the solid is ahead, not here
 
 
-@pytest.mark.parametrize(("gap", "joined"), [(0.0, True), (0.8 * SEAM, True), (1.5 * SEAM, False)])
+@pytest.mark.parametrize(
+    ("gap", "joined"), [(0.0, True), (0.8 * SEAM_WIDTH_M, True), (1.5 * SEAM_WIDTH_M, False)]
+)
 def test_parts_join_into_one_stretch_across_a_seam(gap: float, joined: bool) -> None:
     step = 0.2 + gap
     contact = boxes(0.0, step, 2 * step).solid_at(np.zeros(3), X)

@@ -10,8 +10,8 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.streams import approach, collisions
-from tamp.geometric.streams.approach import LIFT, RETREAT, approach_hits
-from tamp.geometric.streams.collisions import NEIGHBOUR
+from tamp.geometric.streams.approach import LIFT_DISTANCE_M, RETREAT_DISTANCE_M, approach_hits
+from tamp.geometric.streams.collisions import NEIGHBOUR_CLEARANCE_M
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import Problem
 from tamp.stream import Rejection, RejectionKind
@@ -66,7 +66,11 @@ def test_a_body_above_is_in_the_way_as_far_as_the_hand_draws_back(
     other = shifted(start(problem), z=above)
     found = approach_hits(problem.context, start(problem), from_above(), [("lamp", other)])
     # The lamp is 0.4 m high: its foot is 0.2 m lower. The hand is about 0.17 m long above the tool, which is at 0.04.
-    assert (found == "lamp") == hits == (above - 0.2 < 0.04 + 0.17 + LIFT + RETREAT)
+    assert (
+        (found == "lamp")
+        == hits
+        == (above - 0.2 < 0.04 + 0.17 + LIFT_DISTANCE_M + RETREAT_DISTANCE_M)
+    )
 
 
 def test_a_movable_body_in_the_way_is_named_as_a_blocker(problem: Problem) -> None:
@@ -86,7 +90,8 @@ def test_a_movable_body_in_the_way_is_named_as_a_blocker(problem: Problem) -> No
 
 
 @pytest.mark.parametrize(
-    ("gap", "clear"), [(2 * NEIGHBOUR, True), (0.5 * NEIGHBOUR, False), (-0.01, False)]
+    ("gap", "clear"),
+    [(2 * NEIGHBOUR_CLEARANCE_M, True), (0.5 * NEIGHBOUR_CLEARANCE_M, False), (-0.01, False)],
 )
 def test_placed_bodies_keep_some_air(problem: Problem, gap: float, clear: bool) -> None:
     upright = Pose((0.0, 0.0, 2.0))

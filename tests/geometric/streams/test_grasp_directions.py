@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
-from tamp.geometric.stability.ray_crossings import Solid
+from tamp.geometric.stability.ray_crossings import ConvexUnion
 from tamp.geometric.streams.grasp_directions import (
-    LEVEL,
     LEVEL_CLOSING,
+    MAX_UPWARD_PART,
     across,
     angles,
     closing_axes,
@@ -32,9 +32,9 @@ def axes(
     shape: Shape, widest: float = 0.08, up: np.ndarray = UP, pose: Pose = Pose()
 ) -> np.ndarray:
     body = Body("thing", (Part(shape, pose),), Pose(), True)
-    return np.array(closing_axes(body, Solid(body), up, widest, np.random.default_rng(0))).reshape(
-        -1, 3
-    )
+    return np.array(
+        closing_axes(body, ConvexUnion(body), up, widest, np.random.default_rng(0))
+    ).reshape(-1, 3)
 
 
 def has(found: np.ndarray, direction: list[float]) -> bool:
@@ -99,7 +99,7 @@ def test_straight_approaches_come_from_above_and_the_sides() -> None:
     assert all(closing @ approach == pytest.approx(0.0, abs=1e-12) for closing, approach in found)
     heights = sorted(round(float(approach @ UP), 9) for _, approach in found)
     assert heights == [-1.0, 0.0, 0.0]  # down and from both sides, never up
-    assert all(approach @ UP < LEVEL for _, approach in found)
+    assert all(approach @ UP < MAX_UPWARD_PART for _, approach in found)
 
 
 def test_slanted_approaches_are_between_down_and_level() -> None:

@@ -15,10 +15,15 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
-from tamp.geometric.stability.ray_crossings import Solid
-from tamp.geometric.streams.firmness import GRAVITY, strain
+from tamp.geometric.stability.ray_crossings import ConvexUnion
+from tamp.geometric.streams.firmness import GRAVITY_M_S2, strain
 from tamp.geometric.streams.grasps import sample_grasps
-from tamp.geometric.streams.hand_fit import CLEARANCE, CONE, Closed, HandFit
+from tamp.geometric.streams.hand_fit import (
+    FRICTION_CONE_RAD,
+    HAND_CLEARANCE_M,
+    Closed,
+    GraspChecker,
+)
 from tamp.geometric.streams.sampling import sample_grasp
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import load_problem
@@ -115,7 +120,7 @@ def test_grasps_hold(robot: Robot, name: str) -> None:
 @pytest.mark.parametrize("name", sorted(BODIES))
 def test_contacts_oppose_each_other(robot: Robot, name: str) -> None:
     thing = BODIES[name]
-    solid = Solid(thing)
+    solid = ConvexUnion(thing)
     opposed = 0
     for grasp in first(robot, thing, 25):
         T = grasp.T_tool_body.inverse().matrix
@@ -124,8 +129,8 @@ def test_contacts_oppose_each_other(robot: Robot, name: str) -> None:
             if contact is not None and contact.end - contact.start > grasp.opening - 0.004:
                 assert abs(contact.start + contact.end) < 0.004
                 opposed += contact.end_normal @ T[:3, 1] > math.cos(
-                    CONE
-                ) and -contact.start_normal @ T[:3, 1] > math.cos(CONE)
+                    FRICTION_CONE_RAD
+                ) and -contact.start_normal @ T[:3, 1] > math.cos(FRICTION_CONE_RAD)
     assert opposed >= 25
 
 
@@ -203,7 +208,7 @@ def test_the_hand_grasps_up_to_its_opening_less_the_clearance(
     grasps = first(robot, body(Box((width, width, 0.12))), 3)
     assert bool(grasps) is fits
     for grasp in grasps:
-        assert width <= grasp.opening <= robot.opening - CLEARANCE + 0.002
+        assert width <= grasp.opening <= robot.opening - HAND_CLEARANCE_M + 0.002
 
 
 def test_a_grasp_is_strained_by_weight_times_lever() -> None:
@@ -223,7 +228,7 @@ def test_a_grasp_is_strained_by_weight_times_lever() -> None:
     arm = (
         1.3
         * 0.5
-        * GRAVITY
+        * GRAVITY_M_S2
         * 0.12
         / (2 * 25.0 * (0.001 + float(np.linalg.norm(patch, axis=1).mean())))
     )
@@ -293,14 +298,14 @@ def test_a_fair_grasp_does_not_wait_for_random_ones(
 ) -> None:
     """Neither do firm random ones wait for each other."""
     closed: list[bool] = []
-    close = HandFit.close
+    close = GraspChecker.close
 
-    def counted(fit: HandFit, T_body_tool: np.ndarray) -> Closed | None:
+    def counted(fit: GraspChecker, T_body_tool: np.ndarray) -> Closed | None:
         found = close(fit, T_body_tool)
         closed.append(found is not None)
         return found
 
-    monkeypatch.setattr(HandFit, "close", counted)
+    monkeypatch.setattr(GraspChecker, "close", counted)
     heavy = replace(body(Box((0.05, 0.06, 0.15))), mass=2.1)
     assert len(first(robot, heavy, 3)) == 3
     assert sum(closed) < 20

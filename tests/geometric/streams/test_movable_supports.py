@@ -11,7 +11,7 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.streams.collisions import near
-from tamp.geometric.streams.loads import TILT, Level
+from tamp.geometric.streams.loads import LOADED_TILT_RAD, Level
 from tamp.geometric.streams.movable_supports import (
     inside,
     sample_inside_movable,
@@ -123,10 +123,10 @@ def test_a_load_is_level_at_home_and_not_when_the_wrist_turns(problem: Problem) 
     level = Level(context, context.collisions.arrangement({}), grasp, np.array([0.0, 0.0, 1.0]))
     assert level.tilt(conf) < 1e-6
     leaning = conf.copy()
-    leaning[3 + 5] += 2 * TILT
-    assert level.tilt(leaning) == pytest.approx(2 * TILT, abs=1e-6)
+    leaning[3 + 5] += 2 * LOADED_TILT_RAD
+    assert level.tilt(leaning) == pytest.approx(2 * LOADED_TILT_RAD, abs=1e-6)
     back = conf.copy()
-    back[3 + 5] -= 2 * TILT
+    back[3 + 5] -= 2 * LOADED_TILT_RAD
     assert not level.free(leaning) and not level.edge_free(leaning, back)
 
 

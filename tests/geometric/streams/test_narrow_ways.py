@@ -10,7 +10,7 @@ import numpy as np
 
 from tamp.geometric.streams.approach import test_approach as approach_test
 from tamp.geometric.streams.grasps import sample_grasps
-from tamp.geometric.streams.narrow_ways import ANYWAY, LOOKED_AT, promising
+from tamp.geometric.streams.narrow_ways import KEEP_EVERY, LOOKED_AT, promising
 from tamp.geometric.streams.sampling import sample_grasp
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import load_problem
@@ -70,4 +70,4 @@ def test_where_no_way_is_free_every_tenth_comes_through() -> None:
                 yield T
 
     found = list(itertools.islice(promising(counted(), lambda _: False), LOOKED_AT + 5))
-    assert len(found) == LOOKED_AT + 5 and drawn == LOOKED_AT + 5 * ANYWAY
+    assert len(found) == LOOKED_AT + 5 and drawn == LOOKED_AT + 5 * KEEP_EVERY

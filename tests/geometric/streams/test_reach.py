@@ -13,7 +13,7 @@ from tamp.geometric.collision.collisions import Attachment
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
 from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.streams.approach import LIFT, RETREAT, test_approach
+from tamp.geometric.streams.approach import LIFT_DISTANCE_M, RETREAT_DISTANCE_M, test_approach
 from tamp.geometric.streams.inverse_kinematics import inverse_kinematics
 from tamp.geometric.streams.reach import test_reachable
 from tamp.geometric.streams.sampling import sample_grasp, sample_inside
@@ -117,8 +117,8 @@ def test_inverse_kinematics_yields_straight_certified_reaches(name: str, tmp_pat
                 for at in (conf[0][-1], conf[1][0]):
                     assert np.abs(context.kinematics.tool(at) - wanted).max() < 1e-5
                 back = -wanted[:3, 2]
-                up = np.array([0.0, 0.0, LIFT])
-                begin = wanted[:3, 3] + RETREAT * back
+                up = np.array([0.0, 0.0, LIFT_DISTANCE_M])
+                begin = wanted[:3, 3] + RETREAT_DISTANCE_M * back
                 assert straight(context, conf[0], begin, wanted[:3, 3]) < 0.002
                 rows = next(
                     i

@@ -212,7 +212,11 @@ def test_flat_is_proven_only_where_no_finger_gets_under_it(
         HIGH.format(height=1.0, thing=f"cup: {{{thing}}}", goal="board"), encoding="utf-8"
     )
     problem = load_problem(path)
-    assert (too_flat(problem.context, "cup", problem.scene.bodies["cup"].pose) is not None) is flat
+    found = too_flat(problem.context, "cup", problem.scene.bodies["cup"].pose)
+    assert (found is not None) is flat
+    if found is not None:
+        assert found.kind is RejectionKind.NO_GRASP
+        assert found.bodies and all(name in found.reason for name in found.bodies)
     if flat:  # the same by brute force: the hand hits the table with every grasp that there is
         tries = sample_grasp(problem.context, "cup", call())
         grasps = values(tries, 60, most=400)

@@ -16,6 +16,7 @@ from tamp.planner.solution import Action, Solution
 from tamp.planner.suggestions.changes import changes
 from tamp.planner.suggestions.why import Suggestions, suggest_changes
 from tamp.planner.timed_trajectories import Trajectory
+from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.result import Outcome
 
 BY_NAME = {make.__name__: (number, make) for number, make in enumerate(KINDS)}
@@ -150,3 +151,21 @@ def test_what_is_proven_needs_no_second_run(
     found = asked(tmp_path, Outcome.INFEASIBLE)
     assert [one.text for one in found.suggestions] == ["without monitor"]
     assert len(spent) == 3 + len(found.failed)
+
+
+def test_what_the_causes_are_about_is_tried_first_whatever_their_words_say(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written("covered", tmp_path, 2)
+    problem = load_problem(path)
+    outcomes(monkeypatch, {}, [])
+    tried: list[str] = []
+    cause = Cause("other_0 says nothing of it", CauseKind.FAILED, ("monitor",))
+    solution = Solution(problem, Outcome.INFEASIBLE, 0, "adaptive", causes=(cause,))
+    suggest_changes(
+        solution, lambda scene: load_problem(path, scene=scene), max_time=30.0, trying=tried.append
+    )
+    about = {change.text: change.about for change in changes(problem)}
+    first = [text.removeprefix("trying ").rpartition(" (")[0] for text in tried]
+    among = ["monitor" in about[text] for text in first if text in about]
+    assert True in among and False in among and among == sorted(among, reverse=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tamp.stream import Rejection
+from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.outcomes import (
     end_result,
     infeasible_result,
@@ -73,7 +74,8 @@ def test_an_end_from_outside_says_what_was_tried(
 def test_a_run_without_a_plan_yet_says_so() -> None:
     run, _ = planned("(put tea)")
     assert end_result(run, Outcome.TIMEOUT).explanation == ("no action plan was found yet",)
-    assert end_result(run, Outcome.TIMEOUT, ("why",)).explanation == ("why",)
+    why = Cause("why", CauseKind.REFUTED)
+    assert end_result(run, Outcome.TIMEOUT, (why,)).explanation == ("why",)
 
 
 def test_values_that_the_replay_refuses_are_told_and_others_are_found() -> None:

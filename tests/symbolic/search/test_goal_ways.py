@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.goal_ways import ALTERNATIVES, Way, goal_parts
-from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask
+from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Meaning
 
 FLUENTS: list[Fact] = [("a",), ("b",), ("c",)]
 DERIVED: list[Fact] = [("p",), ("q",), ("r",)]
@@ -26,7 +26,9 @@ def axiom(head: str, positive: str = "", negative: str = "") -> Axiom:
 
 
 def task(goal: Goal, *axioms: Axiom, meanings: tuple[str, ...] = ()) -> InstantiatedTask:
-    return InstantiatedTask(frozenset(), goal, (), axioms, frozenset(), dict.fromkeys(meanings, ""))
+    return InstantiatedTask(
+        frozenset(), goal, (), axioms, frozenset(), dict.fromkeys(meanings, Meaning(""))
+    )
 
 
 def closure(state: frozenset[Fact], axioms: Iterable[Axiom]) -> frozenset[Fact]:

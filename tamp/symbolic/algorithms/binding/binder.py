@@ -31,7 +31,7 @@ class Binder:
         self._experience = experience
         self._deadline = deadline
         self.draws = 0
-        self._met: list[tuple[Node, Instance]] = []
+        self._exhausted_met: list[tuple[Node, Instance]] = []
 
     def bind(
         self,
@@ -58,7 +58,7 @@ class Binder:
         levels = Levels(skeleton.users, fresh)
 
         spent_before = self.draws
-        self._met.clear()
+        self._exhausted_met.clear()
         refusals = 0
 
         def enter(index: int) -> Level:
@@ -93,10 +93,10 @@ class Binder:
                 if not conflict or self.draws - spent_before > budget:
                     if self.draws == spent_before:
                         # nothing is left to draw: what is known to fail failed once more
-                        for node, instance in self._met:
+                        for node, instance in self._exhausted_met:
                             self._note(node, instance, False)
                     if not conflict:
-                        self._settle(nodes, index)
+                        self._evaluate_remaining_tests(nodes, index)
                     return None
 
                 target = max(conflict)
@@ -109,7 +109,7 @@ class Binder:
             levels.take(index, outputs)
             values.update(zip(nodes[index].outputs, outputs, strict=True))
 
-    def _settle(self, nodes: Sequence[Node], failed: int) -> None:
+    def _evaluate_remaining_tests(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
 
         Not those that rest on what a test of this skeleton has yet to certify.
@@ -192,7 +192,7 @@ class Binder:
                 yield outputs
 
         if instance.exhausted and not instance.results:
-            self._met.append((node, instance))
+            self._exhausted_met.append((node, instance))
         draws = 1 if node.stream.is_test else max(1, tries // 4) if node.stream.is_fluent else tries
         for _ in range(draws if fresh else max(draws - len(earlier), (draws + 1) // 2)):
             if self._deadline.passed:

@@ -27,6 +27,8 @@ class FailureCount:
         successes: Those that came, or held.
         reasons: Why the others did not.
         in_the_way: The objects that they hit or that blocked them, counted.
+        objects: Those of the problem that the action is about.
+        bodies: The objects that the reasons name, counted.
     """
 
     action: str
@@ -35,6 +37,8 @@ class FailureCount:
     successes: int = 0
     reasons: Counter[str] = field(default_factory=Counter[str])
     in_the_way: Counter[str] = field(default_factory=Counter[str])
+    objects: tuple[str, ...] = ()
+    bodies: Counter[str] = field(default_factory=Counter[str])
 
     @property
     def failures(self) -> int:
@@ -73,22 +77,24 @@ def failure_counts(
     counted: set[tuple[str, str, Fact]] = set()
     for skeleton in skeletons[-MAX_SKELETONS:]:
         users = _users(skeleton)
-        labels: dict[int, str] = {}
+        labels: dict[int, tuple[str, tuple[str, ...]]] = {}
         for node, user in zip(skeleton.nodes, users, strict=True):
             if node.fact not in records:
                 continue
             if user not in labels:
                 labels[user] = _label(skeleton, user, users, names)
-            key = (labels[user], node.stream.name)
+            label, objects = labels[user]
+            key = (label, node.stream.name)
             if (*key, node.fact) in counted:
                 continue
             counted.add((*key, node.fact))
-            tally = made.setdefault(key, FailureCount(*key))
+            tally = made.setdefault(key, FailureCount(*key, objects=objects))
             for record in records[node.fact]:
                 tally.tries += record.successes + record.failures
                 tally.successes += record.successes
                 tally.reasons.update(record.reasons)
                 tally.in_the_way.update(record.in_the_way)
+                tally.bodies.update(record.bodies)
 
     rows = [tally for tally in made.values() if tally.tries]
     return tuple(sorted(rows, key=lambda row: (not row.always_failed, -row.failures)))
@@ -126,10 +132,11 @@ def _users(skeleton: Skeleton) -> list[int]:
 
 def _label(
     skeleton: Skeleton, number: int, users: Sequence[int], names: Mapping[str, object]
-) -> str:
-    """Describe an action with the things that it and its values' sources concern."""
+) -> tuple[str, tuple[str, ...]]:
+    """Describe an action with the things that it and its values' sources concern; list those."""
     if number >= len(skeleton.steps):
-        return "the goal"
+        return "the goal", ()
+
     step = skeleton.steps[number]
     things = _things(step.arguments, names)
     text = " ".join([step.name, *things])
@@ -144,9 +151,11 @@ def _label(
                     else f" {' '.join(further)}"
                 )
                 things += further
+
     if things or number + 1 >= len(skeleton.steps):
-        return text
-    return f"{text}, to {_label(skeleton, number + 1, users, names)}"
+        return text, tuple(things)
+    purpose, further = _label(skeleton, number + 1, users, names)
+    return f"{text}, to {purpose}", (*things, *further)
 
 
 def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:

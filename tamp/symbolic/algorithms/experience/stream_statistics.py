@@ -37,12 +37,14 @@ class FailureRecord:
         failures: The others.
         reasons: Why they failed, in words, counted.
         in_the_way: The objects that they hit or that blocked them, counted.
+        bodies: All objects that the reasons name, counted.
     """
 
     successes: int = 0
     failures: int = 0
     reasons: Counter[str] = field(default_factory=Counter[str])
     in_the_way: Counter[str] = field(default_factory=Counter[str])
+    bodies: Counter[str] = field(default_factory=Counter[str])
 
     @property
     def expected_failures(self) -> float:
@@ -129,3 +131,4 @@ class Experience:
             record.failures += 1
             record.reasons[rejection.reason] += 1
             record.in_the_way.update(rejection.in_the_way)
+            record.bodies.update(rejection.bodies)

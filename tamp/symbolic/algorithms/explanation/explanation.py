@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from tamp.stream import Rejection
 from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
+from tamp.symbolic.algorithms.cause import Cause, CauseKind, distinct_causes
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
 from tamp.symbolic.algorithms.explanation.goal_conflicts import (
@@ -20,7 +20,7 @@ from tamp.symbolic.algorithms.explanation.unachievable_facts import Unachievable
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.algorithms.result import SkeletonAttempt, StreamTask
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.operators import InstantiatedTask
+from tamp.symbolic.search.operators import InstantiatedTask, Meaning
 from tamp.symbolic.search.search import unreachable
 from tamp.system.deadline import Deadline
 
@@ -34,6 +34,9 @@ what failed most."""
 
 MAX_CAUSES = 6
 """How many causes are worth reading."""
+
+MAX_REASONS = 3
+"""Reasons, and objects in them, that are told of one cause: the most frequent ones."""
 
 
 def explain_attempts(
@@ -63,7 +66,7 @@ def explain_infeasible(
     unachievable: UnachievableFacts,
     deadline: Deadline,
     instantiate: InstantiateGoal,
-) -> tuple[str, ...]:
+) -> tuple[Cause, ...]:
     """Name the unreachable goal facts and what they lack; or the goals that exclude each other.
 
     Args:
@@ -74,56 +77,72 @@ def explain_infeasible(
         deadline: When to look no further.
         instantiate: Instantiates the task with another goal.
     """
-    lines: list[str] = []
+    causes: list[Cause] = []
     blamed: set[tuple[str, tuple[str, ...]]] = set()
     for fact in unreachable(instantiated):
         words = fact[2:] if fact[0] == "not" else fact[1:]
         meaning = instantiated.meanings.get(fact[0])
-        text = meaning or f"({' '.join(fact)})"
-        words = tuple(re.findall(r"[^\s()]+", meaning)) if meaning else words
-        causes: list[str] = []
-        for key, rejection in dead.items():
-            if set(_names(problem, key[1])) & set(words):
-                blamed.add(key)
-                causes.append(f"{_call(problem, *key)}: {rejection.reason}")
-        causes = causes or [unachievable.reason(fact) + _kinds(problem, words)]
-        lines += [f"{text} cannot be reached: {cause}" for cause in causes]
+        text = meaning.text if meaning else f"({' '.join(fact)})"
+        terms = meaning.terms if meaning else words
+        about = problem.named(terms)
+        guilty = [key for key in dead if not set(_names(problem, key[1])).isdisjoint(terms)]
+        blamed.update(guilty)
+        reasons = [_no_value(problem, key, dead[key]) for key in guilty]
+        if not reasons:
+            missing, lacks = unachievable.reason(fact)
+            said = missing + _kinds(problem, terms)
+            reasons = [Cause(said, CauseKind.UNREACHABLE, problem.named(lacks))]
+        causes += [
+            Cause(f"{text} cannot be reached: {why.text}", why.kind, (*about, *why.objects))
+            for why in reasons
+        ]
 
-    lines += [
-        f"{_call(problem, *key)}: {reason.reason}"
-        for key, reason in dead.items()
-        if key not in blamed
-    ]
+    causes += [_no_value(problem, key, dead[key]) for key in dead if key not in blamed]
     if blamed or unreachable(instantiated):
-        return tuple(dict.fromkeys(lines))
+        return distinct_causes(causes)
 
     soon = Deadline(min(CONFLICT_SECONDS, deadline.left()))
     goals = minimal_unsolvable_goals(instantiated, soon, problem.task.goal, instantiate)
     if len(goals) > 1:  # each can be reached, as far as one knows without looking at the others
-        return tuple(dict.fromkeys((_exclusive(goals), *lines)))
+        return distinct_causes((_exclusive(problem, goals), *causes))
 
-    what = goals[0] if goals else "the goal"
-    calls = {
-        _call(problem, *key): (frozenset(_names(problem, key[1])), why.reason)
+    what = goals[0] if goals else Meaning("the goal")
+    calls = [
+        (frozenset(_names(problem, key[1])), _no_value(problem, key, why))
         for key, why in dead.items()
-    }
+    ]
 
-    forbidding = kept_from(problem, instantiated, calls, what)
-    kept = tuple(dict.fromkeys(f"{what} cannot be reached: {cause}" for cause in forbidding))
+    about = problem.named(what.terms)
+    kept = [
+        Cause(f"{what.text} cannot be reached: {cause.text}", cause.kind, (*about, *cause.objects))
+        for cause in kept_from(problem, instantiated, calls, what.terms)
+    ]
     if kept:
-        return tuple(dict.fromkeys((*kept, *lines)))
-    return tuple(dict.fromkeys((*lines, f"every way to {what} was searched, and none leads there")))
+        return distinct_causes((*kept, *causes))
+    searched = f"every way to {what.text} was searched, and none leads there"
+    none = Cause(searched, CauseKind.SEARCHED, about)
+    return distinct_causes((*causes, none))
 
 
-def _exclusive(goals: Sequence[str]) -> str:
+def _no_value(
+    problem: StreamTask, call: tuple[str, tuple[str, ...]], rejection: Rejection
+) -> Cause:
+    """Return the cause that a call ended without a value."""
+    objects = problem.named((*call[1], *rejection.bodies))
+    return Cause(f"{_call(problem, *call)}: {rejection.reason}", CauseKind.NO_VALUE, objects)
+
+
+def _exclusive(problem: StreamTask, goals: Sequence[Meaning]) -> Cause:
     both = "both hold" if len(goals) == 2 else "hold together"
-    said = f"{' and '.join(goals)} cannot {both} at the end"
-    return f"{said}: each way to one of them excludes the others"
+    said = f"{' and '.join(goal.text for goal in goals)} cannot {both} at the end"
+    text = f"{said}: each way to one of them excludes the others"
+    objects = problem.named(term for goal in goals for term in goal.terms)
+    return Cause(text, CauseKind.EXCLUSIVE, objects)
 
 
 def explain_failures(
     problem: StreamTask, streams: Streams, rows: Sequence[FailureCount], tried: bool
-) -> tuple[str, ...]:
+) -> tuple[Cause, ...]:
     """Name the call that did not end, what never worked or failed most, and what was in the way.
 
     Args:
@@ -132,29 +151,47 @@ def explain_failures(
         rows: What was tried for the actions of plans.
         tried: Whether there was a plan to be tried.
     """
-    running = streams.running
-    endless = (
-        [f"{_call(problem, running.stream.name, running.inputs)} did not end"] if running else []
-    )
+    causes = _endless(problem, streams)
+    if not tried:
+        never_worked = _never_worked(problem, streams)
+        none = Cause("no action plan was found yet", CauseKind.SEARCHED)
+        return (*causes, *never_worked) or (none,)
+
     # one that failed once or twice is no cause
     least = LEAST_SHARE_OF_FAILURES * max((row.failures for row in rows), default=0)
     never = [row for row in rows if row.always_failed and row.failures >= least]
     mostly = sorted(
         (row for row in rows if row.failures > row.successes), key=lambda row: -row.failures
     )
-    lines = [row.text() for row in never or mostly]
-    blocking = [
-        f"{name} ({count} times)" for name, count in blocking_objects(rows, problem.values)[:3]
+    causes += [
+        Cause(row.text(), CauseKind.FAILED, problem.named((*row.objects, *_most(row.bodies))))
+        for row in (never or mostly)[:MAX_CAUSES]
     ]
-    lines = lines[:MAX_CAUSES] + ([f"most in the way: {', '.join(blocking)}"] if blocking else [])
-    lines = lines if tried else _never_worked(problem, streams)
-    none = "no single step failed more than it worked" if tried else "no action plan was found yet"
-    return (*endless, *lines) or (none,)
+
+    blocking = blocking_objects(rows, problem.values)[:MAX_REASONS]
+    if blocking:
+        said = ", ".join(f"{name} ({count} times)" for name, count in blocking)
+        objects = problem.named(name for name, _ in blocking)
+        causes.append(Cause(f"most in the way: {said}", CauseKind.IN_THE_WAY, objects))
+
+    none = Cause("no single step failed more than it worked", CauseKind.SEARCHED)
+    return tuple(causes) or (none,)
 
 
-def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
+def _endless(problem: StreamTask, streams: Streams) -> list[Cause]:
+    """Return the cause that a call did not end, where one was running at the end."""
+    running = streams.running
+    if running is None:
+        return []
+    text = f"{_call(problem, running.stream.name, running.inputs)} did not end"
+    return [Cause(text, CauseKind.ENDLESS, problem.named(running.inputs))]
+
+
+def _never_worked(problem: StreamTask, streams: Streams) -> list[Cause]:
     """List the kinds of calls, by the problem's objects in them, that failed whatever was tried."""
     failed: dict[str, Counter[str]] = {}
+    met: dict[str, Counter[str]] = {}
+    about: dict[str, tuple[str, ...]] = {}
     worked: set[str] = set()
     for instance in streams.called():
         kind = _call(problem, instance.stream.name, instance.inputs)
@@ -162,16 +199,27 @@ def _never_worked(problem: StreamTask, streams: Streams) -> list[str]:
             worked.add(kind)
         elif instance.last is not None:
             failed.setdefault(kind, Counter())[instance.last.reason] += 1
+            met.setdefault(kind, Counter()).update(instance.last.bodies)
+            about.setdefault(kind, instance.inputs)
+
     never = [(kind, reasons) for kind, reasons in failed.items() if kind not in worked]
     never.sort(key=lambda row: -row[1].total())
-    texts = (
-        ", ".join(f"{count} {reason}" for reason, count in reasons.most_common(3))
-        for _, reasons in never
-    )
     return [
-        f"{kind} never worked: {text}"
-        for (kind, _), text in zip(never[:MAX_CAUSES], texts, strict=False)
+        Cause(
+            f"{kind} never worked: {_counted(reasons)}",
+            CauseKind.FAILED,
+            problem.named((*about[kind], *_most(met[kind]))),
+        )
+        for kind, reasons in never[:MAX_CAUSES]
     ]
+
+
+def _counted(reasons: Counter[str]) -> str:
+    return ", ".join(f"{count} {reason}" for reason, count in reasons.most_common(MAX_REASONS))
+
+
+def _most(bodies: Counter[str]) -> tuple[str, ...]:
+    return tuple(name for name, _ in bodies.most_common(MAX_REASONS))
 
 
 def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
@@ -196,7 +244,7 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
 
 def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: FailureRecord) -> str:
     objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
-    reasons = ", ".join(f"{count} {reason}" for reason, count in record.reasons.most_common(3))
+    reasons = _counted(record.reasons)
     tries = record.failures + record.successes
     place = (
         " while " + " and ".join(f"({' '.join(fact)})" for fact in sorted(present))

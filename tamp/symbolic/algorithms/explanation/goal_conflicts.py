@@ -9,9 +9,9 @@ from itertools import combinations
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
-from tamp.symbolic.search.instantiation.normal_form import show
+from tamp.symbolic.search.instantiation.meanings import meaning_of
 from tamp.symbolic.search.mutex import excluded
-from tamp.symbolic.search.operators import Goal, InstantiatedTask
+from tamp.symbolic.search.operators import Goal, InstantiatedTask, Meaning
 from tamp.symbolic.search.search import Reason, search
 from tamp.system.deadline import Deadline
 
@@ -28,8 +28,8 @@ InstantiateGoal = Callable[[Formula], InstantiatedTask]
 
 def minimal_unsolvable_goals(
     instantiated: InstantiatedTask, deadline: Deadline, goal: Formula, instantiate: InstantiateGoal
-) -> tuple[str, ...]:
-    """Find a minimal conflict: goals that cannot be reached together, as texts.
+) -> tuple[Meaning, ...]:
+    """Find a minimal conflict: goals that cannot be reached together, sorted by their texts.
 
     Pairs of facts that exclude each other say it at once. Where they do not, one goal after the
     other is left out; it stays out when the others are proven unsolvable without it, within
@@ -43,8 +43,8 @@ def minimal_unsolvable_goals(
     """
     found = excluded(instantiated, deadline)
     if found is not None and any(_is_odd(fact, instantiated) for fact, _ in found):
-        return _conjuncts(goal, instantiate, deadline) or _texts(instantiated, found)
-    return _texts(instantiated, found or _searched(instantiated, deadline))
+        return _conjuncts(goal, instantiate, deadline) or _meanings(instantiated, found)
+    return _meanings(instantiated, found or _searched(instantiated, deadline))
 
 
 def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
@@ -52,20 +52,22 @@ def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
     return fact[0] in instantiated.meanings or any(word.startswith(MARK) for word in fact)
 
 
-def _conjuncts(goal: Formula, instantiate: InstantiateGoal, deadline: Deadline) -> tuple[str, ...]:
+def _conjuncts(
+    goal: Formula, instantiate: InstantiateGoal, deadline: Deadline
+) -> tuple[Meaning, ...]:
     """Find the fewest conjuncts of a goal with variables that exclude each other; else all."""
     parts = goal.parts if isinstance(goal, And) else (goal,)
     denied = {part.body for part in parts if isinstance(part, Not)}
     for part in parts:
         if part in denied:
-            return tuple(sorted((show(part), show(Not(part)))))
+            return _sorted((meaning_of(part), meaning_of(Not(part))))
     fewer = [(part,) for part in parts] + list(combinations(parts, 2))[:MAX_PAIRS]
     for some in fewer:
         if deadline.passed or len(some) == len(parts):
             break
         if excluded(instantiate(And(some)), deadline) is not None:
-            return tuple(show(part) for part in some)
-    return tuple(show(part) for part in parts)
+            return tuple(meaning_of(part) for part in some)
+    return tuple(meaning_of(part) for part in parts)
 
 
 def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple[Fact, bool], ...]:
@@ -87,15 +89,21 @@ def _goal(goal: Goal, literals: Iterable[tuple[Fact, bool]]) -> Goal:
     return Goal(positive, frozenset(fact for fact, wanted in literals if not wanted), goal.static)
 
 
-def _texts(
+def _meanings(
     instantiated: InstantiatedTask, literals: Iterable[tuple[Fact, bool]]
-) -> tuple[str, ...]:
-    texts: list[str] = []
+) -> tuple[Meaning, ...]:
+    meant: list[Meaning] = []
     for fact, wanted in literals:
         meaning = instantiated.meanings.get(fact[0])
-        text = meaning or f"({' '.join(fact)})"
+        text, terms = f"({' '.join(fact)})", fact[1:]
+        if meaning is not None:
+            text, terms = meaning.text, meaning.terms
         # what an auxiliary universal fact stands for is the formula that holds where the fact does
         # not
         negated = not wanted and not (meaning is not None and fact[0].startswith("forall "))
-        texts.append(f"(not {text})" if negated else text)
-    return tuple(sorted(texts))
+        meant.append(Meaning(f"(not {text})" if negated else text, terms))
+    return _sorted(meant)
+
+
+def _sorted(goals: Iterable[Meaning]) -> tuple[Meaning, ...]:
+    return tuple(sorted(goals, key=lambda goal: goal.text))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Sequence
 
+from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula, Not
@@ -17,19 +18,18 @@ MAX_CALLS_NAMED = 2
 def kept_from(
     problem: StreamTask,
     instantiated: InstantiatedTask,
-    calls: Mapping[str, tuple[frozenset[str], str]],
-    goal: str,
-) -> Iterator[str]:
+    calls: Sequence[tuple[frozenset[str], Cause]],
+    goal: Iterable[str],
+) -> Iterator[Cause]:
     """Yield the actions about the goal's objects that are forbidden for good: by what, and why.
 
     Args:
         problem: The task, whose rules say what a fact means.
         instantiated: The optimistic task.
-        calls: The calls that ended without a value, each with the objects that it is about and its
-            reason.
-        goal: As text.
+        calls: The calls that ended without a value: the objects that each is about, and the cause.
+        goal: Its terms.
     """
-    wanted = set(goal.replace("(", " ").replace(")", " ").split())
+    wanted = set(goal)
     for_good = lasting(instantiated).forbidden
     for operator, facts in for_good or forbidden_by(instantiated, instantiated.initial):
         about = [word for word in operator.arguments if word in wanted]
@@ -42,20 +42,20 @@ def kept_from(
                 for word in fact[1:]
                 if isinstance(problem.values.get(word), str) and word not in about
             ]
-            reasons = [
-                f"{call}: {why}"
-                for call, (names, why) in calls.items()
-                if not names.isdisjoint(others)
-            ]
-
-            because = f" ({', '.join(reasons[:MAX_CALLS_NAMED])})" if reasons else ""
+            reasons = [cause for names, cause in calls if not names.isdisjoint(others)]
+            named = reasons[:MAX_CALLS_NAMED]
+            because = f" ({', '.join(cause.text for cause in named)})" if named else ""
+            objects = problem.named(
+                (*about, *fact[1:], *(name for cause in named for name in cause.objects))
+            )
             state = _state(problem, operator, fact)
             if not for_good and (state is None or not others or not reasons):
                 continue  # it may be only for now
 
             if state is None:
                 absent = f"{operator.name} wants ({' '.join(fact)}) not to hold"
-                yield f"{absent}, which nothing makes false{because}"
+                said = f"{absent}, which nothing makes false{because}"
+                yield Cause(said, CauseKind.FORBIDDEN, objects)
                 continue
 
             things = " ".join(
@@ -64,7 +64,8 @@ def kept_from(
             with_others = f" with {' and '.join(others)}" if others else ""
             never = f", so that {operator.name} is never possible" if for_good else ""
             stays = "stays" if for_good else "is"
-            yield f"{things} {stays} {state[0]}{with_others}{never}{because}"
+            said = f"{things} {stays} {state[0]}{with_others}{never}{because}"
+            yield Cause(said, CauseKind.FORBIDDEN, problem.named((*objects, *state[1:])))
 
 
 def _state(problem: StreamTask, operator: Operator, fact: Fact) -> Fact | None:

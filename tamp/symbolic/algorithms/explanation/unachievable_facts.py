@@ -56,11 +56,12 @@ class UnachievableFacts:
             self._by_predicate[fact[0]].append(fact)
         self._examined = 0
 
-    def reason(self, fact: Fact) -> str:
+    def reason(self, fact: Fact) -> tuple[str, tuple[str, ...]]:
         """Say why nothing makes the fact true: "cook needs (hot stove), which nothing makes
-        true".
+        true"; list the terms of what is missing.
         """
         said: list[str] = []
+        terms: list[str] = []
         seen = {fact}
         for _ in range(MAX_CHAIN):
             found = self._nearest(fact)
@@ -68,13 +69,14 @@ class UnachievableFacts:
                 break
             name, lacks = found
             said.append(f"{name} needs {' and '.join(map(_shown, lacks))}")
+            terms += [term for atom in lacks for term in atom.terms]
             fact = (lacks[0].predicate, *lacks[0].terms)
             if fact in seen:
                 break
             seen.add(fact)
         if not said:
-            return "no action makes it true"
-        return f"{', and '.join(said)}, which nothing makes true"
+            return "no action makes it true", ()
+        return f"{', and '.join(said)}, which nothing makes true", tuple(terms)
 
     def _nearest(self, fact: Fact) -> tuple[str, list[Atom]] | None:
         """Find the way to a fact that lacks least, and what; None if no way lacks anything."""

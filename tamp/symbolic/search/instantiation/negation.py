@@ -16,7 +16,7 @@ from tamp.symbolic.search.instantiation.datalog import Row, filler, join
 from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards
 from tamp.symbolic.search.instantiation.normal_form import Definition
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
-from tamp.symbolic.search.operators import Axiom, Guard
+from tamp.symbolic.search.operators import Axiom, Guard, Meaning
 
 Literal = tuple[bool, Fact]
 
@@ -47,7 +47,7 @@ class Negation:
 
     Attributes:
         axioms: Those of the choices made.
-        meanings: Choices by name, in words.
+        meanings: Choices by name.
     """
 
     def __init__(self, predicates: PredicateKinds, recursive: frozenset[str]) -> None:
@@ -58,7 +58,7 @@ class Negation:
         self._derived_guards: dict[tuple[str, int], DerivedGuards] = {}
         self._singles: dict[Fact, frozenset[Fact]] = {}
         self.axioms: list[Axiom] = []
-        self.meanings: dict[str, str] = {}
+        self.meanings: dict[str, Meaning] = {}
 
     def refute(self, fact: Fact, *, guards: bool) -> Needs:
         """Return what `not fact` needs.
@@ -186,7 +186,10 @@ class Negation:
         name = f"choice {len(self._choices) + 1}"
         head = self._choices[key] = (name,)
         words = [("" if sign else "not ") + " ".join(fact) for sign, fact in key[0]]
-        self.meanings[name] = " or ".join([*words, *(" ".join(fact) for fact in waivers)])
+        self.meanings[name] = Meaning(
+            " or ".join([*words, *(" ".join(fact) for fact in waivers)]),
+            tuple(term for fact in (*(fact for _, fact in key[0]), *waivers) for term in fact[1:]),
+        )
         for sign, fact in key[0]:
             if sign:
                 self.axioms.append(Axiom(head, frozenset((fact,)), frozenset()))

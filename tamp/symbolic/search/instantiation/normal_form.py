@@ -18,7 +18,9 @@ from tamp.symbolic.pddl.structs import (
     Or,
     Parameter,
 )
+from tamp.symbolic.search.instantiation.meanings import meaning_of
 from tamp.symbolic.search.instantiation.unfolding import unfoldable
+from tamp.symbolic.search.operators import Meaning
 
 MAX_CONJUNCTIONS = 12
 """A formula is split into at most so many conjunctions; beyond, its disjunctions become auxiliary
@@ -259,23 +261,9 @@ class Normalizer:
             if atom.predicate in self.definitions:
                 wanted.setdefault((atom.predicate, not refuted))
 
-    def meanings(self) -> dict[str, str]:
+    def meanings(self) -> dict[str, Meaning]:
         """Show the auxiliary predicates' formulas in PDDL, by name."""
-        return {name: show(formula) for name, formula in self.auxiliary.items()}
-
-
-def show(formula: Formula) -> str:
-    """Show a formula in PDDL, on one line."""
-    if isinstance(formula, Atom):
-        return f"({' '.join((formula.predicate, *(t.split(' ')[0] for t in formula.terms)))})"
-    if isinstance(formula, Not):
-        return f"(not {show(formula.body)})"
-    if isinstance(formula, And | Or):
-        connective = "and" if isinstance(formula, And) else "or"
-        return f"({' '.join((connective, *map(show, formula.parts)))})"
-    word = "exists" if isinstance(formula, Exists) else "forall"
-    variables = " ".join(p.name.split(" ")[0] for p in formula.parameters)
-    return f"({word} ({variables}) {show(formula.body)})"
+        return {name: meaning_of(formula) for name, formula in self.auxiliary.items()}
 
 
 def type_relation(types: Types) -> str:

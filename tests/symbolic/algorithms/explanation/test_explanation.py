@@ -10,6 +10,7 @@ import pytest
 
 from tamp.stream import Call, Rejection
 from tamp.symbolic.algorithms.bound_stream import Objects, Streams
+from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects
 from tamp.symbolic.algorithms.explanation.explanation import explain_failures
 from tamp.symbolic.algorithms.result import Outcome
@@ -29,10 +30,15 @@ THINGS = {"egg": ("food",), "ham": ("food",), "big": ("stove",), "small": ("stov
 NO_STREAMS = "(define (stream none))"
 
 
-def explained(init: str, goal: str, algorithm: str = "adaptive") -> str:
+def causes(init: str, goal: str, algorithm: str = "adaptive") -> tuple[Cause, ...]:
     result = solve(algorithm, stream_task(KITCHEN, NO_STREAMS, {}, THINGS, init, goal))
     assert result.outcome is Outcome.INFEASIBLE
-    return "\n".join(result.explanation)
+    assert result.explanation == tuple(cause.text for cause in result.causes)
+    return result.causes
+
+
+def explained(init: str, goal: str, algorithm: str = "adaptive") -> str:
+    return "\n".join(cause.text for cause in causes(init, goal, algorithm))
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
@@ -55,6 +61,24 @@ def test_goals_that_exclude_each_other_are_named_and_no_others() -> None:
     )
     assert "(cooked egg) and (raw egg) cannot both hold" in text
     assert "ham" not in text
+
+
+def test_a_cause_lists_the_objects_of_the_goal_and_of_what_it_lacks() -> None:
+    (cause,) = causes("(raw egg) (fresh egg)", "(cooked egg)")
+    assert (cause.kind, cause.objects) == (CauseKind.UNREACHABLE, ("egg",))
+    (cause,) = causes("(raw egg) (fresh egg)", "(hot small)")
+    assert (cause.kind, cause.objects) == (CauseKind.UNREACHABLE, ("small",))
+
+
+def test_goals_that_exclude_each_other_are_a_cause_with_the_objects_of_both() -> None:
+    init = "(raw egg) (fresh egg) (raw ham) (fresh ham) (gas)"
+    (cause,) = causes(init, "(and (cooked egg) (raw egg) (cooked ham))")
+    assert (cause.kind, cause.objects) == (CauseKind.EXCLUSIVE, ("egg",))
+
+
+def test_a_subformula_of_the_goal_lends_its_objects() -> None:
+    (cause,) = causes("(raw egg) (fresh egg)", "(or (cooked egg) (broken big))")
+    assert cause.kind is CauseKind.UNREACHABLE and set(cause.objects) >= {"egg", "big"}
 
 
 GRASP = """
@@ -84,6 +108,8 @@ def test_a_stream_that_was_given_up_proves_nothing(algorithm: str, given_up: boo
     result = solve(algorithm, problem)
     assert result.outcome is (Outcome.EXHAUSTED if given_up else Outcome.INFEASIBLE)
     assert "mug" in " ".join(result.explanation)
+    assert {name for cause in result.causes for name in cause.objects} == {"mug", "wall"}
+    assert {cause.kind for cause in result.causes} >= {CauseKind.NO_VALUE}
     if algorithm == "adaptive":
         (tally,) = result.tallies
         assert (tally.action, tally.stream, tally.always_failed) == (
@@ -113,9 +139,9 @@ def test_what_failed_once_is_not_blamed_before_what_failed_a_hundred_times() -> 
     (first, *_) = explain_failures(
         problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True
     )
-    assert first.startswith("pick cup: inverse-kinematics worked 2 times in 120 tries")
+    assert first.text.startswith("pick cup: inverse-kinematics worked 2 times in 120 tries")
     rows[0] = FailureCount("place cup", "test-pose-clear", 30, 0, Counter({"hits can": 30}))
     (first, *_) = explain_failures(
         problem, Streams({}, Objects({}, {}), lambda _: None, Deadline()), rows, True
     )
-    assert first == "place cup: test-pose-clear never worked in 30 tries: 30 hits can"
+    assert first.text == "place cup: test-pose-clear never worked in 30 tries: 30 hits can"
