@@ -19,7 +19,6 @@ from tamp.planner.report import headline, improvement, summary
 from tamp.planner.solution import Solution
 from tamp.planner.solve import ALGORITHMS
 from tamp.planner.statistics_file import add_statistics, read_statistics
-from tamp.planner.suggestions.why import suggest_changes
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system import guard
 from tamp.system.outputs import check_outputs
@@ -162,6 +161,8 @@ def follow_up(request: Request, loaded: Loaded, planned: Planned, written: Writt
     solution = planned.solution
 
     if options.scene.why and not solution.solved and not planned.stopped:
+        from tamp.planner.suggestions.why import suggest_changes
+
         looking = "looking for changes that would make it solvable ..."
         shown.line(f"{summary(solution, loaded.seconds)}\n\n  {looking}")
         because = suggest_changes(

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-from tamp.commands.solve_options import Arguments, Budget
-from tamp.errors import InputError
-from tamp.execution.report import Execution
-from tamp.geometric.samplers.choice import Registry
-from tamp.planner.problem import Problem
-from tamp.planner.solution import Solution
-from tamp.planner.suggestions.why import Suggestions
-from tamp.system.progress import Progress
-from tamp.verification.report import Report
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from tamp.commands.solve_options import Arguments, Budget
+    from tamp.errors import InputError
+    from tamp.execution.report import Execution
+    from tamp.geometric.samplers.choice import Registry
+    from tamp.planner.problem import Problem
+    from tamp.planner.solution import Solution
+    from tamp.planner.suggestions.why import Suggestions
+    from tamp.system.progress import Progress
+    from tamp.verification.report import Report
 
 
 @dataclass(frozen=True)

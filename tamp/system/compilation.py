@@ -22,6 +22,7 @@ from tamp.system.quick_compiling import (
     compare_quickly,
     generate_code_when_called,
 )
+from tamp.system.quick_loading import load_without_compiler
 
 Told = Callable[[int], None]
 """Called with the number of functions compiled so far, whenever another one begins."""
@@ -64,6 +65,7 @@ event.register("numba:compile", _COMPILING)
 
 compare_quickly()
 generate_code_when_called()
+load_without_compiler()
 
 
 def tell(told: Told | None) -> None:

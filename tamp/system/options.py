@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from types import UnionType
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 import tyro
@@ -19,6 +20,26 @@ from tamp.errors import InputError
 
 CONFIG = (tyro.conf.FlagCreatePairsOff,)
 """How tyro reads all commands: a flag has no --no-flag beside it."""
+
+_RESOLVER: Any = tyro._resolver
+_ask_typeguard = _RESOLVER.is_instance
+
+
+def _is_instance(typ: Any, value: Any) -> bool:
+    """Answer tyro about defaults without typeguard, which imports asyncio and more: 0.05 s.
+
+    Of a default that there is not tyro takes no heed of the answer.
+    """
+    if tyro._singleton.is_sentinel(value):
+        return False
+    if isinstance(typ, UnionType):
+        return any(_is_instance(one, value) for one in get_args(typ))
+    if get_origin(typ) is tuple and get_args(typ)[1:] == (...,):
+        return isinstance(value, tuple) and all(_is_instance(get_args(typ)[0], v) for v in value)
+    return _ask_typeguard(typ, value)
+
+
+_RESOLVER.is_instance = _is_instance
 
 Options = TypeVar("Options")
 Note = TypeVar("Note")

@@ -265,10 +265,12 @@ class Certified:
     def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
         """Say how deep the hand at a tool pose is in a body, which is brought to a robot aside."""
         world = self._world
-        aside = np.array([*EMPTY_PLACE_M, 0.0, *self._robot.home, opening])
-        T_aside_tool = self._sweeper.tool(aside)
+        T_tool_other = np.linalg.inv(T_world_tool) @ world.pose(other)
+        if not self._sweeper.hand_may_meet(other, T_tool_other, opening):
+            return None
+        T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
         T_before = world.pose(other)
-        world.place(other, T_aside_tool @ np.linalg.inv(T_world_tool) @ T_before)
+        world.place(other, T_aside_tool @ T_tool_other)
         links = [world.links[name] for name in self._sweeper.hand]
         depth = max(-world.distance(link, solid) for link in links for solid in world.solids[other])
         world.place(other, T_before)
@@ -284,7 +286,7 @@ class Certified:
         if self._beyond(approach, lift):
             return "the path leaves the joints' limits"
         self._world.place(other, self._plan.values[terms[6]].data)
-        findings = CollisionFindings()
+        findings = Findings(clearance=False)
         held = Held(self._bodies[terms[0]], hold.T_tool_body)
         for path, opening, carried in (
             (approach, self._robot.opening, None),

@@ -6,16 +6,20 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
-from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
+from tamp.verification.broad_phase import (
+    Advancement,
+    Still,
+    at_rest,
+    near_itself,
+    near_still,
+    radius,
+)
 from tamp.verification.execution_state import Held
-from tamp.verification.trajectory_sampling import Sampler
-
-Mask = NDArray[np.bool_]
+from tamp.verification.trajectory_sampling import Motion, Sampler
 
 MAX_PENETRATION_M = 0.001
 """Metres of penetration that are not yet a collision."""
@@ -54,28 +58,19 @@ class ExpectedContacts:
     resting: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, eq=False)
-class _Block:
-    """Samples: rows (n, 4 + joints), times (n,), frames of links (n, links, 4, 4), their boxes."""
-
-    rows: Array
-    times: Array
-    frames: Array
-    low: Array
-    high: Array
-
-
 @dataclass
 class CollisionFindings:
     """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
 
-    It ends, somewhere in the motion, when they are more than `most`.
+    It ends, somewhere in the motion, when they are more than `most`. Without `clearance` nobody
+    asks after the nearest miss.
     """
 
     worst: dict[tuple[str, str], Contact] = field(default_factory=dict)
     nearest: Contact | None = None
     states: int = 0
     most: float = math.inf
+    clearance: bool = True
 
     def record(
         self, contact: Contact, unexpected: bool, tolerance: float = MAX_PENETRATION_M
@@ -97,7 +92,9 @@ class CollisionFindings:
     @property
     def margin(self) -> float:
         """Return metres beyond which a pair is of no interest."""
-        return CLEARANCE_RANGE_M if self.nearest is None else max(0.0, self.nearest.distance)
+        if not self.clearance:
+            return 0.0
+        return REACH if self.nearest is None else max(0.0, self.nearest.distance)
 
 
 class Sweeper:
@@ -125,6 +122,11 @@ class Sweeper:
         """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
         return self._sampler.tool(row)
 
+    def hand_may_meet(self, other: str, T_tool_other: Array, opening: float) -> bool:
+        """Tell whether the hand may be within REACH of a body that is there for its tool frame."""
+        far = self._sampler.hand_radius(opening) + radius(self._world.solids[other]) + REACH
+        return float(np.linalg.norm(T_tool_other[:3, 3])) <= far
+
     def sweep(
         self,
         rows: Array,
@@ -144,152 +146,107 @@ class Sweeper:
             usual: Nearness that is no matter of clearance, and contact that is no collision.
             against: Look only at these bodies, and not at the robot itself.
         """
-        for some, then in self._sampler.pieces(rows, times):
+        carried = {one.body for one in held.all} if held else set[str]()
+        asked = self._world.solids if against is None else against
+        bodies = [body for body in self._world.solids if body in asked and body not in carried]
+        still = at_rest(self._world, bodies)
+        expected = self._expected(still, held, natural)
+
+        for motion in self._sampler.motions(rows, times, held):
             if findings.full:
                 return
-            self._sweep(some, then, held, findings, usual, against)
+            findings.states += len(motion.rows)
+            among, within = Advancement(self._world), Advancement(self._world)
+            for start in range(0, len(motion.rows), BLOCK):
+                block = motion.part(slice(start, start + BLOCK))
+                self._against_bodies(block, held, findings, still, expected, among)
+                if against is None:
+                    self._against_itself(block, held, findings, within)
 
-    def _sweep(
-        self, rows: Array, times: Array, held: Held | None, findings: CollisionFindings,
-        usual: ExpectedContacts, against: frozenset[str] | None,
-    ) -> None:  # fmt: skip
-        rows, times, frames = self._sampler.sampled(rows, times, held)
-        findings.states += len(rows)
-        moving = np.ones(len(rows), dtype=bool)
-        moving[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(
-            axis=1
-        )  # while only the base moves, the robot keeps its shape
-        for start in range(0, len(rows), SAMPLES_PER_BLOCK):
-            some = slice(start, start + SAMPLES_PER_BLOCK)
-            block = _Block(
-                rows[some], times[some], frames[some], *self._boxes(self._solids, frames[some])
-            )
-            self._against_bodies(block, held, findings, usual, against)
-            if against is None:
-                self._against_itself(block, held, findings, moving[some])
+    def _expected(self, still: Still, held: Held | None, natural: Natural) -> Array:
+        """Mark pairs of movers and pieces at rest, shape (movers, pieces): 1 where a contact counts
+        and a near miss does, 0 where only a contact does, -1 where neither.
+        """
+        movers = self._sampler.movers(held)
+        marks = np.ones((len(movers), len(still.solids)))
+        owners = [solid.owner for solid in still.solids]
+        by_hand = [solid.owner in self.hand for solid in movers[: len(self._solids)]]
+        by_hand += [False] * (len(movers) - len(by_hand))
+        in_hand = np.arange(len(movers)) >= len(self._solids)
+        for which, near, mark in (
+            (by_hand, natural.grasped, 0.0), (in_hand, natural.resting, 0.0),
+            (by_hand, natural.touching, -1.0),
+        ):  # fmt: skip
+            marks[np.ix_(np.array(which), np.array([owner in near for owner in owners]))] = mark
+        marks[0, -1] = -1.0  # the base drives on the floor
+        return marks
 
     def _against_bodies(
         self,
-        block: _Block,
+        motion: Motion,
         held: Held | None,
-        findings: CollisionFindings,
-        usual: ExpectedContacts,
-        against: frozenset[str] | None,
+        findings: Findings,
+        still: Still,
+        expected: Array,
+        known: Advancement,
     ) -> None:
-        world = self._world
-        carried = {one.body for one in held.all} if held else set[str]()
-        asked = world.solids if against is None else against
-        bodies = [body for body in world.solids if body in asked and body not in carried]
-        others = [solid for body in bodies for solid in world.solids[body]]
-
-        low, high = block.low, block.high
-        movers = list(self._solids)
-        if held is not None:
-            held_low, held_high = self._held_boxes(block.frames, held)
-            low, high = (
-                np.concatenate([low, held_low], axis=1),
-                np.concatenate([high, held_high], axis=1),
-            )
-            movers += self._held_solids(held)
-
-        at = [world.pose(solid.owner) for solid in others]
-        centres = np.array(
-            [T[:3, :3] @ solid.centre + T[:3, 3] for T, solid in zip(at, others, strict=True)]
-        )
-        halves = np.array(
-            [np.abs(T[:3, :3]) @ solid.half for T, solid in zip(at, others, strict=True)]
-        )
-        others.append(world.floor)
-        centres = np.concatenate([centres.reshape(-1, 3), world.floor.centre[None]])
-        halves = np.concatenate([halves.reshape(-1, 3), world.floor.half[None]])
-
-        # The gap of boxes on the worst axis bounds the distance of contents: (n, movers, others).
-        gaps = np.full((len(block.rows), len(movers), len(others)), -np.inf)
-        for axis in range(3):
-            near = low[:, :, None, axis] - (centres + halves)[None, None, :, axis]
-            far = (centres - halves)[None, None, :, axis] - high[:, :, None, axis]
-            np.maximum(gaps, np.maximum(near, far), out=gaps)
-        gaps[:, 0, -1] = np.inf  # the base drives on the floor
-        candidates = np.argwhere(gaps < CLEARANCE_RANGE_M)
-        bounds = gaps[tuple(candidates.T)]
-
+        movers = self._sampler.movers(held)
+        within = np.where(expected > 0.0, findings.margin, np.where(expected < 0.0, -np.inf, 0.0))
         current = -1
-        for (state, mover, other), bound in zip(candidates.tolist(), bounds.tolist(), strict=True):
-            first, second = movers[mover], others[other]
-            by_hand = first.owner in self.hand
-            if bound >= findings.margin or (by_hand and second.owner in usual.touching):
+        for state, mover, other, bound in near_still(motion, still, within):
+            counts = expected[mover, other] > 0.0
+            reach = findings.margin if counts else 0.0
+            pair, way = (mover, other), float(motion.ways[mover, state])
+            if bound >= reach or known.apart(pair, way, reach):
                 continue
 
             if state != current:
-                self._pose(block.rows[state], block.frames[state], held)
+                self._pose(motion, state, held)
                 current = state
-            distance = world.distance(first, second, findings.margin)
-
-            if distance < CLEARANCE_RANGE_M:
-                allowed = usual.grasped if by_hand else frozenset[str]()
-                expected = second.owner in (usual.resting if first.owner in carried else allowed)
-                contact = Contact(first.owner, second.owner, distance, float(block.times[state]))
-                together = self.together.get(_sorted(first.owner, second.owner), 0.0)
-                tolerance = max(MAX_PENETRATION_M, together + DEEPENING_M)
-                findings.record(contact, not expected, tolerance)
+            first, second = movers[mover], still.solids[other]
+            distance = known.distance(pair, (first, second), way, reach)
+            if distance < REACH:
+                contact = Contact(first.owner, second.owner, distance, float(motion.times[state]))
+                tolerance = max(
+                    TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
+                )
+                findings.met(contact, counts and findings.clearance, tolerance)
 
     def _against_itself(
-        self, block: _Block, held: Held | None, findings: CollisionFindings, moving: Mask
+        self, motion: Motion, held: Held | None, findings: Findings, known: Advancement
     ) -> None:
-        low, high = block.low, block.high
-        pairs = [
-            (self._solids[i], self._solids[j], low[:, i], high[:, i], low[:, j], high[:, j])
-            for i, j in self._self_pairs
-        ]
-
+        movers = self._sampler.movers(held)
+        pairs = list(self._self_pairs)
         if held is not None:
-            held_low, held_high = self._held_boxes(block.frames, held)
-            arm = [i for i, name in enumerate(self._names) if name not in self.hand]
+            links = range(len(self._solids))
+            arm = [i for i in links if self._names[i] not in self.hand]
             pairs += [
-                (solid, self._solids[i], held_low[:, k], held_high[:, k], low[:, i], high[:, i])
-                for k, solid in enumerate(self._held_solids(held))
-                for i in (arm if solid.owner == held.body else range(len(self._names)))
+                (k, i)
+                for k in range(len(links), len(movers))
+                for i in (arm if movers[k].owner == held.body else links)
             ]
 
-        near = np.array(
-            [np.all((la <= hb) & (lb <= ha), axis=1) & moving for _, _, la, ha, lb, hb in pairs]
-        )
-
         current = -1
-        for state, pair in np.argwhere(near.T).tolist():
+        for state, number in near_itself(motion, np.array(pairs)):
+            i, j = pairs[number]
+            way = float(motion.ways[i, state] + motion.ways[j, state])
+            if known.apart((i, j), way, 0.0):
+                continue
             if state != current:
-                self._pose(block.rows[state], block.frames[state], held)
+                self._pose(motion, state, held)
                 current = state
-            first, second = pairs[pair][:2]
-            distance = self._world.distance(first, second, 0.0)
+            distance = known.distance((i, j), (movers[i], movers[j]), way, 0.0)
             if distance < 0:
-                findings.record(
-                    Contact(first.owner, second.owner, distance, float(block.times[state])), False
-                )
+                time = float(motion.times[state])
+                findings.met(Contact(movers[i].owner, movers[j].owner, distance, time), False)
 
-    def _boxes(self, solids: list[Solid], frames: Array) -> tuple[Array, Array]:
-        """Compute axis-aligned boxes of solids at these frames: corners, each (n, solids, 3)."""
-        centres = np.array([solid.centre for solid in solids])
-        halves = np.array([solid.half for solid in solids])
-        middles = np.einsum("nlij,lj->nli", frames[..., :3, :3], centres) + frames[..., :3, 3]
-        extents = np.einsum("nlij,lj->nli", np.abs(frames[..., :3, :3]), halves)
-        return middles - extents, middles + extents
-
-    def _held_solids(self, held: Held) -> list[Solid]:
-        return [solid for one in held.all for solid in self._world.solids[one.body]]
-
-    def _held_boxes(self, frames: Array, held: Held) -> tuple[Array, Array]:
-        at = [
-            self._sampler.held_frames(frames, one)
-            for one in held.all
-            for _ in self._world.solids[one.body]
-        ]
-        return self._boxes(self._held_solids(held), np.stack(at, axis=1))
-
-    def _pose(self, row: Array, frames: Array, held: Held | None) -> None:
+    def _pose(self, motion: Motion, state: int, held: Held | None) -> None:
+        row = motion.rows[state]
         self._world.set_robot(row[:3], row[3:-1], row[-1])
+        piece = len(self._solids)
         for one in held.all if held else ():
-            self._world.place(one.body, self._sampler.held_frames(frames[None], one)[0])
+            self._world.place(one.body, motion.frames[piece, state])
+            piece += len(self._world.solids[one.body])
 
 
 def _sorted(first: str, second: str) -> tuple[str, str]:

@@ -99,8 +99,11 @@ class Semantics:
             for found in self._solutions([effect.condition], state, start, types):
                 for full in self._every(types, found):
                     (added if effect.adds else deleted).add(ground(effect.atom, full))
-        facts = {(name, *terms) for name, rows in state.facts.items() for terms in rows}
-        return State.of((facts - deleted) | added)
+        after = dict(state.facts)
+        gone, come = State.of(deleted).facts, State.of(added).facts
+        for name in gone.keys() | come.keys():
+            after[name] = (after.get(name, set()) - gone.get(name, set())) | come.get(name, set())
+        return State({name: rows for name, rows in after.items() if rows})
 
     # Solutions of a conjunction, by the atom that binds most
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -80,15 +81,12 @@ class Supports:
 
     def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
         """Make a key of what a body's stand depends on: its pose and those of bodies around."""
-        poses = {
-            name: self._world.pose(name) for name in self._points if name != absent or name == body
-        }
-        centre = poses[body][:3, 3]
-        near = [
-            name for name, T in poses.items()
-            if np.linalg.norm(T[:3, 3] - centre)
-            <= self._sizes[name] + self._sizes[body] + 2 * SUPPORT_GAP_M
-        ]  # fmt: skip
+        names = [name for name in self._points if name != absent or name == body]
+        poses = {name: self._world.pose(name) for name in names}
+        centres = np.array([poses[name][:3, 3] for name in names])
+        sizes = np.array([self._sizes[name] for name in names]) + self._sizes[body] + 2 * GAP
+        within = np.linalg.norm(centres - poses[body][:3, 3], axis=1) <= sizes
+        near = [name for name, is_near in zip(names, within.tolist(), strict=True) if is_near]
         return tuple((name, poses[name].tobytes()) for name in (body, *near))
 
     def _observe(self, body: str, absent: str | None) -> SupportContact:
@@ -137,17 +135,16 @@ class Supports:
         points = underside[carrying][:, :2]
         return SupportContact(on, least, outside(centre, points), points)
 
-    def why_overloaded(self, body: str, absent: str | None = None) -> str | None:
+    def why_overloaded(self, body: str, stands: Mapping[str, Stand]) -> str | None:
         """Say how a body that stands tips under what stands on it, and on that; None when it does
-        not. What rests on several bodies is no one's load.
+        not. What rests on several bodies is no one's load. `stands` are those of all movable
+        bodies but one in the hand.
         """
         load, waiting = {body}, [body]
         while waiting:
             under = waiting.pop()
-            for other in self._world.scene.movable:
-                if other in load or other == absent:
-                    continue
-                if self.stand(other, absent).on == {under}:
+            for other, stand in stands.items():
+                if other not in load and stand.on == {under}:
                     load.add(other)
                     waiting.append(other)
         if len(load) == 1:
@@ -158,8 +155,8 @@ class Supports:
             [(self._world.pose(name) @ np.append(self._centres[name], 1.0))[:2] for name in load]
         )
         centre = masses @ centres / max(float(masses.sum()), 1e-9)
-        beyond = outside(centre, self.stand(body, absent).carrying)
-        if beyond <= CENTRE_TOLERANCE_M:
+        beyond = outside(centre, stands[body].carrying)
+        if beyond <= LEAN:
             return None
         others = " and ".join(sorted(load - {body}))
         return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"

@@ -69,13 +69,12 @@ class SupportRelations:
 
     def check(self, in_hand: str | None, aboard: Collection[str] = ()) -> None:
         """Check that every body that is neither held nor `aboard` of what is stands still."""
-        for name in self._world.scene.movable:
-            if name == in_hand or name in aboard:
+        others = [name for name in self._world.scene.movable if name != in_hand]
+        stands = {name: self.stand(name, in_hand) for name in others}
+        for name in others:
+            if name in aboard or self._floating.get(name) == self._world.pose(name).tobytes():
                 continue
-            if self._floating.get(name) == self._world.pose(name).tobytes():
-                continue
-            stand = self.stand(name, in_hand)
-            why = stand.why or self._supports.why_overloaded(name, in_hand)
+            why = stands[name].why or self._supports.why_overloaded(name, stands)
             if why:
                 self._log.add("support", f"{name} does not stand: {why}", name)
 

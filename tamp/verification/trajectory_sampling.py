@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
 from tamp.verification.execution_state import Held
+from tamp.verification.link_frames import LinkFrames, base_frames, matrices
 from tamp.verification.makers_limits import limits_of
 
 POINT_STEP_M = 0.005
@@ -29,6 +33,47 @@ MAX_PIECE_SAMPLES = 4096
 """Samples of a piece of a motion that are made at once, at most, by a rough count."""
 MAX_PIECE_ROWS = 64
 """Rows of a piece, at most."""
+MOTIONS = 2
+"""Motions that are remembered: facts about one reach, which has two, come one after the other."""
+KEPT = 4096
+"""States of a motion that is remembered, at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A motion, sampled: n states, and what moves in them, the links and the pieces held.
+
+    Attributes:
+        rows, times: The states, shape (n, 4 + joints), and their seconds, shape (n,).
+        shaped: Whether the robot's shape differs from the one of the state before, shape (n,).
+        frames: T_world_link of the links and after them of the held pieces' owners, shape
+            (movers, n, 4, 4).
+        low, high: Corners of the axis-aligned boxes around the movers, shape (movers, n, 3).
+        ways: Metres that no point of a mover has moved more than since the first state, shape
+            (movers, n).
+    """
+
+    rows: Array
+    times: Array
+    shaped: NDArray[np.bool_]
+    frames: Array
+    low: Array
+    high: Array
+    ways: Array
+
+    @cached_property
+    def swept(self) -> tuple[Array, Array]:
+        """Box all that each mover sweeps: corners, each (movers, 3)."""
+        return self.low.min(axis=1), self.high.max(axis=1)
+
+    def part(self, some: slice) -> Motion:
+        """Take some of the states."""
+        if some.start == 0 and len(self.rows) <= some.stop:
+            return self
+        moving = (self.frames, self.low, self.high, self.ways)
+        return Motion(
+            self.rows[some], self.times[some], self.shaped[some], *(one[:, some] for one in moving)
+        )
 
 
 class Sampler:
@@ -36,19 +81,57 @@ class Sampler:
 
     def __init__(self, world: World, robot: Robot) -> None:
         self._world, self._robot = world, robot
-        self._solids: list[Solid] = list(world.links.values())
+        self._links: list[Solid] = list(world.links.values())
         self._hand = list(world.links).index(robot.hand)
         self._T_hand_tool = robot.T_hand_tool.matrix
+        self._frames_of = LinkFrames(world, robot)
+        self._hand_radii: dict[float, float] = {}
+        self._lately: dict[bytes, list[Motion]] = {}
 
     def tool(self, row: Array) -> Array:
         """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
         self._world.set_robot(row[:3], row[3:-1], row[-1])
         hand = self._world.link_frames()[self._hand]
-        return _matrices(hand[None])[0] @ self._T_hand_tool
+        return matrices(hand[None])[0] @ self._T_hand_tool
 
-    def held_frames(self, frames: Array, held: Held) -> Array:
-        """Compute T_world_body of the held body for frames of the links, shape (n, 4, 4)."""
-        return frames[:, self._hand] @ (self._T_hand_tool @ held.T_tool_body)
+    def hand_radius(self, opening: float) -> float:
+        """Bound the distance of the tool frame's origin from any point of hand and fingers, m."""
+        if opening not in self._hand_radii:
+            row = np.array([[0.0, 0.0, 0.0, *self._robot.home, opening]])
+            frames = self._frames(row, None)
+            points = frames[:, 0] @ _corners(self._links)
+            tool = (frames[self._hand, 0] @ self._T_hand_tool)[:3, 3]
+            own = [link.owner in self._robot.grippers for link in self._links]
+            reaches = np.linalg.norm(points[own, :3] - tool[:, None], axis=1)
+            self._hand_radii[opening] = float(reaches.max())
+        return self._hand_radii[opening]
+
+    def movers(self, held: Held | None) -> list[Solid]:
+        """List what moves: the links, and the pieces of what is in the hand."""
+        bodies = [one.body for one in held.all] if held else []
+        return self._links + [piece for body in bodies for piece in self._world.solids[body]]
+
+    def motions(self, rows: Array, times: Array, held: Held | None) -> Iterator[Motion]:
+        """Yield a motion, sampled, in pieces that fit memory; the last few are remembered."""
+        parts = [rows, times, *((one.T_tool_body for one in held.all) if held else ())]
+        names = " ".join(one.body for one in held.all) if held else ""
+        key = b" ".join([names.encode(), *(np.ascontiguousarray(part).tobytes() for part in parts)])
+        if key in self._lately:
+            yield from self._lately[key]
+            return
+
+        made: list[Motion] = []
+        states = 0
+        for some, then in self.pieces(rows, times):
+            motion = self.sampled(some, then, held)
+            states += len(motion.rows)
+            if states <= KEPT:
+                made.append(motion)
+            yield motion
+        if states <= KEPT:
+            while len(self._lately) >= MOTIONS:
+                del self._lately[next(iter(self._lately))]
+            self._lately[key] = made
 
     def clipped(self, rows: Array) -> Array:
         """Clip rows to no farther out of the limits than matters; being out is reported elsewhere.
@@ -96,69 +179,88 @@ class Sampler:
         if first < len(rows) - 1:
             yield rows[first:], times[first:]
 
-    def sampled(self, rows: Array, times: Array, held: Held | None) -> tuple[Array, Array, Array]:
-        """Interpolate rows and times; return them and the links' frames, shape (n, links, 4, 4)."""
+    def sampled(self, rows: Array, times: Array, held: Held | None) -> Motion:
+        """Interpolate rows and times so that nothing moves farther than STEP and TURN between."""
         if len(rows) > 1:
             turned = np.abs(np.diff(rows[:, 2:-1], axis=0)).sum(axis=1)
-            rows, times = _divided(rows, times, np.ceil(turned / FIRST_STEP_RAD))
-        frames = self._frames(rows)
-        for _ in range(MAX_REFINEMENTS):
-            change = np.abs(np.diff(rows, axis=0))
-            moved = np.linalg.norm(np.diff(self._corners(frames, held), axis=0), axis=2).max(
-                axis=1, initial=0.0
-            )
-            parts = np.maximum(
-                moved / POINT_STEP_M, change[:, 2:-1].max(axis=1, initial=0.0) / JOINT_STEP_RAD
-            )
+            rows, times = _divided(rows, times, np.ceil(turned / COARSE))
+        solids = self.movers(held)
+        corners = _corners(solids)
+        frames = self._frames(rows, held)
+        chords = _chords(frames, corners)
+        for _ in range(PASSES):
+            change = np.abs(np.diff(rows[:, 2:-1], axis=0)).max(axis=1, initial=0.0)
+            moved = chords.max(axis=0, initial=0.0)
+            parts = np.maximum(moved / STEP, change / TURN)
             if (parts <= 1 + 1e-6).all():
                 break
-            rows, times = _divided(rows, times, np.ceil(parts * STEP_SAFETY_FACTOR))
-            frames = self._frames(rows)
-        return rows, times, frames
+            rows, times = _divided(rows, times, np.ceil(parts * SPARE))
+            frames = self._frames(rows, held)
+            chords = _chords(frames, corners)
 
-    def _frames(self, rows: Array) -> Array:
-        """Compute the links' frames, shape (n, links, 4, 4); rigid while only the base moves."""
+        shaped = np.ones(len(rows), dtype=bool)
+        shaped[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
+        ways = np.zeros((len(solids), len(rows)))
+        np.cumsum(chords, axis=1, out=ways[:, 1:])
+        return Motion(rows, times, shaped, frames, *_boxes(solids, frames), ways)
+
+    def _frames(self, rows: Array, held: Held | None) -> Array:
+        """Compute the movers' frames, shape (movers, n, 4, 4); rigid while only the base moves."""
         first = np.ones(len(rows), dtype=bool)
         first[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
-        asked = []
-        for row in rows[first]:
-            self._world.set_robot(row[:3], row[3:-1], row[-1])
-            asked.append(self._world.link_frames())
-        stacked = np.stack(asked)
-        frames = _matrices(stacked.reshape(-1, 7)).reshape(*stacked.shape[:2], 4, 4)
-        if first.all():
+        frames = self._frames_of(rows[first])
+        if not first.all():
+            T_base_links = np.linalg.inv(frames[:1]) @ frames
+            frames = base_frames(rows[:, :3]) @ T_base_links[:, np.cumsum(first) - 1]
+        if held is None:
             return frames
-        T_base_links = np.linalg.inv(frames[:, :1]) @ frames
-        return _base_frames(rows[:, :3])[:, None] @ T_base_links[np.cumsum(first) - 1]
-
-    def _corners(self, frames: Array, held: Held | None) -> Array:
-        """Compute corners of boxes around the links and the held body, shape (n, corners, 3)."""
-        signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-        at = [(frames[:, i], solid) for i, solid in enumerate(self._solids)]
-        if held is not None:
-            at += [
-                (T_world_held, solid)
-                for one in held.all
-                for T_world_held in (self.held_frames(frames, one),)
-                for solid in self._world.solids[one.body]
-            ]
-        corners = [
-            (solid.centre + signs * solid.half) @ T[:, :3, :3].transpose(0, 2, 1)
-            + T[:, None, :3, 3]
-            for T, solid in at
+        T_world_tool = frames[self._hand] @ self._T_hand_tool
+        carried = [
+            T_world_tool @ one.T_tool_body for one in held.all for _ in self._world.solids[one.body]
         ]
-        return np.concatenate(corners, axis=1)
+        return np.concatenate([frames, np.stack(carried)])
+
+
+def _corners(solids: Sequence[Solid]) -> Array:
+    """List the corners of solids' boxes in their owners' frames, shape (solids, 4, 8)."""
+    signs = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+    points = np.stack([solid.centre + signs * solid.half for solid in solids])
+    return np.concatenate([points, np.ones((len(solids), 8, 1))], axis=2).transpose(0, 2, 1)
+
+
+def _chords(frames: Array, corners: Array) -> Array:
+    """Measure how far any point of a solid moves from state to state, shape (solids, n - 1).
+
+    The farthest is a corner: what rigid motion adds to a point is affine in the point.
+    """
+    count, states = frames.shape[:2]
+    points = (frames.reshape(count, states * 4, 4) @ corners).reshape(count, states, 4, 8)
+    squares = np.square(points[:, 1:, :3] - points[:, :-1, :3])
+    lengths = squares[:, :, 0] + squares[:, :, 1] + squares[:, :, 2]
+    for half in (4, 2, 1):  # a reduction along so short an axis is slow
+        lengths = np.maximum(lengths[..., :half], lengths[..., half:])
+    return np.sqrt(lengths[..., 0])
+
+
+def _boxes(solids: Sequence[Solid], frames: Array) -> tuple[Array, Array]:
+    """Compute axis-aligned boxes of solids at these frames: corners, each (solids, n, 3)."""
+    centres = np.array([[*solid.centre, 1.0] for solid in solids])[:, None, :, None]
+    halves = np.array([solid.half for solid in solids])[:, None, :, None]
+    middles = (frames[:, :, :3] @ centres)[..., 0]
+    extents = (np.abs(frames[:, :, :3, :3]) @ halves)[..., 0]
+    return middles - extents, middles + extents
 
 
 def _divided(rows: Array, times: Array, parts: Array) -> tuple[Array, Array]:
     """Divide a polyline: its i-th edge in parts[i] equal pieces (at least one)."""
-    parts = np.maximum(parts, 1).astype(int)
-    positions = np.concatenate(
-        [np.linspace(i, i + 1, n, endpoint=False) for i, n in enumerate(parts)] + [[len(parts)]]
-    )
-    index = np.arange(len(rows))
-    columns = [np.interp(positions, index, column) for column in (times, *rows.T)]
-    return np.column_stack(columns[1:]), columns[0]
+    counts = np.maximum(parts, 1).astype(np.intp)
+    edges = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(edges)) - (np.cumsum(counts) - counts)[edges]
+    share = (edges + number * (1.0 / counts)[edges]) - edges
+    columns = np.column_stack([times, rows])
+    between = share[:, None] * np.diff(columns, axis=0)[edges] + columns[edges]
+    divided = np.concatenate([between, columns[-1:]])
+    return divided[:, 1:], divided[:, 0]
 
 
 def _unwound(rows: Array) -> Array:
@@ -184,30 +286,3 @@ def _cut(edge: Array, times: Array, count: int) -> Iterator[tuple[Array, Array]]
     for piece in range(count):
         share = np.array([[piece / count], [(piece + 1) / count]])
         yield edge[0] + share * (edge[1] - edge[0]), times[0] + share[:, 0] * (times[1] - times[0])
-
-
-def _base_frames(rows: Array) -> Array:
-    """Compute T_world_base of rows x, y, yaw, shape (n, 4, 4)."""
-    result = np.tile(np.eye(4), (len(rows), 1, 1))
-    cosine, sine = np.cos(rows[:, 2]), np.sin(rows[:, 2])
-    result[:, 0, 0] = result[:, 1, 1] = cosine
-    result[:, 1, 0], result[:, 0, 1] = sine, -sine
-    result[:, :2, 3] = rows[:, :2]
-    return result
-
-
-def _matrices(frames: Array) -> Array:
-    """Compute homogeneous matrices (n, 4, 4) of positions and quaternions xyzw, shape (n, 7)."""
-    x, y, z, w = frames[:, 3:].T
-    result = np.zeros((len(frames), 4, 4))
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
-    )
-    for row, columns in enumerate(rows):
-        for column, values in enumerate(columns):
-            result[:, row, column] = values
-    result[:, :3, 3] = frames[:, :3]
-    result[:, 3, 3] = 1.0
-    return result

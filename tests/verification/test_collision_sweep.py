@@ -52,22 +52,23 @@ def test_samples_are_close_together(world: World, rng: np.random.Generator) -> N
                 for arm in arms
             ]
         )
-        rows, times, frames = sampler.sampled(ends, np.array([0.0, 1.0]), held)
+        motion = sampler.sampled(ends, np.array([0.0, 1.0]), held)
+        rows, times = motion.rows, motion.times
         assert np.allclose(rows[[0, -1]], ends) and (np.diff(times) > 0).all()
-        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= JOINT_STEP_RAD * (1 + 1e-6)
-        tips = sampler.held_frames(frames, held) @ np.array([0.0, 0.0, 0.15, 1.0])
-        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= POINT_STEP_M * (1 + 1e-6)
+        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= TURN * (1 + 1e-6)
+        tips = motion.frames[-1] @ np.array([0.0, 0.0, 0.15, 1.0])
+        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= STEP * (1 + 1e-6)
         tried += len(rows)
     assert tried > 1000
 
 
 def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
     sampler = Sampler(world, ROBOT)
-    rows, _, frames = sampler.sampled(
-        np.array([row(), row(1.0, 0.5, 2.0)]), np.array([0.0, 1.0]), None
-    )
+    ends = np.array([row(), row(1.0, 0.5, 2.0)])
+    motion = sampler.sampled(ends, np.array([0.0, 1.0]), None)
+    rows = motion.rows
     world.set_robot(rows[70, :3], rows[70, 3:10], rows[70, 10])
-    for name, frame in zip(world.links, frames[70], strict=True):
+    for name, frame in zip(world.links, motion.frames[:, 70], strict=True):
         assert np.allclose(world.link_poses()[name], frame, atol=1e-6)
 
 
