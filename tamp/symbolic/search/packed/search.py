@@ -30,7 +30,7 @@ time is up: some hundredths of a second."""
 UNLIMITED = 1 << 62
 
 FIRST_NODES, FIRST_ENTRIES = 2_000, 40_000
-"""Room for states and entries to begin with; doubled as needed."""
+"""Room for states, and for groups and members of them, to begin with; doubled as needed."""
 
 
 def fits(names: Sequence[str], successors: Successors) -> bool:
@@ -82,8 +82,9 @@ class PackedSearch:
         self._r = r = pack_relaxation(s, relaxation, marks, arena.integers, arena.reals)
         self._x = arena.scratch(t, r)
 
-        entries = max(FIRST_ENTRIES, 4 * len(s.operators))
-        self._space, self._ints, self._reals = arena.begin(t, r, FIRST_NODES, entries)
+        entries = max(FIRST_ENTRIES, 4 * (kinds + 1) * (2 + len(s.operators)))
+        rooms = FIRST_NODES, entries, entries
+        self._space, self._ints, self._reals = arena.begin(t, r, rooms)
         self._goal_price = GoalPrice(s)
         self._goal_cost = math.inf
         self._seen = 0, 0
@@ -98,12 +99,14 @@ class PackedSearch:
         ints[basics.LIMIT] = UNLIMITED if limit is None else limit
         reals[:kinds] = math.inf
 
-        reals[space.entry_cost], ints[space.entry_parent] = 0.0, -1
-        ints[space.entry_operator], ints[basics.ENTRIES] = -1, 1
+        ints[space.members], reals[space.member_cost] = -1 - basics.GOAL_ENTRY, 0.0
+        ints[basics.MEMBERS], ints[basics.GROUPS] = 1, kinds
         for k in range(kinds):
-            place = k * space.entries
-            reals[space.keys + place] = ints[space.ties + place] = ints[space.items + place] = 0
-            ints[basics.SIZES + k] = 1
+            ints[space.group_parent + k], ints[space.group_base + k] = -1, 0
+            ints[space.group_next + k], ints[space.group_end + k] = 0, 1
+            place = k * space.groups
+            reals[space.keys + place] = ints[space.ties + place] = 0
+            ints[space.items + place], ints[basics.SIZES + k] = k, 1
 
     @property
     def expanded(self) -> int:
@@ -170,17 +173,24 @@ class PackedSearch:
             raise SearchLimitReached(Reason.TIME)
 
     def _grow(self) -> None:
-        """Double the room for states, for entries, or for both."""
-        space, n = self._space, self._ints
-        made = int(n[basics.NODES]), int(n[basics.ENTRIES])
-        nodes, entries = space.nodes, space.entries
-        if made[0] + 1 >= nodes // 2:
-            nodes *= 2
-        if made[1] + len(self._search.successors.operators) >= entries // 2:
-            entries *= 2
-        self._space, self._ints, self._reals = self._arena.grow(
-            self._t, self._r, (space, n, self._reals), nodes, entries, made
+        """Double the room for all that has filled half of its own."""
+        n, operators = self._ints, 2 + len(self._search.successors.operators)
+        kinds = self._t.heuristics
+        needs = (
+            int(n[basics.NODES]) + 1,
+            int(n[basics.GROUPS]) + kinds * operators,
+            int(n[basics.MEMBERS]) + (kinds + 1) * operators,
         )
+        rooms = [
+            room * 2 if need >= room // 2 else room
+            for need, room in zip(needs, self._space[:3], strict=True)
+        ]
+        arrays = [n, self._reals]
+        del n, self._ints, self._reals
+        self._space = self._arena.grow(
+            self._t, self._r, self._space, arrays, (rooms[0], rooms[1], rooms[2])
+        )
+        self._ints, self._reals = arrays
 
     def _take_goal(self, node: int) -> bool:
         """Take a goal state at once where its goal is free; else have it wait for a cheaper one."""
