@@ -160,6 +160,8 @@ class Space(NamedTuple):
         groups: And so many groups of successors of one state, of one key each.
         pool: And so many members of groups.
         mask: The size of the hash table less one.
+        root: For each state the last one on its way that made progress, see `open_lists.Plateau`.
+        detour: How far it is from there.
         group_next: The member of each group whose turn is next, and the end of the members.
         group_base: What is added to a member's order.
         members: Order among the state's successors, in the upper half, and operator.
@@ -176,6 +178,8 @@ class Space(NamedTuple):
     parent: int
     operator: int
     evaluated: int
+    root: int
+    detour: int
     group_parent: int
     group_next: int
     group_end: int

@@ -10,15 +10,19 @@ from __future__ import annotations
 NODES, GROUPS, MEMBERS, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6, 7
 """Places of the counters."""
 
-UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 8, 9, 10, 11, 12
+PROGRESS = 8
+"""Place of the number of states that were expanded when an estimate was a new low."""
+
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 9, 10, 11, 12, 13
 """Places of what is given: expanded states until a pause, at most, turns after progress, whether
 what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
 
-SIZES = 13
+SIZES = 14
 """From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
 
 
 GOAL_ENTRY = -2
+DETOUR, ROOT = 21, 41
 """As in `open_lists`."""
 
 

@@ -154,7 +154,8 @@ Rooms = tuple[int, int, int]
 KINDS = (np.int64, np.float64)
 
 PARTS = (
-    ("states", "marks", "parent", "operator", "evaluated", "group_parent", "group_next",
+    ("states", "marks", "parent", "operator", "evaluated", "root", "detour",
+     "group_parent", "group_next",
      "group_end", "group_base", "ties", "items", "members"),
     ("cost", "spent", "values", "keys", "member_cost"),
 )  # fmt: skip

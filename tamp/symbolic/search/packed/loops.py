@@ -14,6 +14,7 @@ from tamp.symbolic.search.packed.basics import (
     ACHIEVERS,
     AT,
     BOOST,
+    DETOUR,
     EVALUATED,
     EXPANDED,
     GOAL_ENTRY,
@@ -22,8 +23,10 @@ from tamp.symbolic.search.packed.basics import (
     LIMIT,
     MEMBERS,
     NODES,
+    PROGRESS,
     PUSHED,
     RANDOM,
+    ROOT,
     SIZES,
     UNTIL,
 )  # fmt: skip
@@ -83,6 +86,7 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
     for k in range(kinds):
         if reals[space.values + node * kinds + k] < reals[k]:
             reals[k] = reals[space.values + node * kinds + k]
+            ints[PROGRESS] = ints[EXPANDED]
             for other in range(kinds):
                 ints[SIZES + 3 * kinds + other] -= ints[BOOST]
     count = applicable(ints, t, x, x.closed)
@@ -96,9 +100,12 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         first = achievers(ints, t, r, x, space, node, first, count)
 
     cost, spent = reals[space.cost + node], reals[space.spent + node]
-    # among equals greedy search goes on from the state just expanded, weighted A* takes the older
-    newest = greedy and not ints[RANDOM]
-    base = -ints[EXPANDED] * t.operators if newest else ints[PUSHED] + 1
+    # among equals weighted A* takes the older, greedy search what is nearest to the last progress
+    base = ints[PUSHED] + 1
+    if greedy:
+        base = (
+            ((ints[space.detour + node] + 2) << DETOUR) - (ints[space.root + node] << ROOT) - node
+        )
     found, classes, chosen = 0, 0, 0
     for rank in range(first + count):
         i = ints[x.helpful + rank] if rank < first else ints[x.applicable + rank - first]
@@ -122,7 +129,7 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         if dearer != 0.0 and ints[x.in_plan + i]:
             covered = paid(ints, reals, r, x, i)
         classes = collect(
-            ints, reals, x, found, classes, rank if newest else found, i, reached,
+            ints, reals, x, found, classes, rank if greedy else found, i, reached,
             0.0 if greedy else step, dearer, covered,
         )  # fmt: skip
         found += 1
@@ -134,6 +141,20 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         ints[x.is_applicable + ints[x.applicable + k]] = 0
     for k in range(first):
         ints[x.is_helpful + ints[x.helpful + k]] = 0
+
+
+def place(ints, reals, t, space, node, parent, rank):
+    """Note which state made the last progress on the way to one, and how far that is away."""
+    kinds = t.heuristics
+    ints[space.root + node], ints[space.detour + node] = node, 0
+    if parent < 0:
+        return
+    root = ints[space.root + parent]
+    for k in range(kinds):
+        if reals[space.values + node * kinds + k] < reals[space.values + root * kinds + k]:
+            return
+    ints[space.root + node] = root
+    ints[space.detour + node] = ints[space.detour + parent] + 1 + rank
 
 
 def arrive(ints, reals, t, x, space, i, parent, reached, greedy):
@@ -186,7 +207,7 @@ def run(ints, reals, t, r, x, space, weight, below):
         if chosen < 0:
             return EXHAUSTED
 
-        parent, member = pop(ints, reals, space, chosen)
+        parent, member = pop(ints, reals, space, chosen, greedy)
         i = (ints[space.members + member] & 0xFFFFFFFF) + GOAL_ENTRY
         reached = reals[space.member_cost + member]
         if i == GOAL_ENTRY:
@@ -211,6 +232,7 @@ def run(ints, reals, t, r, x, space, weight, below):
         if not dead:
             if ints[EXPANDED] >= ints[LIMIT]:
                 return LIMITED
+            place(ints, reals, t, space, node, parent, ints[space.members + member] >> 32)
             expand(ints, reals, t, r, x, space, node, length, weight, below)
         for k in range(length):
             ints[x.in_plan + ints[x.plan + k]] = 0

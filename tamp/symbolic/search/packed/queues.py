@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 
 from tamp.symbolic.search.packed.basics import (
+    DETOUR,
     GOAL_ENTRY,
     GOAL_NODE,
     GROUPS,
@@ -36,13 +37,19 @@ def list_push(ints, reals, space, k, key, tie, group):
     ints[SIZES + k] += 1
 
 
-def add_group(ints, reals, space, k, key, parent, first, last, base):
+def tie_of(ints, space, group, member, greedy):
+    """Return what decides among equal keys when a member's turn has come."""
+    order = ints[space.members + member] >> 32
+    return ints[space.group_base + group] + (order << DETOUR if greedy else order)
+
+
+def add_group(ints, reals, space, k, key, parent, first, last, base, greedy):
     """Push the members from `first` up to `last` as a group onto the k-th open list."""
     group = ints[GROUPS]
     ints[GROUPS] += 1
     ints[space.group_parent + group], ints[space.group_base + group] = parent, base
     ints[space.group_next + group], ints[space.group_end + group] = first, last
-    tie = base + (ints[space.members + first] >> 32)
+    tie = tie_of(ints, space, group, first, greedy)
     list_push(ints, reals, space, k, key, tie, group)
 
 
@@ -55,7 +62,7 @@ def add_member(ints, reals, space, order, operator, reached):
     return member
 
 
-def push_goal(ints, reals, t, space, node, cost, key):
+def push_goal(ints, reals, t, space, node, cost, key, greedy):
     """Push a goal state that costs something to derive: it waits for what is cheaper than it."""
     kinds = t.heuristics
     ints[PUSHED] += 1
@@ -63,7 +70,7 @@ def push_goal(ints, reals, t, space, node, cost, key):
     member = add_member(ints, reals, space, 0, GOAL_ENTRY, cost)
     for k in (0, kinds):
         if k == 0 or ints[SIZES + k]:
-            add_group(ints, reals, space, k, key, node, member, member + 1, ints[PUSHED])
+            add_group(ints, reals, space, k, key, node, member, member + 1, ints[PUSHED], greedy)
 
 
 def turn(ints, reals, t, space, greedy):
@@ -90,7 +97,7 @@ def turn(ints, reals, t, space, greedy):
     return chosen
 
 
-def pop(ints, reals, space, k):
+def pop(ints, reals, space, k, greedy):
     """Pop the first member of the k-th open list: its parent, and the member."""
     base = k * space.groups
     keys, ties, items = space.keys + base, space.ties + base, space.items + base
@@ -99,7 +106,7 @@ def pop(ints, reals, space, k):
     ints[space.group_next + group] += 1
 
     if member + 1 < ints[space.group_end + group]:
-        tie = ints[space.group_base + group] + (ints[space.members + member + 1] >> 32)
+        tie = tie_of(ints, space, group, member + 1, greedy)
         heap_sift(ints, reals, keys, ties, items, ints[SIZES + k], reals[keys], tie, group)
     else:
         ints[SIZES + k] -= 1
@@ -160,7 +167,9 @@ def push(ints, reals, t, x, space, node, found, helpful, classes, base, weight):
                 extra = extra - reals[x.class_paid + c]
             key = h + extra if greedy else cost + reals[x.class_step + c] + extra + weight * h
             last = ints[x.class_at + c]
-            add_group(ints, reals, space, k, key, node, last - ints[x.class_size + c], last, base)
+            add_group(
+                ints, reals, space, k, key, node, last - ints[x.class_size + c], last, base, greedy
+            )
         first = ints[MEMBERS]
         for f in range(helpful):
             c = ints[x.found_class + f]
@@ -174,4 +183,4 @@ def push(ints, reals, t, x, space, node, found, helpful, classes, base, weight):
                 )  # fmt: skip
         if ints[MEMBERS] > first:
             key = h if greedy else cost + weight * h
-            add_group(ints, reals, space, kinds + k, key, node, first, ints[MEMBERS], base)
+            add_group(ints, reals, space, kinds + k, key, node, first, ints[MEMBERS], base, greedy)

@@ -44,7 +44,7 @@ def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Pla
 
 
 class Stalled(Exception):
-    """Says that a search has expanded as many states as it was to."""
+    """Says that a search has made no progress for as many states as it was to wait."""
 
 
 class PackedSearch:
@@ -113,23 +113,25 @@ class PackedSearch:
         """Return how many states this search itself has expanded."""
         return int(self._ints[basics.EXPANDED])
 
-    def plan(self, until: int = UNLIMITED) -> Plan | None:
+    def plan(self, patience: int = UNLIMITED) -> Plan | None:
         """Run the loop until there is a plan, or nothing is left, or a limit is reached.
 
         Args:
-            until: Expanded states after which the search pauses; it can go on later.
+            patience: Expanded states without a new low of an estimate, from now on or from the
+                last one, after which the search pauses; it can go on later.
 
         Raises:
-            Stalled: So many are expanded.
+            Stalled: So many were.
         """
         search = self._search
         if not self._possible:
             search.evaluated = 1
             s = search.successors
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
+        began = self.expanded
         while True:
             n = self._ints
-            n[basics.UNTIL] = self._until(until)
+            n[basics.UNTIL] = self._until(max(began, int(n[basics.PROGRESS])) + patience)
             why = self._compiled.RUN(
                 n, self._reals, self._t, self._r, self._x, self._space, self._weight, search.below
             )
@@ -148,7 +150,7 @@ class PackedSearch:
                 self._grow()
             else:
                 self._look_around()
-                if self.expanded >= until:
+                if self.expanded >= max(began, int(n[basics.PROGRESS])) + patience:
                     raise Stalled
 
     def _count(self) -> None:
@@ -203,8 +205,9 @@ class PackedSearch:
         if cost + price < self._goal_cost:
             self._goal_cost = cost + price
             key = price if self._weight == math.inf else self._goal_cost
+            greedy = self._weight == math.inf
             self._compiled.PUSH_GOAL(
-                self._ints, self._reals, self._t, self._space, node, self._goal_cost, key
+                self._ints, self._reals, self._t, self._space, node, self._goal_cost, key, greedy
             )
         return False
 
