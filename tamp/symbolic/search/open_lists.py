@@ -31,7 +31,7 @@ ends: bits."""
 
 
 class Plateau(NamedTuple):
-    """Where a state is that greedy search expands, seen from the last progress on the way to it.
+    """A place of greedy search: how far a state is from the last progress on the way to it.
 
     Among equal estimates those go first whose detour from the newest progress is the shortest: a
     step counts one, and one more for each operator that would have gone before. So the best

@@ -125,9 +125,8 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
             continue
 
         dearer = reached - cost - step
-        covered = 0.0
-        if dearer != 0.0 and ints[x.in_plan + i]:
-            covered = paid(ints, reals, r, x, i)
+        counts = dearer != 0.0 and ints[x.in_plan + i]
+        covered = paid(ints, reals, r, x, i) if counts else 0.0
         classes = collect(
             ints, reals, x, found, classes, rank if greedy else found, i, reached,
             0.0 if greedy else step, dearer, covered,
