@@ -55,7 +55,7 @@ DOMAIN = """
     :effect (and (at-pose ?o ?p) (hand-empty) (not (holding ?o ?g)) (increase (total-cost) 1))))
 """
 
-TESTS = frozenset(("pose-clear", "reach-clear"))
+TESTS = {"pose-clear": (), "reach-clear": ()}
 Instance = tuple[Task, frozenset[Fact], dict[str, tuple[str, ...]]]
 
 

@@ -5,12 +5,14 @@
 
 The peers come from pinned wheels, into an environment of their own that is made where it is missing. Our time is that
 of reading, instantiating and searching, in a process whose kernels are loaded; of a peer's process the CPU time of its
-smallest task is taken off: start-up counts on neither side. Ratios are medians of pairs.
+smallest task is taken off: start-up counts on neither side. Ratios are medians of pairs; a run without a plan takes
+for ever and costs infinitely much, whichever side it is on, and pairs in which neither has one are left out.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import resource
@@ -153,6 +155,24 @@ def install(peers: Path) -> None:
         subprocess.run([str(peers / "bin" / "pip"), "install", "-q", *PINS], check=True)
 
 
+def spent_of(row: dict[str, object]) -> float:
+    """The CPU seconds of a run without its start-up; infinite without a plan."""
+    if row["cost"] is None:
+        return math.inf
+    return max(0.005, float(str(row["cpu_s"])) - float(str(row.get("start_s", 0.0))))
+
+
+def cost_of(row: dict[str, object]) -> float:
+    """The cost of a run's plan; infinite without one."""
+    return math.inf if row["cost"] is None else float(str(row["cost"]))
+
+
+def ratio(ours: list[float], theirs: list[float]) -> float:
+    """The median ratio of the pairs of which a side has a plan; not a number where there are none."""
+    pairs = [(a, b) for a, b in zip(ours, theirs, strict=True) if min(a, b) < math.inf]
+    return median(math.inf if a == math.inf else a / b if b else 1.0 for a, b in pairs) if pairs else math.nan
+
+
 def compared(options: Options, path: Path, least: Path) -> dict[str, object]:
     """Run the pairs of a task: the row of the table."""
     peers = {"lama": lama, **({"pyperplan": pyperplan} if options.pyperplan else {})}
@@ -166,17 +186,17 @@ def compared(options: Options, path: Path, least: Path) -> dict[str, object]:
             config = {"task": path.name, "planner": name, "time_s": options.seconds, "pins": PINS}
             record("side_by_side.jsonl", seed=0, config=config, turn=turn, **rows[name][-1])
 
-    mine = [float(str(row["cpu_s"])) for row in rows["ours"]]
-    cost = rows["ours"][0]["cost"]
-    line: dict[str, object] = {"task": path.name, "ours [s]": median(mine), "cost": cost or float("nan")}
+    mine = [spent_of(row) for row in rows["ours"]]
+    cost = cost_of(rows["ours"][0])
+    line: dict[str, object] = {"task": path.name, "ours [s]": median(mine), "cost": cost}
     for name in peers:
-        theirs = [max(0.005, float(str(row["cpu_s"])) - float(str(row["start_s"]))) for row in rows[name]]
-        dear = rows[name][0]["cost"]
+        theirs = [spent_of(row) for row in rows[name]]
+        dear = cost_of(rows[name][0])
         line |= {
             f"{name} [s]": median(theirs),
-            f"{name} cost": dear or float("nan"),
-            f"{name} ratio": median(a / b for a, b in zip(mine, theirs, strict=True)),
-            f"{name} cost ratio": float(str(cost)) / float(str(dear)) if cost and dear else float("nan"),
+            f"{name} cost": dear,
+            f"{name} ratio": ratio(mine, theirs),
+            f"{name} cost ratio": ratio([cost], [dear]),
         }
     return line
 

@@ -112,6 +112,7 @@ def plan(
         search=options.pddl.search,
         heuristic=options.pddl.heuristic,
         max_time=budget.left(),
+        seed=options.seed,
     )
 
 

@@ -42,6 +42,7 @@ def solve_symbolic_parallel(
     search: str | None,
     heuristic: str | None,
     max_time: float,
+    seed: int = 0,
 ) -> SymbolicSolution:
     """Plan by several searches; the first plan, or proof that there is none, counts.
 
@@ -52,12 +53,15 @@ def solve_symbolic_parallel(
         search: Of the first one, as for `solve_symbolic`; if it is optimal, so are the others.
         heuristic: Of the first one.
         max_time: Seconds.
+        seed: As for `solve_symbolic`.
 
     Raises:
         InputError: As for `solve_symbolic`.
     """
     if jobs == 1:
-        return solve_symbolic(problem, search=search, heuristic=heuristic, max_time=max_time)
+        return solve_symbolic(
+            problem, search=search, heuristic=heuristic, max_time=max_time, seed=seed
+        )
     prepare_loops()
     deadline = Deadline(max_time)
     pairs = portfolio(search, heuristic, jobs)
@@ -65,7 +69,11 @@ def solve_symbolic_parallel(
     def member(search: str, heuristic: str) -> Callable[[Tell], dict[str, Any]]:
         def run(tell: Tell) -> dict[str, Any]:
             solution = solve_symbolic(
-                problem, search=search, heuristic=heuristic, max_time=deadline.left()
+                problem,
+                search=search,
+                heuristic=heuristic,
+                max_time=deadline.left(),
+                seed=seed,
             )
             solution = replace(solution, plan=tuple(map(_bare, solution.plan)))
             return {

@@ -28,6 +28,15 @@ SHORTENING = 500_000
 """What a search for a shorter plan goes through at most, in states times preconditions of all
 operators: a tenth of a second."""
 
+STRAIGHT = 600
+"""Expanded states of a greedy search that went straight to the goal: then `AS_MANY` times as many,
+each of which may take ten times as long, are worth a plan that takes no detours."""
+
+AS_MANY = 4
+
+WEIGHTS = (2.0, 5.0)
+"""Of the estimates in the search for a shorter plan: the next where the last has found none."""
+
 OTHERS = (("eager", "ff"), ("wastar", "blind"))
 """Searches and heuristics that go on where a plan does not hold when it is replayed."""
 
@@ -116,6 +125,7 @@ def solve_symbolic(
     search: str | None = None,
     heuristic: str | None = None,
     max_time: float = 30.0,
+    seed: int = 0,
 ) -> SymbolicSolution:
     """Plan: instantiate the task, search, and have the plan replayed.
 
@@ -126,6 +136,7 @@ def solve_symbolic(
         heuristic: Names of `HEURISTICS` with + between them, by default "ff+landmarks", for A*
             "lmcut".
         max_time: Seconds.
+        seed: Of the random orders in which greedy search begins anew where it stalls.
 
     Raises:
         InputError: A name that is not known, or a task that cannot be instantiated.
@@ -133,7 +144,7 @@ def solve_symbolic(
     search, heuristic = choose(search, heuristic)
     deadline = Deadline(max_time)
     try:
-        return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline))
+        return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline, seed))
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return SymbolicSolution(
@@ -142,7 +153,7 @@ def solve_symbolic(
 
 
 def _solve(
-    problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline
+    problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline, seed: int
 ) -> SymbolicSolution:
     started = time.perf_counter()
     task = problem.task
@@ -151,7 +162,7 @@ def _solve(
     refuted: list[str] = []
 
     for way in ((name, heuristic), *OTHERS):
-        found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline)
+        found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline, seed=seed)
         reason = refutation(task, found.plan)
         if reason is None:
             found = _shortened(task, instantiated, found, deadline) if name == SEARCH else found
@@ -197,22 +208,30 @@ def _shortened(
     """
     entries = sum(1 + len(operator.positive) for operator in instantiated.operators)
     limit = SHORTENING // max(1, entries)
+    if found.expanded <= STRAIGHT:
+        limit = max(limit, min(AS_MANY * found.expanded, 10 * SHORTENING // max(1, entries)))
     if found.plan is None or limit < len(found.plan.operators):
         return found
 
-    cost = sum(operator.cost for operator in found.plan.operators)
-    try:
-        better = search(
-            instantiated, search="wastar", limit=limit, deadline=deadline, below=cost - 1e-9
-        )
-    except OutOfTime:
-        return found
-    counts = {
-        "expanded": found.expanded + better.expanded,
-        "evaluated": found.evaluated + better.evaluated,
-    }
-    holds = better.plan is not None and refutation(task, better.plan) is None
-    return replace(better if holds else found, **counts)
+    below = sum(operator.cost for operator in found.plan.operators) - 1e-9
+    for weight in WEIGHTS:
+        try:
+            better = search(
+                instantiated, search="wastar", weight=weight, limit=limit, deadline=deadline,
+                below=below,
+            )  # fmt: skip
+        except OutOfTime:
+            break
+        counts = {
+            "expanded": found.expanded + better.expanded,
+            "evaluated": found.evaluated + better.evaluated,
+        }
+        if better.plan is not None and refutation(task, better.plan) is None:
+            return replace(better, **counts)
+        found = replace(found, **counts)
+        if better.reason is Reason.UNSOLVABLE:
+            break  # nothing is cheaper
+    return found
 
 
 def refutation(task: Task, plan: Plan | None) -> str | None:

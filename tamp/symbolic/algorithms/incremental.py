@@ -207,7 +207,7 @@ def _excluded_from_the_start(run: Run) -> bool:
             return False
         facts.lazily_tested = task.lazily_tested
         types = {**task.objects.types, **facts.types}
-        instantiator = Instantiator(task.task, frozenset(task.lazily_tested))
+        instantiator = Instantiator(task.task, task.assumed)
         instantiated = instantiator.instantiate(list(facts.producers), types)
         if not exclude_each_other(instantiated, run.deadline):
             return False

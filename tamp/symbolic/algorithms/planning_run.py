@@ -141,6 +141,7 @@ def search_plan(run: Run, *, weight: float = WEIGHT, below: float = math.inf) ->
             weight=weight,
             below=below,
             brief=run.brief,
+            seed=int(run.make_rng("restarts of the search").random() * 2**53),
         )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from tamp.symbolic.algorithms.bound_stream import BoundStream, Objects
 from tamp.symbolic.algorithms.costs import Costs
 from tamp.symbolic.algorithms.optimistic.anything import anything
-from tamp.symbolic.algorithms.optimistic.assumable_tests import assumable
+from tamp.symbolic.algorithms.optimistic.assumable_tests import assumable, given_for
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import (
     relevant,
@@ -18,6 +18,7 @@ from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import (
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.structs import Atom, Fact, Formula, Task
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
+from tamp.symbolic.search.instantiation.predicate_kinds import Assumed
 from tamp.symbolic.search.operators import InstantiatedTask
 
 
@@ -33,6 +34,7 @@ class PlanningTask:
         streams: Those that are instantiated.
         lazily_tested: Predicates of tests that are taken to hold wherever they are asked for, each
             with its stream and the atom that it certifies (see `assumable`).
+        assumed: The same with the facts that must be given for that (see `given_for`).
         initial_facts: The initial facts, and types as facts.
         shown_facts: Initial facts that no action changes and that streams are shown.
         instantiator: Of the symbolic task.
@@ -44,6 +46,7 @@ class PlanningTask:
     costs: Costs
     streams: tuple[BoundStream, ...]
     lazily_tested: Mapping[str, tuple[BoundStream, Atom]]
+    assumed: Assumed
     initial_facts: tuple[Fact, ...]
     shown_facts: frozenset[Fact]
     instantiator: Instantiator
@@ -68,7 +71,7 @@ class PlanningTask:
         instantiator = self.instantiator
         if goal is not None:
             other = replace(self.task, goal=goal)
-            instantiator = Instantiator(other, frozenset(self.lazily_tested))
+            instantiator = Instantiator(other, self.assumed)
         return instantiator.instantiate(facts, types, false_facts)
 
 
@@ -94,6 +97,7 @@ def prepare(problem: StreamTask, *, pruned: bool = True) -> PlanningTask:
         lambda types: any(task.domain.fits(types, want) for want in wanted),
     )
     lazily_tested = assumable(useful, task)
+    assumed = given_for(lazily_tested, problem.streams, task)
     tests = {stream.name for stream, _ in lazily_tested.values()}
     streams = useful if pruned else problem.streams
 
@@ -107,7 +111,8 @@ def prepare(problem: StreamTask, *, pruned: bool = True) -> PlanningTask:
         costs=costs,
         streams=tuple(stream for stream in streams if stream.name not in tests),
         lazily_tested=lazily_tested,
+        assumed=assumed,
         initial_facts=(*sorted(task.initial), *type_facts(task)),
         shown_facts=frozenset(fact for fact in task.initial if fact[0] in shown),
-        instantiator=Instantiator(priced, frozenset(lazily_tested)),
+        instantiator=Instantiator(priced, assumed),
     )

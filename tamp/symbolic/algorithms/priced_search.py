@@ -55,6 +55,7 @@ def priced_search(
     weight: float = WEIGHT,
     below: float = math.inf,
     brief: bool = False,
+    seed: int = 0,
 ) -> PricedPlan | None:
     """Search for a plan that avoids what failed.
 
@@ -69,6 +70,7 @@ def priced_search(
         below: What the actions of the plan must cost less than; when it is given, there is one try
             only.
         brief: End without a plan after SEARCH_LIMIT states.
+        seed: Of the orders in which a search that stalls begins anew.
     """
     guarded, prices = with_nogoods(optimistic.instantiated, experience)
     task = avoid_failing_states(guarded, experience, optimistic.facts)
@@ -91,7 +93,7 @@ def priced_search(
             patience.note(in_vain=found.reason is Reason.LIMIT)
     if found is None or (found.reason is Reason.LIMIT and any_will_do):
         # with many prices many plans look alike: then any plan will do
-        found = search(task, search="greedy", price=prices, deadline=deadline)
+        found = search(task, search="greedy", price=prices, deadline=deadline, seed=seed)
         effort.expanded += found.expanded
     return None if found.plan is None else PricedPlan(found.plan, task, prices, found.expanded)
 

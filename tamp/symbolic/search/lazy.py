@@ -7,7 +7,7 @@ import math
 from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.heuristics.registry import Estimate
-from tamp.symbolic.search.open_lists import GOAL_ENTRY, Expanded, OpenLists
+from tamp.symbolic.search.open_lists import GOAL_ENTRY, Expanded, OpenLists, Plateau
 from tamp.symbolic.search.successors import State, Successors
 
 
@@ -20,7 +20,7 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
     """
     run = _LazySearch(search, weight)
     while (entry := run.open.pop()) is not None:
-        _, _, cost, state, parent, operator = entry
+        _, order, cost, state, parent, operator = entry
         if run.is_goal(state, operator):
             return search.plan(state)
         if run.is_closed(state, cost):
@@ -34,6 +34,7 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
 
         node = run.evaluate(state, closed, cost, parent)
         if math.inf not in node.values:
+            run.place(node, parent, order)
             run.expand(node, closed)
     return None
 
@@ -52,6 +53,7 @@ class _LazySearch:
         self._closed: dict[State, float] = {}
         self._spent = {s.initial: 0.0}  # what the operators on the way have cost, prices aside
         self._estimates: dict[State, tuple[Estimate, ...]] = {}
+        self._plateaus: dict[State, Plateau] = {}
 
     def is_goal(self, state: State, operator: int) -> bool:
         """Check that an entry is the cheapest goal state, whose turn has come."""
@@ -90,6 +92,18 @@ class _LazySearch:
             estimates = self._estimates[state] = self._search.estimate(closed, before)
         return Expanded(state, cost, estimates, tuple(one.value for one in estimates))
 
+    def place(self, node: Expanded, parent: State | None, order: int) -> None:
+        """Note where greedy search has come to: how far from the last progress."""
+        if not self._greedy:
+            return
+        number = len(self._closed) - 1
+        before = None if parent is None else self._plateaus[parent]
+        self._plateaus[node.state] = (
+            Plateau(number, number, 0, node.values)
+            if before is None
+            else before.after(number, order, node.values)
+        )
+
     def expand(self, node: Expanded, closed: State) -> None:
         """Expand a state: push its successors, those by preferred operators first."""
         search, s, greedy = self._search, self._successors, self._greedy
@@ -98,7 +112,7 @@ class _LazySearch:
         self.open.boost(node.values)
         applicable = s.applicable(closed)
         helpful = _helpful(s, state, closed, applicable, node.estimates)
-        spent, first = self._spent[state], search.expanded * len(s.operators)
+        spent, plateau = self._spent[state], self._plateaus.get(state)
 
         for rank, operator in enumerate((*helpful, *applicable)):
             preferred = rank < len(helpful)
@@ -115,9 +129,9 @@ class _LazySearch:
             if reached == math.inf or (known is not None and reached >= known):
                 continue
 
-            # Among equals greedy search goes on from the state just expanded, weighted A* takes
+            # Among equals greedy search takes what is nearest to the newest progress, weighted A*
             # the older.
-            order = rank - first if greedy else None
+            order = None if plateau is None else plateau.order(rank)
             self.open.push(node, operator, after, reached, step, order, preferred)
 
 

@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
-from tamp.symbolic.pddl.atoms import atoms, signed_atoms
+from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.pddl.structs import Atom, Task
+from tamp.symbolic.search.instantiation.effects import lifted_effects
+from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
+from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 
 
 def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[BoundStream, Atom]]:
-    """Return the tests whose facts only lift a guard: under a negation in a derived rule.
+    """Return the tests whose facts only lift a guard (see `guard_lifters`).
 
     Such a test certifies one fact with all its inputs in it, and no other stream certifies or needs
-    that predicate. It is asked of what streams give, or of types: where only given facts say what
-    it may be asked of, they are looked up.
+    that predicate. It is asked of what streams give, of types, or of given facts (`given_for`).
     """
     everything = list(streams)
-    positive = {atom.predicate for atom, sign in atoms_of(task) if sign}
-    positive |= {atom.predicate for stream in everything for atom in stream.declaration.domain}
+    lifters = guard_lifters(task)
+    changing = task.domain.fluent_predicates | {rule.head.predicate for rule in task.domain.derived}
+    needed = {atom.predicate for stream in everything for atom in stream.declaration.domain}
 
     producers: dict[str, list[tuple[BoundStream, Atom]]] = defaultdict(list)
     for stream in everything:
@@ -33,24 +36,84 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
         and made[0][0].is_test
         and len(made[0][0].declaration.certified) == 1
         and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
-        and predicate not in positive
-        and all(
-            atom.predicate in producers or atom.predicate in task.domain.types
-            for atom in made[0][0].declaration.domain
-        )
+        and predicate in lifters
+        and predicate not in needed
+        and changing.isdisjoint(atom.predicate for atom in made[0][0].declaration.domain)
     }
 
 
-def atoms_of(task: Task) -> Iterator[tuple[Atom, bool]]:
-    """Yield the atoms of all conditions, each with whether it helps by holding.
+def given_for(
+    tests: Mapping[str, tuple[BoundStream, Atom]], streams: Iterable[BoundStream], task: Task
+) -> dict[str, list[tuple[str, tuple[int, ...]]]]:
+    """Return for each assumable test the given facts without which it is never asked.
 
-    In an action's condition a negation counts as help, since only a derived rule's negation can
-    become a guard.
+    Those are facts of its domain that neither streams give nor types say: predicates, and the
+    places of their terms in the test's own fact.
     """
+    made = {atom.predicate for stream in streams for atom in stream.declaration.certified}
+    types = {"object", *task.domain.types}
+    return {
+        predicate: [
+            (atom.predicate, tuple(fact.terms.index(term) for term in atom.terms))
+            for atom in stream.declaration.domain
+            if atom.predicate not in made and atom.predicate not in types
+        ]
+        for predicate, (stream, fact) in tests.items()
+    }
+
+
+def guard_lifters(task: Task) -> frozenset[str]:
+    """Return the predicates of which conditions ask nothing but that a fact lifts a guard.
+
+    A guard comes from a rule that is only ever refuted, a derived one or the body of a `not
+    exists`: `not exists b, q. at(b, q) and not free(p, q)` is guarded by each at(b, q), and
+    free(p, q) lifts that. The polarity is that of the normal form, in which rules are unfolded:
+    what an action asks for itself, even under a negation, and what a rule asks for that has to
+    hold, is no guard.
+    """
+    derived = {rule.head.predicate for rule in task.domain.derived}
+    given = frozenset(derived.intersection(fact[0] for fact in task.initial))
+    normalizer = Normalizer(task.domain, given)
+    roots = normalizer.split(task.goal, {})
+    for action in task.domain.actions:
+        scope = {parameter.name: parameter.types for parameter in action.parameters}
+        roots += normalizer.split(action.precondition, scope)
+        roots += [c for one in lifted_effects(action, normalizer) for c in one.conditions]
+
+    recursive = PredicateKinds(task, normalizer).recursive()  # refuted state by state
+    lifting: set[str] = set()
+    others: set[str] = set()
+    rules: dict[tuple[str, bool], None] = {}
+
+    def walk(literals: Literals, refuted: bool) -> None:
+        for sign, part in ((True, literals.positive), (False, literals.negative)):
+            for name in (atom.predicate for atom in part):
+                if name not in normalizer.definitions:
+                    (lifting if refuted and not sign else others).add(name)
+                    continue
+                if sign or refuted:
+                    rules.setdefault((name, False))  # a join goes over the facts that hold
+                if sign is refuted:
+                    rules.setdefault((name, True))
+
+    for literals in roots:
+        walk(literals, False)
+    done = 0
+    while done < len(rules):
+        name, refuted = list(rules)[done]
+        done += 1
+        if refuted and name in recursive and not name.startswith("forall "):
+            rules.setdefault((name, False))
+        for definition in normalizer.definitions[name]:
+            walk(definition.literals, refuted)
+    return frozenset(lifting - others)
+
+
+def atoms_of(task: Task) -> Iterator[Atom]:
+    """Yield the atoms of all conditions."""
     conditions = [task.goal]
     for action in task.domain.actions:
         conditions += [action.precondition, *(effect.condition for effect in action.effects)]
+    conditions += [rule.body for rule in task.domain.derived]
     for condition in conditions:
-        yield from ((atom, True) for atom in atoms(condition))
-    for rule in task.domain.derived:
-        yield from signed_atoms(rule.body)
+        yield from atoms(condition)

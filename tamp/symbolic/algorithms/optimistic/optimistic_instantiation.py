@@ -235,4 +235,4 @@ def type_facts(task: Task) -> list[Fact]:
 
 def used_predicates(task: Task) -> set[str]:
     """Return the predicates that conditions of the task mention."""
-    return {atom.predicate for atom, _ in atoms_of(task)}
+    return {atom.predicate for atom in atoms_of(task)}

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from tamp.symbolic.pddl.structs import Fact, Task
 from tamp.symbolic.search.instantiation.normal_form import Types
+from tamp.symbolic.search.instantiation.predicate_kinds import NOTHING, Assumed
 from tamp.symbolic.search.instantiation.task_instantiation import Instantiation
 from tamp.symbolic.search.operators import InstantiatedTask
 
@@ -15,7 +16,7 @@ def instantiate(
     facts: Iterable[Fact] = (),
     objects: Mapping[str, Types] | None = None,
     *,
-    assumed: frozenset[str] = frozenset(),
+    assumed: Assumed = NOTHING,
     refused: frozenset[Fact] = frozenset(),
 ) -> InstantiatedTask:
     """Instantiate a task once; see `Instantiator`."""
@@ -29,10 +30,10 @@ class Instantiator:
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
         assumed: Static predicates of tests that are taken to hold, without listing their facts,
-            where they would waive a guard.
+            where they would waive a guard; each with what must be given for that (`Assumed`).
     """
 
-    def __init__(self, task: Task, assumed: frozenset[str] = frozenset()) -> None:
+    def __init__(self, task: Task, assumed: Assumed = NOTHING) -> None:
         self._task, self._assumed = task, assumed
         self._facts: frozenset[Fact] = frozenset()
         self._run: Instantiation | None = None

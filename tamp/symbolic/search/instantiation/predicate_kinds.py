@@ -4,8 +4,9 @@ happens.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from tamp.symbolic.pddl.structs import Atom, Fact, Task
 from tamp.symbolic.search.instantiation.datalog import Body, Relations, Row
@@ -17,6 +18,12 @@ from tamp.symbolic.search.instantiation.normal_form import (
     type_relation,
 )
 from tamp.symbolic.search.operators import ANY
+
+Assumed = Mapping[str, Sequence[tuple[str, tuple[int, ...]]]]
+"""Predicates that are taken to hold, each with the static facts that must be given: predicates, and
+which of its terms these are about."""
+
+NOTHING: Assumed = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +50,13 @@ class PredicateKinds:
         recursive: Derived predicates that depend on themselves.
         relations: Rows of every predicate; the initial state's rows of the fluent ones.
         certain: Static facts of the initial state: no stream is needed for them.
-        assumed: Static predicates whose facts are taken to hold unless refused.
+        assumed: Static predicates whose facts are taken to hold unless refused, each with what must
+            be given of their terms.
         refused: Facts of those that do not hold.
         given: Facts of derived predicates that were given nevertheless.
     """
 
-    def __init__(
-        self, task: Task, normalizer: Normalizer, assumed: frozenset[str] = frozenset()
-    ) -> None:
+    def __init__(self, task: Task, normalizer: Normalizer, assumed: Assumed = NOTHING) -> None:
         self._task = task
         self._normalizer = normalizer
         self.assumed = assumed
@@ -96,9 +102,15 @@ class PredicateKinds:
         """Check that a static fact is known, or of a predicate that is assumed to hold and not
         refused.
         """
-        if fact[1:] in self.relations.rows(fact[0]):
+        rows = self.relations.rows
+        if fact[1:] in rows(fact[0]):
             return True
-        return fact[0] in self.assumed and fact not in self.refused
+        if fact[0] not in self.assumed or fact in self.refused:
+            return False
+        return all(
+            tuple([fact[1 + place] for place in places]) in rows(predicate)
+            for predicate, places in self.assumed[fact[0]]
+        )
 
     def recursive(self) -> frozenset[str]:
         """Return the derived predicates that depend on themselves."""

@@ -24,7 +24,7 @@ from tamp.symbolic.search.instantiation.operator_templates import (
     action_rule,
     effect_rules,
 )
-from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
+from tamp.symbolic.search.instantiation.predicate_kinds import Assumed, PredicateKinds
 from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Operator
 
 
@@ -33,16 +33,14 @@ class Instantiation:
 
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
-        assumed: Static predicates of tests that are taken to hold.
+        assumed: Static predicates of tests that are taken to hold, see `Assumed`.
         given: Derived predicates of which facts are given besides.
 
     Attributes:
         absences: The static predicates that some condition wants not to hold.
     """
 
-    def __init__(
-        self, task: Task, assumed: frozenset[str], given: frozenset[str] = frozenset()
-    ) -> None:
+    def __init__(self, task: Task, assumed: Assumed, given: frozenset[str] = frozenset()) -> None:
         self._task = task
         self._normalizer = normalizer = Normalizer(task.domain, given)
         split: list[tuple[Action, Literals, tuple[LiftedEffect, ...]]] = []

@@ -153,16 +153,24 @@ class Relaxed(NamedTuple):
 
 
 class Space(NamedTuple):
-    """The closed states with a hash table, and the open lists: heaps over one pool of entries.
+    """The closed states with a hash table, and the open lists: heaps over one pool of groups.
 
     Attributes:
         nodes: Room for so many states.
-        entries: And so many entries.
+        groups: And so many groups of successors of one state, of one key each.
+        pool: And so many members of groups.
         mask: The size of the hash table less one.
+        root: For each state the last one on its way that made progress, see `open_lists.Plateau`.
+        detour: How far it is from there.
+        group_next: The member of each group whose turn is next, and the end of the members.
+        group_base: What is added to a member's order.
+        members: Order among the state's successors, in the upper half, and operator.
+        member_cost: Of the way by it, with prices.
     """
 
     nodes: int
-    entries: int
+    groups: int
+    pool: int
     mask: int
     table: int
     states: int
@@ -170,15 +178,20 @@ class Space(NamedTuple):
     parent: int
     operator: int
     evaluated: int
-    entry_parent: int
-    entry_operator: int
+    root: int
+    detour: int
+    group_parent: int
+    group_next: int
+    group_end: int
+    group_base: int
     ties: int
     items: int
+    members: int
     cost: int
     spent: int
     values: int
-    entry_cost: int
     keys: int
+    member_cost: int
 
 
 class Scratch(NamedTuple):
@@ -208,6 +221,11 @@ class Scratch(NamedTuple):
     ranks: int
     now: int
     remaining: int
+    found: int
+    found_order: int
+    found_class: int
+    class_size: int
+    class_at: int
     extras: int
     raised: int
     reached: int
@@ -217,3 +235,7 @@ class Scratch(NamedTuple):
     bounds: int
     provided: int
     chosen: int
+    found_cost: int
+    class_dearer: int
+    class_paid: int
+    class_step: int

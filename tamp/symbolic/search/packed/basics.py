@@ -7,18 +7,22 @@ In Python that numba compiles, see `compiled`.
 
 from __future__ import annotations
 
-NODES, ENTRIES, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6
+NODES, GROUPS, MEMBERS, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3, 4, 5, 6, 7
 """Places of the counters."""
 
-UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 7, 8, 9, 10, 11
+PROGRESS = 8
+"""Place of the number of states that were expanded when an estimate was a new low."""
+
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 9, 10, 11, 12, 13
 """Places of what is given: expanded states until a pause, at most, turns after progress, whether
 what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
 
-SIZES = 12
+SIZES = 14
 """From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
 
 
 GOAL_ENTRY = -2
+DETOUR, ROOT = 21, 41
 """As in `open_lists`."""
 
 
@@ -39,25 +43,14 @@ def heap_push(ints, reals, keys, ties, items, size, key, tie, item):
     ints[items + k] = item
 
 
-def list_push(ints, reals, space, k, key, tie, entry):
-    """Push an entry onto the k-th open list."""
-    base, size = k * space.entries, ints[SIZES + k]
-    keys, ties, items = space.keys + base, space.ties + base, space.items + base
-    heap_push(ints, reals, keys, ties, items, size, key, tie, entry)
-    ints[SIZES + k] += 1
-
-
-def heap_pop(ints, reals, keys, ties, items, size):
-    """Remove the first of a heap of so many: its item is read before."""
-    last = size - 1
-    key, tie, item = reals[keys + last], ints[ties + last], ints[items + last]
-
+def heap_sift(ints, reals, keys, ties, items, size, key, tie, item):
+    """Put an item in the place of the first of a heap of so many, and the heap in order."""
     k = 0
     while True:
         child = 2 * k + 1
-        if child >= last:
+        if child >= size:
             break
-        if child + 1 < last:
+        if child + 1 < size:
             one, two = reals[keys + child], reals[keys + child + 1]
             if two < one or (two == one and ints[ties + child + 1] < ints[ties + child]):
                 child += 1
@@ -71,6 +64,13 @@ def heap_pop(ints, reals, keys, ties, items, size):
     reals[keys + k] = key
     ints[ties + k] = tie
     ints[items + k] = item
+
+
+def heap_pop(ints, reals, keys, ties, items, size):
+    """Remove the first of a heap of so many: its item is read before."""
+    last = size - 1
+    key, tie, item = reals[keys + last], ints[ties + last], ints[items + last]
+    heap_sift(ints, reals, keys, ties, items, last, key, tie, item)
 
 
 def holds(ints, starts, words, need, absent, i, state):
@@ -93,18 +93,3 @@ def contains(ints, starts, facts, i, state):
         if not has(ints, state, ints[facts + k]):
             return False
     return True
-
-
-def push_goal(ints, reals, t, space, node, cost, key):
-    """Push a goal state that costs something to derive: it waits for what is cheaper than it."""
-    kinds = t.heuristics
-    entry = ints[ENTRIES]
-    ints[ENTRIES] += 1
-    ints[PUSHED] += 1
-    ints[GOAL_NODE] = node
-
-    reals[space.entry_cost + entry], ints[space.entry_parent + entry] = cost, node
-    ints[space.entry_operator + entry] = GOAL_ENTRY
-    for k in (0, kinds):
-        if k == 0 or ints[SIZES + k]:
-            list_push(ints, reals, space, k, key, ints[PUSHED], entry)

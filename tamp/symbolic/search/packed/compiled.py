@@ -15,16 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from tamp.symbolic.search.packed import basics, estimates, loops, states
+from tamp.symbolic.search.packed import basics, estimates, loops, queues, states
 from tamp.symbolic.search.packed.arrays import Relaxed, Scratch, Space, Task
 from tamp.symbolic.search.packed.selection import digest
 from tamp.system.compilation import njit
 
-SOURCES = (basics, estimates, states, loops)
+SOURCES = (basics, estimates, states, queues, loops)
 
 DIGEST = digest()
 
-_names: dict[str, Any] = {**vars(basics), **vars(estimates), **vars(states), **vars(loops)}
+_names: dict[str, Any] = {name: value for module in SOURCES for name, value in vars(module).items()}
 _INNER = {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -45,7 +45,7 @@ for _module in SOURCES:
             _compile(_function)
 
 RUN = _compile(loops.run, outer=True)
-PUSH_GOAL = _compile(basics.push_goal, outer=True)
+PUSH_GOAL = _compile(queues.push_goal, outer=True)
 REHASH = _compile(states.rehash, outer=True)
 ELIMINATE = _compile(states.eliminate, outer=True)
 
@@ -90,12 +90,13 @@ class Arena:
             "heads": buckets, "tails": buckets, "entry_next": events, "entry_fact": events,
             "heap_ties": events, "heap_items": events, "seen": r.facts, "plan": n, "in_plan": n,
             "applicable": n, "is_applicable": n, "helpful": n, "is_helpful": n, "ranks": n,
-            "now": r.mark_words, "remaining": r.mark_words,
+            "now": r.mark_words, "remaining": r.mark_words, "found": n, "found_order": n,
+            "found_class": n, "class_size": n, "class_at": n,
         }  # fmt: skip
         real = {
             "extras": n, "raised": n, "reached": r.facts, "totals": r.operators,
             "costs": r.operators, "heap_keys": events, "bounds": r.facts, "provided": r.facts,
-            "chosen": n,
+            "chosen": n, "found_cost": n, "class_dearer": n, "class_paid": n, "class_step": n,
         }  # fmt: skip
         start = {"heads": -1, "chosen": -1.0}
         return Scratch(
@@ -103,72 +104,85 @@ class Arena:
             **{name: self.room(1, size, start.get(name, 0)) for name, size in real.items()},
         )
 
-    def begin(self, t: Task, r: Relaxed, nodes: int, entries: int) -> tuple[Space, Any, Any]:
-        """Join all that was placed, with room for states and entries behind it: the arrays."""
-        space, sizes = _laid_out(t, r, nodes, entries, self._sizes)
+    def begin(self, t: Task, r: Relaxed, rooms: Rooms) -> tuple[Space, Any, Any]:
+        """Join all that was placed, with room for what grows behind it: the arrays."""
+        space, sizes = _laid_out(t, r, rooms, self._sizes)
         ints, reals = (np.empty(size, dtype=kind) for size, kind in zip(sizes, KINDS, strict=True))
         for array, parts, end in zip((ints, reals), self._parts, self._sizes, strict=True):
             np.concatenate(parts, out=array[:end])
+            parts.clear()
         ints[space.table : space.table + space.mask + 1] = -1
-        ints[space.evaluated : space.evaluated + nodes] = 0
+        ints[space.evaluated : space.evaluated + space.nodes] = 0
         return space, ints, reals
 
-    def grow(
-        self, t: Task, r: Relaxed, old: tuple[Space, Any, Any], nodes: int, entries: int,
-        made: tuple[int, int],
-    ) -> tuple[Space, Any, Any]:  # fmt: skip
-        """Move to larger arrays; `made` are the states and entries that there are."""
-        was, *arrays = old
-        space, sizes = _laid_out(t, r, nodes, entries, self._sizes)
-        grown: list[Any] = []
+    def grow(self, t: Task, r: Relaxed, was: Space, arrays: list[Any], rooms: Rooms) -> Space:
+        """Move to larger arrays, one after the other, so that but one of them is there twice.
+
+        Args:
+            t: The task.
+            r: Its relaxation.
+            was: What lies where in the arrays.
+            arrays: Whole numbers and reals; replaced by the larger ones.
+            rooms: The new sizes.
+        """
+        ints = arrays[0]
+        made = tuple(int(ints[k]) for k in (basics.NODES, basics.GROUPS, basics.MEMBERS))
+        lengths = [int(length) for length in ints[basics.SIZES : basics.SIZES + 2 * t.heuristics]]
+        del ints
+        space, sizes = _laid_out(t, r, rooms, self._sizes)
         for kind, names in enumerate(PARTS):
             array = np.empty(sizes[kind], dtype=KINDS[kind])
             array[: self._sizes[kind]] = arrays[kind][: self._sizes[kind]]
             for name in names:
-                per, lists, pushed = _extent(t, r, name)
-                size, room = made[pushed] * per, (nodes, entries)[pushed] * per
-                before = (was.nodes, was.entries)[pushed] * per
+                per, lists, pool = _extent(t, r, name)
                 for k in range(lists):
-                    at, source = getattr(space, name) + k * room, getattr(was, name) + k * before
+                    size = lengths[k] if lists > 1 else made[pool] * per
+                    at = getattr(space, name) + k * space[pool] * per
+                    source = getattr(was, name) + k * was[pool] * per
                     array[at : at + size] = arrays[kind][source : source + size]
-            grown.append(array)
-        ints, reals = grown
-        ints[space.evaluated + made[0] : space.evaluated + nodes] = 0
+            arrays[kind] = array
+        ints = arrays[0]
+        ints[space.evaluated + made[0] : space.evaluated + space.nodes] = 0
         ints[space.table : space.table + space.mask + 1] = -1
         REHASH(ints, t.words, space.states, space.table, space.mask, made[0])
-        return space, ints, reals
+        return space
 
+
+Rooms = tuple[int, int, int]
+"""Room for states, for groups, and for members: the first fields of a `Space`."""
 
 KINDS = (np.int64, np.float64)
 
 PARTS = (
-    ("states", "marks", "parent", "operator", "evaluated", "entry_parent", "entry_operator",
-     "ties", "items"),
-    ("cost", "spent", "values", "entry_cost", "keys"),
+    ("states", "marks", "parent", "operator", "evaluated", "root", "detour",
+     "group_parent", "group_next",
+     "group_end", "group_base", "ties", "items", "members"),
+    ("cost", "spent", "values", "keys", "member_cost"),
 )  # fmt: skip
 """The growing parts of each array, but for the hash table."""
 
 
-def _extent(t: Task, r: Relaxed, name: str) -> tuple[int, int, bool]:
-    """Return the numbers for each state or entry, how many lists there are, whether of entries."""
+def _extent(t: Task, r: Relaxed, name: str) -> tuple[int, int, int]:
+    """Return the numbers for each of what a part is about, how many lists, and which room it is."""
     if name in ("ties", "items", "keys"):
-        return 1, 2 * t.heuristics, True
-    if name.startswith("entry"):
-        return 1, 1, True
-    return {"states": t.words, "marks": r.mark_words, "values": t.heuristics}.get(name, 1), 1, False
+        return 1, 2 * t.heuristics, 1
+    if name.startswith("group"):
+        return 1, 1, 1
+    if name.startswith("member"):
+        return 1, 1, 2
+    return {"states": t.words, "marks": r.mark_words, "values": t.heuristics}.get(name, 1), 1, 0
 
 
-def _laid_out(
-    t: Task, r: Relaxed, nodes: int, entries: int, ends: Sequence[int]
-) -> tuple[Space, list[int]]:
+def _laid_out(t: Task, r: Relaxed, rooms: Rooms, ends: Sequence[int]) -> tuple[Space, list[int]]:
     """Lay the growing parts out behind the others; return their places and the arrays' sizes."""
     table = 1
-    while table < 2 * nodes + 2:
+    while table < 2 * rooms[0] + 2:
         table *= 2
     places, ends = {"table": ends[0]}, [ends[0] + table, ends[1]]
     for kind, names in enumerate(PARTS):
         for name in names:
-            per, lists, pushed = _extent(t, r, name)
+            per, lists, pool = _extent(t, r, name)
             places[name] = ends[kind]
-            ends[kind] += per * lists * (nodes, entries)[pushed]
-    return Space(nodes=nodes, entries=entries, mask=table - 1, **places), ends
+            ends[kind] += per * lists * rooms[pool]
+    nodes, groups, pool = rooms
+    return Space(nodes=nodes, groups=groups, pool=pool, mask=table - 1, **places), ends

@@ -14,19 +14,21 @@ from tamp.symbolic.search.packed.basics import (
     ACHIEVERS,
     AT,
     BOOST,
-    ENTRIES,
+    DETOUR,
     EVALUATED,
     EXPANDED,
     GOAL_ENTRY,
     GOAL_NODE,
+    GROUPS,
     LIMIT,
+    MEMBERS,
     NODES,
+    PROGRESS,
     PUSHED,
     RANDOM,
+    ROOT,
     SIZES,
     UNTIL,
-    heap_pop,
-    list_push,
 )  # fmt: skip
 from tamp.symbolic.search.packed.estimates import (
     explore,
@@ -36,6 +38,7 @@ from tamp.symbolic.search.packed.estimates import (
     relaxed_plan,
     trigger,
 )
+from tamp.symbolic.search.packed.queues import collect, pop, push, turn
 from tamp.symbolic.search.packed.states import (
     achievers,
     applicable,
@@ -50,63 +53,6 @@ from tamp.symbolic.search.packed.states import (
 EXHAUSTED, GOAL, GROW, PAUSE, FOUND, LIMITED = 0, 1, 2, 3, 4, 5
 """Why the loop stops: no entry is left, a goal state came, arrays are full, it is time to look
 around, the goal state's turn has come, no more states may be expanded."""
-
-
-def pop(ints, reals, t, space, greedy):
-    """Pop the first entry of the open list whose turn it is; -1 when all are empty."""
-    kinds = t.heuristics
-    capacity = space.entries
-    turns = SIZES + 2 * kinds
-    usual, chosen = -1, -1
-
-    for k in range(kinds):
-        if ints[SIZES + k] and (usual < 0 or ints[turns + k] < ints[turns + usual]):
-            usual = k
-    for k in range(kinds, 2 * kinds):
-        if ints[SIZES + k] and (chosen < 0 or ints[turns + k] < ints[turns + chosen]):
-            chosen = k
-    if chosen >= 0 and not greedy and ints[SIZES + chosen - kinds]:
-        usually = reals[space.keys + (chosen - kinds) * capacity]
-        dear = reals[space.keys + chosen * capacity] > 2.0 * usually
-        chosen = -1 if dear else chosen  # preferred, but by far too dear: a price was learned
-    if chosen < 0 or (usual >= 0 and ints[turns + chosen] > ints[turns + usual]):
-        chosen = usual
-    if chosen < 0:
-        return -1
-    ints[turns + chosen] += 1
-    entry = ints[space.items + chosen * capacity]
-    heap_pop(
-        ints,
-        reals,
-        space.keys + chosen * capacity,
-        space.ties + chosen * capacity,
-        space.items + chosen * capacity,
-        ints[SIZES + chosen],
-    )
-    ints[SIZES + chosen] -= 1
-    return entry
-
-
-def push(ints, reals, t, r, x, space, node, i, reached, order, prefer, weight):
-    """Push a successor onto the lists of all heuristics, under its parent's estimates."""
-    kinds, greedy = t.heuristics, weight == math.inf
-    cost, step = reals[space.cost + node], reals[t.costs + i]
-    entry = ints[ENTRIES]
-    ints[ENTRIES] += 1
-    reals[space.entry_cost + entry], ints[space.entry_parent + entry] = reached, node
-    ints[space.entry_operator + entry] = i
-
-    dearer = reached - cost - step
-    for k in range(kinds):
-        h = reals[space.values + node * kinds + k]
-        extra = dearer
-        if dearer != 0.0 and ints[t.kinds + k] == 0 and ints[x.in_plan + i]:
-            extra = dearer - paid(ints, reals, r, x, i)
-        key = h + extra if greedy else cost + step + extra + weight * h
-        list_push(ints, reals, space, k, key, order, entry)
-        if prefer and extra <= step:
-            key = h if greedy else cost + weight * h
-            list_push(ints, reals, space, kinds + k, key, order, entry)
 
 
 def evaluate(ints, reals, t, r, x, space, node, parent):
@@ -140,6 +86,7 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
     for k in range(kinds):
         if reals[space.values + node * kinds + k] < reals[k]:
             reals[k] = reals[space.values + node * kinds + k]
+            ints[PROGRESS] = ints[EXPANDED]
             for other in range(kinds):
                 ints[SIZES + 3 * kinds + other] -= ints[BOOST]
     count = applicable(ints, t, x, x.closed)
@@ -153,7 +100,13 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         first = achievers(ints, t, r, x, space, node, first, count)
 
     cost, spent = reals[space.cost + node], reals[space.spent + node]
-    base = ints[EXPANDED] * t.operators
+    # among equals weighted A* takes the older, greedy search what is nearest to the last progress
+    base = ints[PUSHED] + 1
+    if greedy:
+        base = (
+            ((ints[space.detour + node] + 2) << DETOUR) - (ints[space.root + node] << ROOT) - node
+        )
+    found, classes, chosen = 0, 0, 0
     for rank in range(first + count):
         i = ints[x.helpful + rank] if rank < first else ints[x.applicable + rank - first]
         if rank >= first and ints[x.is_helpful + i]:
@@ -164,23 +117,43 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         known = ints[
             space.table + (place_of(ints, t.words, x.after, space.states, space.table, space.mask))
         ]
-        if known >= 0 and (greedy or cost + reals[t.costs + i] >= reals[space.cost + known]):
+        step = reals[t.costs + i]
+        if known >= 0 and (greedy or cost + step >= reals[space.cost + known]):
             continue
-        reached = cost + (
-            reals[t.costs + i] + reals[x.extras + i] if ints[t.guarded + i] else reals[t.costs + i]
-        )
+        reached = cost + (step + reals[x.extras + i] if ints[t.guarded + i] else step)
         if reached == math.inf or (known >= 0 and reached >= reals[space.cost + known]):
             continue
-        ints[PUSHED] += 1
-        # among equals greedy search goes on from the state just expanded, weighted A* takes the
-        # older
-        order = rank - base if greedy and not ints[RANDOM] else ints[PUSHED]
-        push(ints, reals, t, r, x, space, node, i, reached, order, rank < first, weight)
+
+        dearer = reached - cost - step
+        counts = dearer != 0.0 and ints[x.in_plan + i]
+        covered = paid(ints, reals, r, x, i) if counts else 0.0
+        classes = collect(
+            ints, reals, x, found, classes, rank if greedy else found, i, reached,
+            0.0 if greedy else step, dearer, covered,
+        )  # fmt: skip
+        found += 1
+        chosen += rank < first
+    ints[PUSHED] += found
+    push(ints, reals, t, x, space, node, found, chosen, classes, base, weight)
 
     for k in range(count):
         ints[x.is_applicable + ints[x.applicable + k]] = 0
     for k in range(first):
         ints[x.is_helpful + ints[x.helpful + k]] = 0
+
+
+def place(ints, reals, t, space, node, parent, rank):
+    """Note which state made the last progress on the way to one, and how far that is away."""
+    kinds = t.heuristics
+    ints[space.root + node], ints[space.detour + node] = node, 0
+    if parent < 0:
+        return
+    root = ints[space.root + parent]
+    for k in range(kinds):
+        if reals[space.values + node * kinds + k] < reals[space.values + root * kinds + k]:
+            return
+    ints[space.root + node] = root
+    ints[space.detour + node] = ints[space.detour + parent] + 1 + rank
 
 
 def arrive(ints, reals, t, x, space, i, parent, reached, greedy):
@@ -223,19 +196,19 @@ def run(ints, reals, t, r, x, space, weight, below):
     while True:
         if ints[NODES] + 1 >= space.nodes:
             return GROW
-        if ints[ENTRIES] + t.operators + kinds >= space.entries:
+        if ints[GROUPS] + kinds * (t.operators + 2) >= space.groups:
+            return GROW
+        if ints[MEMBERS] + (kinds + 1) * t.operators + 2 >= space.pool:
             return GROW
         if ints[EXPANDED] >= ints[UNTIL]:
             return PAUSE
-        entry = pop(ints, reals, t, space, greedy)
-        if entry < 0:
+        chosen = turn(ints, reals, t, space, greedy)
+        if chosen < 0:
             return EXHAUSTED
 
-        i, parent, reached = (
-            ints[space.entry_operator + entry],
-            ints[space.entry_parent + entry],
-            reals[space.entry_cost + entry],
-        )
+        parent, member = pop(ints, reals, space, chosen, greedy)
+        i = (ints[space.members + member] & 0xFFFFFFFF) + GOAL_ENTRY
+        reached = reals[space.member_cost + member]
         if i == GOAL_ENTRY:
             if parent == ints[GOAL_NODE]:
                 return FOUND
@@ -258,6 +231,7 @@ def run(ints, reals, t, r, x, space, weight, below):
         if not dead:
             if ints[EXPANDED] >= ints[LIMIT]:
                 return LIMITED
+            place(ints, reals, t, space, node, parent, ints[space.members + member] >> 32)
             expand(ints, reals, t, r, x, space, node, length, weight, below)
         for k in range(length):
             ints[x.in_plan + ints[x.plan + k]] = 0

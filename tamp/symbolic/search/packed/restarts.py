@@ -15,11 +15,11 @@ from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.packed.search import PackedSearch, Stalled
 
 STALLED = 3000
-"""Expanded states after which the first search counts as stalled."""
+"""Expanded states without progress after which the first search counts as stalled: one that goes
+down steadily, if slowly, is not disturbed."""
 
-UNIT = 10_000
-"""Expanded states of the shortest restart; a search that stalls has a plan of a hundred steps and
-more before it, each of which may be worth a hundred states."""
+UNIT = 3000
+"""Such states of the shortest restart."""
 
 
 def luby(number: int) -> int:
@@ -64,7 +64,7 @@ def greedy_with_restarts(search: SearchSpace, names: Sequence[str], seed: int = 
         states = UNIT * luby(number)
         try:
             if way is None:
-                return first.plan(first.expanded + states)
+                return first.plan(states)
             heuristics, achievers = way
             random = rng.getrandbits(60) | 1
             return PackedSearch(search, heuristics, math.inf, random, achievers).plan(states)

@@ -30,7 +30,7 @@ time is up: some hundredths of a second."""
 UNLIMITED = 1 << 62
 
 FIRST_NODES, FIRST_ENTRIES = 2_000, 40_000
-"""Room for states and entries to begin with; doubled as needed."""
+"""Room for states, and for groups and members of them, to begin with; doubled as needed."""
 
 
 def fits(names: Sequence[str], successors: Successors) -> bool:
@@ -44,7 +44,7 @@ def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Pla
 
 
 class Stalled(Exception):
-    """Says that a search has expanded as many states as it was to."""
+    """Says that a search has made no progress for as many states as it was to wait."""
 
 
 class PackedSearch:
@@ -82,8 +82,9 @@ class PackedSearch:
         self._r = r = pack_relaxation(s, relaxation, marks, arena.integers, arena.reals)
         self._x = arena.scratch(t, r)
 
-        entries = max(FIRST_ENTRIES, 4 * len(s.operators))
-        self._space, self._ints, self._reals = arena.begin(t, r, FIRST_NODES, entries)
+        entries = max(FIRST_ENTRIES, 4 * (kinds + 1) * (2 + len(s.operators)))
+        rooms = FIRST_NODES, entries, entries
+        self._space, self._ints, self._reals = arena.begin(t, r, rooms)
         self._goal_price = GoalPrice(s)
         self._goal_cost = math.inf
         self._seen = 0, 0
@@ -98,35 +99,39 @@ class PackedSearch:
         ints[basics.LIMIT] = UNLIMITED if limit is None else limit
         reals[:kinds] = math.inf
 
-        reals[space.entry_cost], ints[space.entry_parent] = 0.0, -1
-        ints[space.entry_operator], ints[basics.ENTRIES] = -1, 1
+        ints[space.members], reals[space.member_cost] = -1 - basics.GOAL_ENTRY, 0.0
+        ints[basics.MEMBERS], ints[basics.GROUPS] = 1, kinds
         for k in range(kinds):
-            place = k * space.entries
-            reals[space.keys + place] = ints[space.ties + place] = ints[space.items + place] = 0
-            ints[basics.SIZES + k] = 1
+            ints[space.group_parent + k], ints[space.group_base + k] = -1, 0
+            ints[space.group_next + k], ints[space.group_end + k] = 0, 1
+            place = k * space.groups
+            reals[space.keys + place] = ints[space.ties + place] = 0
+            ints[space.items + place], ints[basics.SIZES + k] = k, 1
 
     @property
     def expanded(self) -> int:
         """Return how many states this search itself has expanded."""
         return int(self._ints[basics.EXPANDED])
 
-    def plan(self, until: int = UNLIMITED) -> Plan | None:
+    def plan(self, patience: int = UNLIMITED) -> Plan | None:
         """Run the loop until there is a plan, or nothing is left, or a limit is reached.
 
         Args:
-            until: Expanded states after which the search pauses; it can go on later.
+            patience: Expanded states without a new low of an estimate, from now on or from the
+                last one, after which the search pauses; it can go on later.
 
         Raises:
-            Stalled: So many are expanded.
+            Stalled: So many were.
         """
         search = self._search
         if not self._possible:
             search.evaluated = 1
             s = search.successors
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
+        began = self.expanded
         while True:
             n = self._ints
-            n[basics.UNTIL] = self._until(until)
+            n[basics.UNTIL] = self._until(max(began, int(n[basics.PROGRESS])) + patience)
             why = self._compiled.RUN(
                 n, self._reals, self._t, self._r, self._x, self._space, self._weight, search.below
             )
@@ -145,7 +150,7 @@ class PackedSearch:
                 self._grow()
             else:
                 self._look_around()
-                if self.expanded >= until:
+                if self.expanded >= max(began, int(n[basics.PROGRESS])) + patience:
                     raise Stalled
 
     def _count(self) -> None:
@@ -170,17 +175,24 @@ class PackedSearch:
             raise SearchLimitReached(Reason.TIME)
 
     def _grow(self) -> None:
-        """Double the room for states, for entries, or for both."""
-        space, n = self._space, self._ints
-        made = int(n[basics.NODES]), int(n[basics.ENTRIES])
-        nodes, entries = space.nodes, space.entries
-        if made[0] + 1 >= nodes // 2:
-            nodes *= 2
-        if made[1] + len(self._search.successors.operators) >= entries // 2:
-            entries *= 2
-        self._space, self._ints, self._reals = self._arena.grow(
-            self._t, self._r, (space, n, self._reals), nodes, entries, made
+        """Double the room for all that has filled half of its own."""
+        n, operators = self._ints, 2 + len(self._search.successors.operators)
+        kinds = self._t.heuristics
+        needs = (
+            int(n[basics.NODES]) + 1,
+            int(n[basics.GROUPS]) + kinds * operators,
+            int(n[basics.MEMBERS]) + (kinds + 1) * operators,
         )
+        rooms = [
+            room * 2 if need >= room // 2 else room
+            for need, room in zip(needs, self._space[:3], strict=True)
+        ]
+        arrays = [n, self._reals]
+        del n, self._ints, self._reals
+        self._space = self._arena.grow(
+            self._t, self._r, self._space, arrays, (rooms[0], rooms[1], rooms[2])
+        )
+        self._ints, self._reals = arrays
 
     def _take_goal(self, node: int) -> bool:
         """Take a goal state at once where its goal is free; else have it wait for a cheaper one."""
@@ -193,8 +205,9 @@ class PackedSearch:
         if cost + price < self._goal_cost:
             self._goal_cost = cost + price
             key = price if self._weight == math.inf else self._goal_cost
+            greedy = self._weight == math.inf
             self._compiled.PUSH_GOAL(
-                self._ints, self._reals, self._t, self._space, node, self._goal_cost, key
+                self._ints, self._reals, self._t, self._space, node, self._goal_cost, key, greedy
             )
         return False
 

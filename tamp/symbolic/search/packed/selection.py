@@ -22,7 +22,7 @@ PATIENCE = 50
 """States after which a search in plain Python asks whether to begin anew in the compiled loop."""
 
 FOLDER = Path(__file__).resolve().parent
-SOURCES = ("basics", "estimates", "states", "loops")
+SOURCES = ("basics", "estimates", "states", "queues", "loops")
 KEPT = ("run", "eliminate")
 
 

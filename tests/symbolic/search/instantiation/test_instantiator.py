@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from benchmarks.search import cupboard
 from tamp.symbolic.pddl.structs import Fact, Task
 from tamp.symbolic.search.instantiation.instantiator import Instantiator, instantiate
+from tamp.symbolic.search.instantiation.predicate_kinds import Assumed
 from tamp.symbolic.search.operators import InstantiatedTask
 from tests.symbolic.search.test_random_tasks import random_task
 
@@ -29,7 +30,7 @@ def plain(instantiated: InstantiatedTask) -> InstantiatedTask:
 
 
 def check(
-    task: Task, facts: Sequence[Fact], objects: Objects, steps: int, assumed: frozenset[str]
+    task: Task, facts: Sequence[Fact], objects: Objects, steps: int, assumed: Assumed
 ) -> Instantiator:
     """One instantiator that is told more and more, against a new one each time."""
     instantiator = Instantiator(task, assumed)
@@ -48,7 +49,7 @@ def test_the_cupboard(seed: int, tests: bool) -> None:
     task, known, objects = cupboard(3, 3, tests=tests)
     facts = sorted(known)
     Random(seed).shuffle(facts)
-    assumed = frozenset(("pose-clear", "reach-clear")) if not tests else frozenset[str]()
+    assumed: Assumed = {} if tests else {"pose-clear": (), "reach-clear": ()}
     instantiator = check(task, facts, objects, 6, assumed)
     again = instantiator.instantiate(facts[5:], objects)  # five are taken back
     assert plain(again) == plain(instantiate(task, facts[5:], objects, assumed=assumed))

@@ -130,7 +130,7 @@ def test_guards_are_lifted_by_tests_that_may_hold() -> None:
     )
     assert other <= hard.negative  # nothing lifts it
     assert not hard.guards
-    assumed = instantiate(task, bare, objects, assumed=frozenset(("pose-clear", "reach-clear")))
+    assumed = instantiate(task, bare, objects, assumed={"pose-clear": (), "reach-clear": ()})
     again = next(o for o in assumed.operators if o.arguments == place.arguments)
     assert set(again.guards) == set(place.guards)
 
