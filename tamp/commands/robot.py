@@ -18,7 +18,7 @@ from tamp.system.options import Above, OneOf, check_rules, read_command
 from tamp.system.progress import Progress, say
 
 if TYPE_CHECKING:
-    from tamp.commands.robot_folder.make import Wanted
+    from tamp.commands.robot_folder.wanted import Wanted
 
 DRIVES = ("omnidirectional", "differential", "fixed")
 
@@ -139,16 +139,22 @@ def _make(options: Make, shown: Progress) -> None:
 
 
 def _wanted(options: Make) -> Wanted:
-    from tamp.commands.robot_folder.make import Wanted
+    from tamp.commands.robot_folder.description import find_urdf, read_description
+    from tamp.commands.robot_folder.ends import choose_end
+    from tamp.commands.robot_folder.wanted import Wanted
 
-    base, tip = options.arm or _asked(options.urdf)
+    (base, tip), fingers = options.arm or (None, ""), options.gripper
+    if options.arm is None:
+        end = choose_end(read_description(find_urdf(options.urdf)))
+        tip = end.tip
+        fingers = fingers or end.fingers
     return Wanted(
         urdf=options.urdf,
         base=base,
         tip=tip,
         out=options.out.absolute(),
         drive=options.base,
-        fingers=options.gripper,
+        fingers=fingers,
         opening=options.opening,
         force=options.force,
         payload=math.inf if options.payload is None else options.payload,
@@ -158,22 +164,6 @@ def _wanted(options: Make) -> Wanted:
         home=options.home,
         fixed=_fixed(options.stands),
     )
-
-
-def _asked(urdf: str) -> tuple[str, str]:
-    """Take root and tip of a URDF with one chain; else say which there are."""
-    from tamp.commands.robot_folder.arm import tips
-    from tamp.commands.robot_folder.description import find_urdf, read_description
-
-    description = read_description(find_urdf(urdf))
-    ends = tips(description)
-    if len(ends) == 1:
-        return description.root, ends[0]
-    shown = ", ".join(f"--arm {description.root} {end}" for end in ends[:8])
-    raise InputError(
-        f"the URDF branches: {len(ends)} chains end somewhere", file=description.file,
-        remedy=f"Say which is the arm: {shown}" if ends else "It has no joint that moves",
-    )  # fmt: skip
 
 
 def _fixed(words: Sequence[str]) -> dict[str, float]:

@@ -102,6 +102,11 @@ def read_description(file: Path) -> Description:
     tree = read_xml(file)
     if tree.tag != "robot":
         raise InputError(f"not a URDF: its root is <{tree.tag[:40]}>, not <robot>", file=file)
+    if any("xacro" in str(element.tag) for element in tree.iter()):
+        raise InputError(
+            "it has macros of xacro", file=file,
+            remedy="Expand it first: xacro robot.xacro > robot.urdf",
+        )  # fmt: skip
     links = {link.get("name", ""): link for link in tree.findall("link")}
     if not links:
         raise InputError("the URDF has no links", file=file)

@@ -162,7 +162,8 @@ def own_fingers(
 
     closing = first / np.linalg.norm(first)
     both = np.concatenate(corners)
-    out = both.mean(axis=0) - np.concatenate([hull.vertices for hull in hand]).mean(axis=0)
+    palm = np.concatenate([hull.vertices for hull in hand]).mean(axis=0) if hand else np.zeros(3)
+    out = both.mean(axis=0) - palm
     out -= (out @ closing) * closing
     out = np.eye(3)[int(np.argmax(np.abs(out)))] * np.sign(out[int(np.argmax(np.abs(out)))])
     middle = sum((joint.origin.matrix[:3, 3] for joint in joints), np.zeros(3)) / 2
