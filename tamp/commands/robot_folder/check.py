@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from tamp.commands.robot_folder.arm import Arm
 from tamp.commands.robot_folder.description import Description
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
+from tamp.geometric.loading.xml_file import read_xml
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
@@ -41,8 +44,12 @@ def against_urdf(robot: Robot, description: Description, arm: Arm, tip: str) -> 
     Raises:
         InputError: They differ: this is a fault of ours, and such a robot is not written.
     """
-    with silence():  # it remarks on links without inertia
-        model = pinocchio.buildModelFromUrdf(str(description.file))
+    try:
+        with silence():  # it remarks on links without inertia
+            model = pinocchio.buildModelFromXML(_bare(description.file))
+    except ValueError as error:
+        what = " ".join(str(error).split())
+        raise InputError(f"pinocchio refuses the URDF: {what}", file=description.file) from None
     data = model.createData()
     frames = {name: model.getFrameId(name) for name in (arm.groups[0].name, tip)}
     chain, rng, worst = Chain.of(robot), np.random.default_rng(0), 0.0
@@ -66,6 +73,21 @@ def against_urdf(robot: Robot, description: Description, arm: Arm, tip: str) -> 
             file=description.file,
         )
     return worst
+
+
+def _bare(file: Path) -> str:
+    """Return the URDF's joints alone, with the attributes that pinocchio wants of limits."""
+    tree = read_xml(file)
+    bare = ElementTree.Element("robot", name="bare")
+    for link in tree.findall("link"):
+        ElementTree.SubElement(bare, "link", name=link.get("name", ""))
+    for joint in tree.findall("joint"):
+        kept = ElementTree.SubElement(bare, "joint", joint.attrib)
+        kept.extend(one for one in joint if one.tag in ("parent", "child", "origin", "axis"))
+        limit = joint.find("limit")
+        words = {"effort": "1", "velocity": "1"} | ({} if limit is None else limit.attrib)
+        ElementTree.SubElement(kept, "limit", words)
+    return ElementTree.tostring(bare, encoding="unicode")
 
 
 def _tip(robot: Robot, arm: Arm, q: Array) -> Array:

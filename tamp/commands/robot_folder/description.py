@@ -56,18 +56,14 @@ class Description:
 
 
 def find_urdf(name: str) -> Path:
-    """Find a URDF: a file, one of the package example-robot-data by its name (ur5_robot), or one of
-    pybullet_data by its place there (pybullet_data/kuka_iiwa/model.urdf).
+    """Find a URDF or an MJCF: a file, one of the package example-robot-data by its name
+    (ur5_robot), or one of pybullet_data by its place there (pybullet_data/kuka_iiwa/model.urdf).
 
     Raises:
         InputError: There is none.
     """
     file = Path(name)
     if file.is_file():
-        if file.suffix in (".xacro", ".xml"):
-            raise InputError(
-                "not a URDF", file=file, remedy="Expand xacro first: xacro robot.xacro > robot.urdf"
-            )
         return file
 
     spec = importlib.util.find_spec("pybullet_data")
@@ -88,7 +84,7 @@ def find_urdf(name: str) -> Path:
                              choices=tuple(sorted(known)))  # fmt: skip
     raise InputError(
         f"no such file: {name}",
-        remedy="Name a URDF, or install example-robot-data and name one of its robots",
+        remedy="Name a URDF or an MJCF, or install example-robot-data and name one of its robots",
     )
 
 

@@ -10,7 +10,7 @@ from tamp.commands.robot_folder.description import MOVING, Description
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
 
-FRAMES = ("tool", "flange", "eef", "ee_")
+FRAMES = ("tool", "flange", "eef", "ee_", "attachment")
 """Words in the names of frames where grippers are bolted to."""
 
 FINGERS = ("finger", "knuckle", "jaw", "thumb", "gripper", "hand_")

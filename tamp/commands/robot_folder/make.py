@@ -11,7 +11,7 @@ from tamp.commands.robot_folder.arm import Arm, find_arm
 from tamp.commands.robot_folder.base import choose_base
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
-from tamp.commands.robot_folder.description import Description, find_urdf, read_description
+from tamp.commands.robot_folder.description import Description, read_description
 from tamp.commands.robot_folder.gripper import Gripper
 from tamp.commands.robot_folder.hand import tip_is_hand
 from tamp.commands.robot_folder.home import home
@@ -51,7 +51,7 @@ def make(wanted: Wanted, told: Told) -> Made:
         InputError: What is wrong with the URDF or the choices, and what to do.
     """
     told("reading the URDF", 0.0)
-    file = find_urdf(wanted.urdf)
+    file = wanted.urdf
     description = read_description(file)
     base = wanted.base or description.root
     fingers = named_fingers(description, wanted)

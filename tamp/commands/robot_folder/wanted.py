@@ -13,7 +13,7 @@ class Wanted:
     """The choices that a robot is made by.
 
     Attributes:
-        urdf: As `description.find_urdf` takes it.
+        urdf: The URDF.
         base, tip: The links between which the arm is; no base means the robot's root.
         out: The folder that is made.
         drive: One of `robot.DRIVES`.
@@ -29,7 +29,7 @@ class Wanted:
         fixed: Where joints stand that are no part of the arm.
     """
 
-    urdf: str
+    urdf: Path
     tip: str
     out: Path
     base: str | None = None

@@ -39,7 +39,7 @@ def changed(number: int, kind: str | None = None, limits: str | None = None):
 CASES = {
     "no-file": (None, ARM, r"no such file"),
     "no-xml": ("this is no XML", ARM, r"arm.urdf.*syntax error"),
-    "no-robot": ("<model/>", ARM, r"not a URDF"),
+    "no-robot": ("<model/>", ARM, r"neither a URDF nor an MJCF"),
     "unknown-link": (arm_text(), ("--arm", "foot", "tol"), r"unknown link 'tol'.*Did you mean 'tool'"),
     "other-branch": (arm_text(extra=BRANCH), ("--arm", "second", "tool"), r"'tool' does not hang on 'second'"),
     "branches": (arm_text(extra=BRANCH), (), r"branches: 2 chains.*--arm foot tool"),

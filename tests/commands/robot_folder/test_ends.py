@@ -91,7 +91,7 @@ def test_wrists_of_a_hand_are_joints_of_the_arm(described) -> None:
 def test_own_fingers_make_the_same_hand_from_either_tip(described, tip: str) -> None:
     description = described(HAND + fingers("prismatic"))
     names = ("left_finger_joint", "right_finger_joint")
-    wanted = Wanted("", tip, Path("out"), fingers=names)
+    wanted = Wanted(Path("arm.urdf"), tip, Path("out"), fingers=names)
     own = named_fingers(description, wanted)
     assert own is not None
     bare = tip_is_hand(description, tip, own)
@@ -121,7 +121,12 @@ def test_one_finger_named_twice_is_refused(described) -> None:
     with pytest.raises(InputError, match="named twice"):
         named_fingers(
             described(HAND + fingers("prismatic")),
-            Wanted("", "tool", Path("out"), fingers=("left_finger_joint", "left_finger_joint")),
+            Wanted(
+                Path("arm.urdf"),
+                "tool",
+                Path("out"),
+                fingers=("left_finger_joint", "left_finger_joint"),
+            ),
         )
 
 
