@@ -19,6 +19,7 @@ from tamp.commands.robot_folder.reach_table import table
 from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
 from tamp.commands.robot_folder.spheres import cover
 from tamp.commands.robot_folder.wanted import Wanted
+from tamp.commands.robot_folder.weight import carrying
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
@@ -82,13 +83,11 @@ def make(wanted: Wanted, told: Told) -> Made:
     groups = {group.name: group.mass for group in arm.groups}
     shared = {robot.hand: gripper.mass * 0.7}
     shared |= {finger.child: gripper.mass * 0.15 for finger in robot.fingers}
-    return Made(robot, covers, reach, groups | shared, description, arm, _remarks(arm) + warnings)
-
-
-def _remarks(arm: Arm) -> tuple[str, ...]:
-    if not arm.dropped:
-        return ()
-    return (f"the gripper takes the place of {', '.join(arm.dropped)}",)
+    masses = groups | shared
+    effort, weak = carrying(robot, masses)
+    robot = replace(robot, effort=effort)
+    dropped = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
+    return Made(robot, covers, reach, masses, description, arm, (*dropped, *warnings, *weak))
 
 
 def _robot(
