@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tamp.commands.robot_folder.arm import Arm, find_arm
-from tamp.commands.robot_folder.base import choose_base
+from tamp.commands.robot_folder.base import choose_base, on_our_box
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
+from tamp.commands.robot_folder.column import on_column
 from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
 from tamp.commands.robot_folder.description import Description, read_description
 from tamp.commands.robot_folder.gripper import Gripper
@@ -69,6 +70,14 @@ def make(wanted: Wanted, told: Told) -> Made:
     gripper = choose_gripper(description, wanted, arm, fingers, bare)
     robot = _robot(wanted, arm, gripper, meshes, file)
     robot = _refined(robot, meshes, told)
+    remarks = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
+    if wanted.mount is None and on_our_box(robot):
+        robot, foot = on_column(robot), robot.T_base_arm.position[2]
+        if robot.T_base_arm.position[2] > foot:
+            remarks.append(
+                f"a short arm: it stands {robot.T_base_arm.position[2]:.2f} m high on a column; "
+                "--mount puts it elsewhere"
+            )
 
     allowed, warnings = allowed_pairs(
         robot, lambda done: told("pairs of links that can meet", done)
@@ -86,8 +95,7 @@ def make(wanted: Wanted, told: Told) -> Made:
     masses = groups | shared
     effort, weak = carrying(robot, masses)
     robot = replace(robot, effort=effort)
-    dropped = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
-    return Made(robot, covers, reach, masses, description, arm, (*dropped, *warnings, *weak))
+    return Made(robot, covers, reach, masses, description, arm, (*remarks, *warnings, *weak))
 
 
 def _robot(
