@@ -109,8 +109,12 @@ def _make(options: Make, shown: Progress) -> None:
 
     began = time.monotonic()
     with scratch_folder() as scratch:
-        wanted = _wanted(options, as_urdf(find_urdf(options.urdf), scratch))
-        lines = _made(wanted, options, shown)
+        file = find_urdf(options.urdf)
+        urdf = as_urdf(file, scratch)
+        try:
+            lines = _made(_wanted(options, urdf), options, shown)
+        except InputError as error:
+            raise error if error.file != str(urdf) else error.about(file) from None
     shown.end()
     seconds = time.monotonic() - began
     say(f"{options.out}: {lines[0]}")
@@ -121,20 +125,12 @@ def _make(options: Make, shown: Progress) -> None:
 
 def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
     """Make the folder; return what there is to say."""
-    from tamp.commands.robot_folder.check import (
-        against_physics,
-        against_urdf,
-        check_home,
-        check_reach,
-        solved,
-    )
+    from tamp.commands.robot_folder.check import against_physics, check_home, solved
     from tamp.commands.robot_folder.make import make
     from tamp.commands.robot_folder.write import write_folder
     from tamp.geometric.loading.robot_folder import read_robot
 
     made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
-    check_reach(made.table["counts"], made.table["heights"], made.robot)
-    off = against_urdf(made.robot, made.description, made.arm, wanted.tip)
     write_folder(wanted.out, made.robot, made.covers, made.table, made.masses, options.urdf)
     robot = read_robot(wanted.out)
     shown.news("checks against pybullet")
@@ -148,7 +144,7 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
         f"{robot.name}, {len(robot.joints)} joints: {kinds}",
         f"{hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}",
         *made.warnings,
-        f"frames differ from pinocchio's by {off:.1g}, from pybullet's by {physics:.1g}",
+        f"frames differ from pinocchio's by {made.off:.1g}, from pybullet's by {physics:.1g}",
         f"inverse kinematics finds {share:.1%} of reachable poses",
     ]
 

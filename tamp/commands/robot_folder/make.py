@@ -9,10 +9,11 @@ from pathlib import Path
 
 from tamp.commands.robot_folder.arm import Arm, find_arm
 from tamp.commands.robot_folder.base import choose_base, on_our_box
+from tamp.commands.robot_folder.check import against_urdf, check_reach
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.column import on_column
 from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
-from tamp.commands.robot_folder.description import Description, read_description
+from tamp.commands.robot_folder.description import read_description
 from tamp.commands.robot_folder.gripper import Gripper
 from tamp.commands.robot_folder.hand import tip_is_hand
 from tamp.commands.robot_folder.home import home
@@ -35,14 +36,15 @@ Told = Callable[[str, float], None]
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """A robot before it is written: with its sphere covers, table and masses."""
+    """A robot before it is written: with its sphere covers, table and masses, how far its frames
+    are off those of the URDF, and sentences about what was decided.
+    """
 
     robot: Robot
     covers: Mapping[tuple[str, int], tuple[Array, float]]
     table: Mapping[str, Array]
     masses: Mapping[str, float]
-    description: Description
-    arm: Arm
+    off: float
     warnings: tuple[str, ...]
 
 
@@ -69,25 +71,19 @@ def make(wanted: Wanted, told: Told) -> Made:
         )  # fmt: skip
     gripper = choose_gripper(description, wanted, arm, fingers, bare)
     robot = _robot(wanted, arm, gripper, meshes, file)
+    off = against_urdf(robot, description, arm, wanted.tip)
     robot = _refined(robot, meshes, told)
-    remarks = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
-    if wanted.mount is None and on_our_box(robot):
-        robot, foot = on_column(robot), robot.T_base_arm.position[2]
-        if robot.T_base_arm.position[2] > foot:
-            remarks.append(
-                f"a short arm: it stands {robot.T_base_arm.position[2]:.2f} m high on a column; "
-                "--mount puts it elsewhere"
-            )
+    robot, remarks = _placed(robot, wanted, arm)
+    reach = table(robot, lambda done: told("from where the arm reaches what", done))
+    check_reach(reach["counts"], reach["heights"], robot)
 
     allowed, warnings = allowed_pairs(
         robot, lambda done: told("pairs of links that can meet", done)
     )
     robot = replace(robot, allowed=allowed)
-
     told("a home configuration", 0.0)
     robot = replace(robot, home=_home(robot, wanted))
     covers = _covers(robot, told)
-    reach = table(robot, lambda done: told("from where the arm reaches what", done))
 
     groups = {group.name: group.mass for group in arm.groups}
     shared = {robot.hand: gripper.mass * 0.7}
@@ -95,7 +91,23 @@ def make(wanted: Wanted, told: Told) -> Made:
     masses = groups | shared
     effort, weak = carrying(robot, masses)
     robot = replace(robot, effort=effort)
-    return Made(robot, covers, reach, masses, description, arm, (*remarks, *warnings, *weak))
+    return Made(robot, covers, reach, masses, off, (*remarks, *warnings, *weak))
+
+
+def _placed(robot: Robot, wanted: Wanted, arm: Arm) -> tuple[Robot, list[str]]:
+    """Put a short arm on a column; return what there is to say of that, and of a gripper that was
+    replaced.
+    """
+    remarks = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
+    if wanted.mount is None and on_our_box(robot):
+        before = robot.T_base_arm.position[2]
+        robot = on_column(robot)
+        high = robot.T_base_arm.position[2]
+        if high > before:
+            remarks.append(
+                f"a short arm: it stands {high:.2f} m high on a column; --mount puts it elsewhere"
+            )
+    return robot, remarks
 
 
 def _robot(
