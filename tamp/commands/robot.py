@@ -154,10 +154,10 @@ def _wanted(options: Make, urdf: Path) -> Wanted:
     from tamp.commands.robot_folder.ends import choose_end
     from tamp.commands.robot_folder.wanted import Wanted
 
-    (base, tip), fingers = options.arm or (None, ""), options.gripper
+    (base, tip), fingers = options.arm or ("", ""), options.gripper
     if options.arm is None:
         end = choose_end(read_description(urdf))
-        tip = end.tip
+        base, tip = end.base, end.tip
         fingers = fingers or end.fingers
     return Wanted(
         urdf=urdf,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tamp.commands.robot_folder.arm import Arm
 from tamp.commands.robot_folder.convex import joined, solids
 from tamp.commands.robot_folder.description import Description
@@ -9,10 +11,10 @@ from tamp.commands.robot_folder.gripper import (
     Gripper,
     along,
     outward_axis,
-    own_fingers,
     two_fingers,
 )
 from tamp.commands.robot_folder.hand import find_hand
+from tamp.commands.robot_folder.sliding_fingers import own_fingers
 from tamp.commands.robot_folder.wanted import Wanted
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
@@ -38,12 +40,31 @@ def named_fingers(description: Description, wanted: Wanted) -> tuple[Joint, Join
                 file=description.file,
                 remedy="Leave --gripper out: one of ours is bolted to the tip",
             )
-        found.append(description.joints[name])
+        found.append(_limited(description, description.joints[name]))
     if found[0].name == found[1].name:
         raise InputError(f"the gripper: '{found[0].name}' is named twice", file=description.file)
     if found[0].parent != found[1].parent:
         raise InputError("the fingers hang on two links", file=description.file)
     return found[0], found[1]
+
+
+def _limited(description: Description, joint: Joint) -> Joint:
+    """Return a finger's joint with limits: its own, or those of the joint that it follows.
+
+    Raises:
+        InputError: It has none.
+    """
+    if joint.upper > joint.lower:
+        return joint
+    name, factor, offset = description.mimics.get(joint.name, ("", 1.0, 0.0))
+    master = description.joints.get(name)
+    if master is None or not master.upper > master.lower:
+        raise InputError(
+            f"the gripper: joint '{joint.name}' has no limits", file=description.file,
+            remedy='Give it <limit lower="..." upper="..."/>',
+        )  # fmt: skip
+    ends = sorted(factor * value + offset for value in (master.lower, master.upper))
+    return replace(joint, lower=ends[0], upper=ends[1])
 
 
 def choose_gripper(

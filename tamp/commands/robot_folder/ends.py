@@ -19,6 +19,9 @@ FINGERS = ("finger", "knuckle", "jaw", "thumb", "gripper", "hand_")
 WRISTS = ("yaw", "pitch", "roll", "wrist", "arm")
 """Words in the names of joints that move a gripper as a whole."""
 
+FREE = ("floating", "planar")
+"""Kinds of joints that stand for a base that moves."""
+
 SHOWN = 8
 """Choices that an error names."""
 
@@ -28,12 +31,14 @@ class End:
     """One way to take an arm out of a URDF.
 
     Attributes:
+        base: The link that it begins with: the root, or what a free or planar joint moves.
         tip: The link that it ends with.
-        joints: Moving ones from the root on.
+        joints: Moving ones between.
         fingers: Two sliding joints of a gripper below the tip, by name.
         turning: Whether a gripper hangs there whose fingers turn: ours takes its place.
     """
 
+    base: str
     tip: str
     joints: int
     fingers: tuple[str, str] | None = None
@@ -54,8 +59,7 @@ def choose_end(description: Description) -> End:
             "no chain of joints that move", file=description.file,
             remedy="A URDF of an arm is expected; expand it with xacro first if it has macros",
         )  # fmt: skip
-    root = description.root
-    shown = ", ".join(f"--arm {root} {end.tip}{_own(end)}" for end in found[:SHOWN])
+    shown = ", ".join(f"--arm {end.base} {end.tip}{_own(end)}" for end in found[:SHOWN])
     raise InputError(
         f"the URDF branches: {len(found)} chains end somewhere", file=description.file,
         remedy=f"Say which is the arm: {shown}",
@@ -72,25 +76,30 @@ def ends(description: Description) -> tuple[End, ...]:
     """
     found: list[End] = []
 
-    def follow(link: str, way: Sequence[str], moved: int) -> None:
+    def follow(base: str, link: str, way: Sequence[str], moved: int) -> None:
         """Go on from a link; `way`: the links since the last moving joint, itself the last."""
         branches = _branches(description, link)
         if len(branches) == 1 and branches[0].kind not in MOVING:
-            follow(branches[0].child, (*way, branches[0].child), moved)
+            only = branches[0]
+            free = only.kind in FREE
+            follow(only.child if free else base, only.child, (*way, only.child), moved)
             return
         fingers = [joint for joint in branches if _is_finger(description, joint)]
         if moved >= FEWEST and fingers and len(fingers) == len(branches):
-            found.append(_hand_end(fingers, way, moved))
+            found.append(_hand_end(base, fingers, way, moved))
             return
         if not branches:
             if moved >= FEWEST:
-                found.append(End(_flange(description, link), moved))
+                found.append(End(base, _flange(description, link), moved))
             return
         for joint in branches:
             moves = joint.kind in MOVING
-            follow(joint.child, (joint.child,) if moves else (*way, joint.child), moved + moves)
+            start = joint.child if joint.kind in FREE else base
+            follow(
+                start, joint.child, (joint.child,) if moves else (*way, joint.child), moved + moves
+            )
 
-    follow(description.root, (description.root,), 0)
+    follow(description.root, description.root, (description.root,), 0)
     return tuple(sorted(found, key=lambda end: -end.joints))
 
 
@@ -114,13 +123,13 @@ def _is_finger(description: Description, joint: Joint) -> bool:
     )
 
 
-def _hand_end(fingers: Sequence[Joint], way: Sequence[str], moved: int) -> End:
+def _hand_end(base: str, fingers: Sequence[Joint], way: Sequence[str], moved: int) -> End:
     """End above a hand: where it is bolted on."""
     above = way[-2] if len(way) > 1 else way[-1]
     if len(fingers) == 2 and all(joint.kind == "prismatic" for joint in fingers):
-        return End(above, moved, (fingers[0].name, fingers[1].name))
+        return End(base, above, moved, (fingers[0].name, fingers[1].name))
     named = [link for link in way[:-1] if any(word in link.lower() for word in FRAMES)]
-    return End((named or [above])[0], moved, turning=True)
+    return End(base, (named or [above])[0], moved, turning=True)
 
 
 def _flange(description: Description, link: str) -> str:

@@ -69,7 +69,7 @@ CASES = {
     ),
     "fingers-overlap": (
         arm_text(extra=FINGERS.format(kind="prismatic", axis="0 -1 0")), (*ARM, "--gripper", "l", "r"),
-        r"in each other at 0: the gripper cannot close",
+        r"in each other at the end of their way: the gripper cannot close",
     ),
     "home-count": (arm_text(), (*ARM, "--home", "0", "0"), r"--home: 6 numbers are expected"),
     "home-limits": (arm_text(), (*ARM, "--home", "9", "0", "0", "0", "0", "0"), r"--home: pan = 9 is not within"),

@@ -52,17 +52,19 @@ def described(tmp_path: Path):
 
 
 def test_a_bare_arm_ends_at_its_flange(described) -> None:
-    assert ends(described("")) == (End("tool", 6),)
+    assert ends(described("")) == (End("foot", "tool", 6),)
 
 
 def test_sliding_fingers_are_taken_as_the_gripper(described) -> None:
     mimic = '<mimic joint="left_finger_joint"/>'
     found = choose_end(described(HAND + fingers("prismatic", mimic=mimic)))
-    assert found == End("tool", 6, ("left_finger_joint", "right_finger_joint"))
+    assert found == End("foot", "tool", 6, ("left_finger_joint", "right_finger_joint"))
 
 
 def test_a_gripper_whose_fingers_turn_is_replaced(described) -> None:
-    assert choose_end(described(HAND + fingers("revolute"))) == End("tool", 6, None, turning=True)
+    assert choose_end(described(HAND + fingers("revolute"))) == End(
+        "foot", "tool", 6, None, turning=True
+    )
 
 
 def test_two_arms_are_offered_with_their_grippers(described) -> None:
@@ -84,7 +86,9 @@ def test_wrists_of_a_hand_are_joints_of_the_arm(described) -> None:
         .replace("hand_mount", "gripper_yaw_joint")
         .replace("</joint>", '<limit lower="-1" upper="1"/></joint>')
     )
-    assert ends(described(wrist + fingers("revolute"))) == (End("hand", 7, None, turning=True),)
+    assert ends(described(wrist + fingers("revolute"))) == (
+        End("foot", "hand", 7, None, turning=True),
+    )
 
 
 @pytest.mark.parametrize("tip", ["tool", "hand"])
@@ -115,6 +119,75 @@ def test_a_gripper_beside_the_tip_gives_way_to_ours(described) -> None:
     assert not set(arm.dropped) & set(arm.groups[-1].links)
     kept = find_arm(description, "foot", "tool", {}, ours=False)
     assert kept.dropped == () and set(arm.dropped) < set(kept.groups[-1].links)
+
+
+def test_an_arm_begins_behind_a_joint_that_moves_all_of_it(described) -> None:
+    root = '<link name="world"/><joint name="floor" type="planar"><parent link="world"/><child link="foot"/></joint>'
+    assert choose_end(described(root)) == End("foot", "tool", 6)
+
+
+def sliding(axes: tuple[int, int], ranges: tuple[str, str], at: tuple[float, float]) -> str:
+    """Return fingers, 1 cm thick, by their axes' signs along y, ranges, and origins along y."""
+    text = ""
+    for side, sign, limits, y in zip(("left", "right"), axes, ranges, at, strict=True):
+        low, high = limits.split()
+        text += (
+            f'<link name="{side}_finger">{BOX.format(z=0.02, size="0.02 0.01 0.04")}</link>'
+            f'<joint name="{side}_finger_joint" type="prismatic"><parent link="hand"/>'
+            f'<child link="{side}_finger"/><origin xyz="0 {y} 0.06"/><axis xyz="0 {sign} 0"/>'
+            f'<limit lower="{low}" upper="{high}" velocity="0.1"/></joint>'
+        )
+    return HAND + text
+
+
+SLIDES = {
+    "both along y": ((1, 1), ("0 0.04", "-0.04 0"), (0.005, -0.005)),
+    "counted from open": ((1, -1), ("-0.04 0", "-0.04 0"), (0.045, -0.045)),
+    "closing is positive": ((-1, 1), ("0 0.04", "0 0.04"), (0.045, -0.045)),
+    "4 mm apart when closed": ((1, -1), ("0 0.038", "0 0.038"), (0.007, -0.007)),
+    "right one first": ((-1, 1), ("0 0.04", "0 0.04"), (-0.005, 0.005)),
+}
+
+
+def hand_of(description: Description):
+    wanted = Wanted(
+        Path("arm.urdf"), "tool", Path("out"), fingers=("left_finger_joint", "right_finger_joint")
+    )
+    own = named_fingers(description, wanted)
+    return choose_gripper(
+        description, wanted, find_arm(description, "foot", "tool", {}), own, False
+    )
+
+
+@pytest.mark.parametrize("name", SLIDES)
+def test_fingers_are_counted_from_where_their_pads_meet(described, name: str) -> None:
+    gripper = hand_of(described(sliding(*SLIDES[name])))
+    assert gripper.opening == pytest.approx(0.08)
+    assert gripper.T_hand_tool.position == pytest.approx((0.0, 0.0, 0.1 - 0.0094))
+    closing = gripper.T_hand_tool.rotation[:, 1]
+    for opening in (0.0, 0.05):
+        pads = [
+            (joint.origin.apply(hulls[0].vertices) @ closing)
+            + opening / 2 * float(joint.origin.rotation @ np.array(joint.axis) @ closing)
+            for joint, hulls in zip(gripper.fingers, gripper.finger_hulls, strict=True)
+        ]
+        gap = max(pads[0].min() - pads[1].max(), pads[1].min() - pads[0].max())
+        assert gap == pytest.approx(opening, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("axes", "ranges", "at", "says"),
+    [
+        ((1, 1), ("0 0.04", "0 0.04"), (0.005, -0.005), "in each other at the end of their way: the gripper cannot close"),
+        ((1, -1), ("0 0.04", "0 0.04"), (0.05, -0.05), "90 mm apart .* cannot close"),
+        ((1, -1), ("0 0.04", "0 0.04"), (-0.01, 0.01), "30.0 mm in each other .* cannot close"),
+        ((1, -1), ("0 0.001", "0 0.001"), (0.005, -0.005), "cannot open: they move 2.0 mm"),
+        ((1, -1), ("0 0", "0 0.04"), (0.005, -0.005), "has no limits"),
+    ],
+)  # fmt: skip
+def test_fingers_that_cannot_grasp_are_refused(described, axes, ranges, at, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        hand_of(described(sliding(axes, ranges, at)))
 
 
 def test_one_finger_named_twice_is_refused(described) -> None:
