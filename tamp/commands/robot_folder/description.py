@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element, elements, origin_pose
 from tamp.geometric.loading.xml_file import read_xml
@@ -219,17 +220,12 @@ def _snapped(pose: Pose) -> Pose:
     """Make right what is nearly so: files round a right angle to 1.5708, which closed forms and
     spherical wrists feel.
     """
-    R = pose.rotation
-    pitch = math.asin(max(-1.0, min(1.0, -float(R[2, 0]))))
-    if abs(math.cos(pitch)) < 1e-6:
-        roll, yaw = math.atan2(-float(R[1, 2]), float(R[1, 1])), 0.0
-    else:
-        roll, yaw = math.atan2(R[2, 1], R[2, 2]), math.atan2(R[1, 0], R[0, 0])
-    angles = np.array([roll, pitch, yaw])
+    angles = np.array(roll_pitch_yaw(pose.rotation))
     grid = np.round(angles / GRID) * GRID
-    if (np.abs(angles - grid) > NEARLY).any():
+    near = np.abs(angles - grid) <= NEARLY
+    if not near.any():
         return pose
-    roll, pitch, yaw = (float(angle) for angle in grid)
+    roll, pitch, yaw = (float(angle) for angle in np.where(near, grid, angles))
     matrix = Pose.from_xyz_rpy(pose.position, (roll, pitch, yaw)).matrix.copy()
     matrix[np.abs(matrix) < 1e-12] = 0.0
     return Pose.from_matrix(matrix)
