@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -150,22 +150,23 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
 
 
 def _wanted(options: Make, urdf: Path) -> Wanted:
+    from tamp.commands.robot_folder.choose_gripper import closes
     from tamp.commands.robot_folder.description import read_description
     from tamp.commands.robot_folder.ends import choose_end
     from tamp.commands.robot_folder.wanted import Wanted
 
-    (base, tip), fingers = options.arm or ("", ""), options.gripper
+    (base, tip), found = options.arm or ("", ""), None
+    description = read_description(urdf)
     if options.arm is None:
-        end = choose_end(read_description(urdf))
-        base, tip = end.base, end.tip
-        fingers = fingers or end.fingers
-    return Wanted(
+        end = choose_end(description)
+        base, tip, found = end.base, end.tip, end.fingers
+    wanted = Wanted(
         urdf=urdf,
         base=base,
         tip=tip,
         out=options.out.absolute(),
         drive=options.base,
-        fingers=fingers,
+        fingers=options.gripper or found,
         opening=options.opening,
         force=options.force,
         payload=math.inf if options.payload is None else options.payload,
@@ -175,6 +176,9 @@ def _wanted(options: Make, urdf: Path) -> Wanted:
         home=options.home,
         fixed=_fixed(options.stands),
     )
+    if options.gripper is None and found is not None and not closes(description, wanted):
+        return replace(wanted, fingers=None)  # ours takes their place
+    return wanted
 
 
 def _fixed(words: Sequence[str]) -> dict[str, float]:

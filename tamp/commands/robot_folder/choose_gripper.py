@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tamp.commands.robot_folder.arm import Arm
+from tamp.commands.robot_folder.arm import Arm, find_arm
 from tamp.commands.robot_folder.convex import joined, solids
 from tamp.commands.robot_folder.description import Description
 from tamp.commands.robot_folder.gripper import (
@@ -13,7 +13,7 @@ from tamp.commands.robot_folder.gripper import (
     outward_axis,
     two_fingers,
 )
-from tamp.commands.robot_folder.hand import find_hand
+from tamp.commands.robot_folder.hand import find_hand, tip_is_hand
 from tamp.commands.robot_folder.sliding_fingers import own_fingers
 from tamp.commands.robot_folder.wanted import Wanted
 from tamp.errors import InputError
@@ -46,6 +46,20 @@ def named_fingers(description: Description, wanted: Wanted) -> tuple[Joint, Join
     if found[0].parent != found[1].parent:
         raise InputError("the fingers hang on two links", file=description.file)
     return found[0], found[1]
+
+
+def closes(description: Description, wanted: Wanted) -> bool:
+    """Check whether the URDF's own fingers make a gripper."""
+    try:
+        fingers = named_fingers(description, wanted)
+        if fingers is not None:
+            bare = tip_is_hand(description, wanted.tip, fingers)
+            base = wanted.base or description.root
+            arm = find_arm(description, base, wanted.tip, wanted.fixed, False, bare)
+            choose_gripper(description, wanted, arm, fingers, bare)
+    except InputError:
+        return False
+    return True
 
 
 def _limited(description: Description, joint: Joint) -> Joint:

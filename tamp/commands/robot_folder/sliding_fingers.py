@@ -21,6 +21,8 @@ APART = 0.02
 CENTRED = 0.003
 """Metres that fingers may be beside their joints and count as in the middle of them."""
 
+OURS = "Leave --gripper out, with --arm: one of ours takes its place"
+
 LEAST = 0.005
 """Metres that a gripper opens at least."""
 
@@ -55,12 +57,14 @@ def own_fingers(
     if gap < -INSIDE:
         raise InputError(
             f"the fingers {names} are {-1000 * gap:.1f} mm in each other at the end of their way: "
-            "the gripper cannot close"
+            "the gripper cannot close",
+            remedy=OURS,
         )
     if gap > APART:
         raise InputError(
             f"the fingers {names} are {1000 * gap:.0f} mm apart at the end of their way: the "
-            "gripper cannot close"
+            "gripper cannot close",
+            remedy=OURS,
         )
 
     met = tuple(_moved(joint, -gap / 2) for joint in outward)

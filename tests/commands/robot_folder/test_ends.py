@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tamp.commands.robot import Make, _wanted  # pyright: ignore[reportPrivateUsage]
 from tamp.commands.robot_folder.arm import find_arm
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.description import Description, read_description
@@ -188,6 +189,14 @@ def test_fingers_are_counted_from_where_their_pads_meet(described, name: str) ->
 def test_fingers_that_cannot_grasp_are_refused(described, axes, ranges, at, says: str) -> None:
     with pytest.raises(InputError, match=says):
         hand_of(described(sliding(axes, ranges, at)))
+
+
+def test_fingers_that_nobody_named_and_that_cannot_close_give_way_to_ours(described) -> None:
+    crossed = described(sliding((1, -1), ("0 0.04", "0 0.04"), (-0.01, 0.01)))
+    options = Make(urdf="arm.urdf", out=Path("out"))
+    assert _wanted(options, crossed.file).fingers is None
+    sound = described(sliding(*SLIDES["both along y"]))
+    assert _wanted(options, sound.file).fingers == ("left_finger_joint", "right_finger_joint")
 
 
 def test_one_finger_named_twice_is_refused(described) -> None:
