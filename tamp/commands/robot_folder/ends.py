@@ -1,4 +1,4 @@
-"""Where the arms of a URDF end: at a flange, or at a hand whose fingers hang on it."""
+"""Ends of the arms of a URDF: a flange, or a hand whose fingers hang on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot is made from, and how."""
+"""The choices that a robot is made by."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an arm's joints must exert to carry the arm itself."""
+"""The efforts with which an arm's joints carry the arm itself."""
 
 from __future__ import annotations
 

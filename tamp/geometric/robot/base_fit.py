@@ -1,4 +1,4 @@
-"""Where the base of an arm with too few joints has to stand for a pose of the tool."""
+"""Base poses from which an arm with too few joints reaches a pose of the tool."""
 
 from __future__ import annotations
 
