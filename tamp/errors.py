@@ -60,9 +60,16 @@ class InputError(Exception):
 
     def at(self, file: str | Path | None, line: int | None = None) -> InputError:
         """Return the same error with the place filled in where it was missing."""
+        return self._placed(self.file or file, self.line or line, self.column)
+
+    def about(self, file: str | Path) -> InputError:
+        """Return the same error about a whole file, which the one that it names was made from."""
+        return self._placed(file, None, None)
+
+    def _placed(self, file: str | Path | None, line: int | None, column: int | None) -> InputError:
         placed = InputError(
-            self.message, file=self.file or file, line=self.line or line, column=self.column,
-            choices=self.choices, remedy=self.remedy,
+            self.message, file=file, line=line, column=column, choices=self.choices,
+            remedy=self.remedy,
         )  # fmt: skip
         placed.suggestion = self.suggestion
         placed.args = (placed._text(),)

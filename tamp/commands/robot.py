@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,16 +16,19 @@ from tamp.errors import InputError
 from tamp.system.command_line import as_command
 from tamp.system.options import Above, OneOf, check_rules, read_command
 from tamp.system.progress import Progress, say
+from tamp.system.scratch import scratch_folder
 
 if TYPE_CHECKING:
-    from tamp.commands.robot_folder.make import Wanted
+    from tamp.commands.robot_folder.wanted import Wanted
 
 DRIVES = ("omnidirectional", "differential", "fixed")
 
 
 @dataclass(frozen=True)
 class Make:
-    """Make a robot's folder from a URDF, for `robot: {model: FOLDER}` in a problem and --robot.
+    """Make a robot's folder from a URDF or an MJCF.
+
+    A problem names it, `robot: {model: FOLDER}`, or --robot of tamp-solve.
 
     The arm is the chain of joints between two links. A parallel gripper of ours is bolted to its
     tip, in place of whatever hangs there, unless --gripper names the two sliding finger joints of
@@ -34,8 +37,8 @@ class Make:
     Exit status: 0 made, 2 bad input.
     """
 
-    urdf: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="URDF")]
-    """A URDF, or a robot's name in example-robot-data, or pybullet_data/..."""
+    urdf: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="FILE")]
+    """A URDF or an MJCF, or a robot's name in example-robot-data, or pybullet_data/..."""
     out: Annotated[Path, tyro.conf.arg(metavar="FOLDER")]
     """The folder to make; its name is the robot's."""
     arm: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="BASE TIP")] = None
@@ -100,55 +103,70 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
 
 
 def _make(options: Make, shown: Progress) -> None:
-    began = time.monotonic()
     _check_out(options.out)
-    from tamp.commands.robot_folder.check import (
-        against_physics,
-        against_urdf,
-        check_home,
-        check_reach,
-        solved,
-    )
+    from tamp.commands.robot_folder.description import find_urdf
+    from tamp.commands.robot_folder.mjcf import as_urdf
+
+    began = time.monotonic()
+    with scratch_folder() as scratch:
+        file = find_urdf(options.urdf)
+        urdf = as_urdf(file, scratch)
+        try:
+            lines = _made(_wanted(options, urdf), options, shown)
+        except InputError as error:
+            raise error if error.file != str(urdf) else error.about(file) from None
+    shown.end()
+    seconds = time.monotonic() - began
+    say(f"{options.out}: {lines[0]}")
+    for line in lines[1:]:
+        say(f"  {line}")
+    say(f"  {seconds:.0f} s. In a problem: robot: {{model: {options.out}, base: [x, y, yaw]}}")
+
+
+def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
+    """Make the folder; return what there is to say."""
+    from tamp.commands.robot_folder.check import against_physics, check_home, solved
     from tamp.commands.robot_folder.make import make
     from tamp.commands.robot_folder.write import write_folder
     from tamp.geometric.loading.robot_folder import read_robot
 
-    wanted = _wanted(options)
     made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
-    check_reach(made.table["counts"], made.table["heights"], made.robot)
-    off = against_urdf(made.robot, made.description, made.arm, wanted.tip)
-    out = options.out.absolute()
-    write_folder(out, made.robot, made.covers, made.table, made.masses, options.urdf)
-    robot = read_robot(out)
+    write_folder(wanted.out, made.robot, made.covers, made.table, made.masses, options.urdf)
+    robot = read_robot(wanted.out)
     shown.news("checks against pybullet")
     physics = against_physics(robot)
     check_home(robot)
     share = solved(robot)
-    shown.end()
-    seconds = time.monotonic() - began
     kinds = ", ".join(f"{joint.name} ({joint.kind})" for joint in robot.joints)
     hulls = sum(len(link.parts) for link in robot.links)
     pairs = len(robot.links) * (len(robot.links) - 1) // 2 - len(robot.allowed)
-    say(f"{options.out}: {robot.name}, {len(robot.joints)} joints: {kinds}")
-    say(f"  {hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}")
-    for warning in made.warnings:
-        say(f"  {warning}")
-    say(f"  frames differ from pinocchio's by {off:.1g}, from pybullet's by {physics:.1g}")
-    say(f"  inverse kinematics finds {share:.1%} of reachable poses")
-    say(f"  {seconds:.0f} s. In a problem: robot: {{model: {options.out}, base: [x, y, yaw]}}")
+    return [
+        f"{robot.name}, {len(robot.joints)} joints: {kinds}",
+        f"{hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}",
+        *made.warnings,
+        f"frames differ from pinocchio's by {made.off:.1g}, from pybullet's by {physics:.1g}",
+        f"inverse kinematics finds {share:.1%} of reachable poses",
+    ]
 
 
-def _wanted(options: Make) -> Wanted:
-    from tamp.commands.robot_folder.make import Wanted
+def _wanted(options: Make, urdf: Path) -> Wanted:
+    from tamp.commands.robot_folder.choose_gripper import closes
+    from tamp.commands.robot_folder.description import read_description
+    from tamp.commands.robot_folder.ends import choose_end
+    from tamp.commands.robot_folder.wanted import Wanted
 
-    base, tip = options.arm or _asked(options.urdf)
-    return Wanted(
-        urdf=options.urdf,
+    (base, tip), found = options.arm or ("", ""), None
+    description = read_description(urdf)
+    if options.arm is None:
+        end = choose_end(description)
+        base, tip, found = end.base, end.tip, end.fingers
+    wanted = Wanted(
+        urdf=urdf,
         base=base,
         tip=tip,
         out=options.out.absolute(),
         drive=options.base,
-        fingers=options.gripper,
+        fingers=options.gripper or found,
         opening=options.opening,
         force=options.force,
         payload=math.inf if options.payload is None else options.payload,
@@ -158,22 +176,9 @@ def _wanted(options: Make) -> Wanted:
         home=options.home,
         fixed=_fixed(options.stands),
     )
-
-
-def _asked(urdf: str) -> tuple[str, str]:
-    """Take root and tip of a URDF with one chain; else say which there are."""
-    from tamp.commands.robot_folder.arm import tips
-    from tamp.commands.robot_folder.description import find_urdf, read_description
-
-    description = read_description(find_urdf(urdf))
-    ends = tips(description)
-    if len(ends) == 1:
-        return description.root, ends[0]
-    shown = ", ".join(f"--arm {description.root} {end}" for end in ends[:8])
-    raise InputError(
-        f"the URDF branches: {len(ends)} chains end somewhere", file=description.file,
-        remedy=f"Say which is the arm: {shown}" if ends else "It has no joint that moves",
-    )  # fmt: skip
+    if options.gripper is None and found is not None and not closes(description, wanted):
+        return replace(wanted, fingers=None)  # ours takes their place
+    return wanted
 
 
 def _fixed(words: Sequence[str]) -> dict[str, float]:

@@ -17,6 +17,7 @@ from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
 from tamp.geometric.motion.planners import COMPILED
+from tamp.geometric.robot.base_fit import BaseFit, freedom
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.reachability import Reachability
@@ -84,6 +85,13 @@ class Context:
         return ArmIK(self.robot)
 
     @cached_property
+    def base_fit(self) -> BaseFit | None:
+        """Return what moves base poses to where an arm of too few joints reaches; None for one of
+        enough.
+        """
+        return BaseFit(self.robot) if freedom(self.robot) < 6 else None
+
+    @cached_property
     def reachability(self) -> Reachability:
         """Return where the base may stand for a tool pose."""
         return Reachability(self.robot)
@@ -139,7 +147,10 @@ class Context:
         """
         if self.robot.drive == "fixed":
             return np.array([self.scene.robot.base])
-        return self.reachability.sample(T_world_tool, rng, count)
+        drawn = self.reachability.sample(T_world_tool, rng, count)
+        if self.base_fit is None:
+            return drawn
+        return np.array([self.base_fit.fit(T_world_tool, base) for base in drawn])
 
     def stable_faces(self, body: str) -> StableFaces:
         """Return the ways in which a body can rest."""

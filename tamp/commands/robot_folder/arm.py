@@ -19,8 +19,8 @@ from tamp.geometric.scene.pose import Array, Pose
 FEWEST, LARGEST = 2, 10
 """Joints of an arm."""
 
-FRAMES = ("tool", "flange", "eef", "ee_")
-"""Words in the names of frames where grippers are bolted to."""
+GRIPPER = ("finger", "knuckle", "jaw", "thumb", "gripper")
+"""Words in the names of links of grippers."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,7 @@ class Arm:
         T_last_tip: The tip in the last joint's frame.
         T_root_foot: The foot in the frame of the URDF's root.
         velocity, effort: Of each joint.
+        dropped: Links of a gripper beside the tip that another one takes the place of.
     """
 
     joints: tuple[Joint, ...]
@@ -58,10 +59,16 @@ class Arm:
     T_root_foot: Pose
     velocity: tuple[float, ...]
     effort: tuple[float, ...]
+    dropped: tuple[str, ...] = ()
 
 
 def find_arm(
-    description: Description, base: str, tip: str, fixed: Mapping[str, float], cut: bool = True
+    description: Description,
+    base: str,
+    tip: str,
+    fixed: Mapping[str, float],
+    ours: bool = True,
+    bare: bool = False,
 ) -> Arm:
     """Find the arm between two links.
 
@@ -70,8 +77,9 @@ def find_arm(
         base: The link that the arm begins with; all that does not hang on the arm belongs to it.
         tip: The link that it ends with.
         fixed: Where joints stand that are no part of the arm, by name.
-        cut: Whether what hangs on the tip is left out: a gripper that another one takes the place
-            of.
+        ours: Whether another gripper takes the place of the URDF's own: links of one beside the tip
+            are left out, as what hangs on the tip is in any case.
+        bare: Whether the tip's own shapes are left out, too: they are the hand's.
 
     Raises:
         InputError: Unknown links, one that is not below the other, limits that are missing or
@@ -85,7 +93,8 @@ def find_arm(
     place: dict[str, tuple[int, Array]] = {base: (0, np.eye(4))}
     numbers = {joint.name: number for number, joint in enumerate(joints, start=1)}
     found: list[Joint] = []
-    below = _descendants(description, tip) - {tip} if cut else set[str]()
+    below = _descendants(description, tip) - (set[str]() if bare else {tip})
+    beside = _beside(description, joints[-1].child, tip) - below if ours else set[str]()
     for joint in outwards(description, base):
         number, T = place[joint.parent]
         T = T @ joint.origin.matrix
@@ -99,7 +108,10 @@ def find_arm(
     root = _upwards(description, base, fixed, place)
 
     names = [base, *(joint.child for joint in joints)]
-    groups = [_group(description, name, number, place, below) for number, name in enumerate(names)]
+    left_out = below | beside
+    groups = [
+        _group(description, name, number, place, left_out) for number, name in enumerate(names)
+    ]
     return Arm(
         joints=tuple(found),
         groups=tuple(groups),
@@ -107,7 +119,26 @@ def find_arm(
         T_root_foot=Pose.from_matrix(clean(np.linalg.inv(place[root][1]))),
         velocity=tuple(joint.velocity or 1.0 for joint in joints),
         effort=tuple(description.efforts[joint.name] or 100.0 for joint in joints),
+        dropped=tuple(sorted(name for name in beside if description.links[name])),
     )
+
+
+def _beside(description: Description, last: str, tip: str) -> set[str]:
+    """List the links of a gripper that hangs beside the tip: what moves there, and what is called
+    so.
+    """
+    way = {tip}
+    link = tip
+    while link != last and (joint := description.joint_to(link)) is not None:
+        link = joint.parent
+        way.add(link)
+
+    found: set[str] = set()
+    for joint in outwards(description, last):
+        named = any(word in joint.child.lower() for word in GRIPPER)
+        if joint.child not in way and (joint.parent in found or joint.kind in MOVING or named):
+            found.add(joint.child)
+    return found
 
 
 def _chain(description: Description, base: str, tip: str) -> list[Joint]:
@@ -189,31 +220,6 @@ def outwards(description: Description, base: str) -> Sequence[Joint]:
                 order.append(joint)
                 links.append(joint.child)
     return order
-
-
-def tips(description: Description) -> tuple[str, ...]:
-    """List the links with which chains of moving joints end: the last link before a branch, or
-    before nothing.
-    """
-    ends: list[str] = []
-
-    def follow(link: str, moved: int) -> None:
-        children = [joint for joint in description.joints.values() if joint.parent == link]
-        moving = [
-            joint for joint in children
-            if any(one.kind in MOVING for one in (joint, *outwards(description, joint.child)))
-        ]  # fmt: skip
-        if not moving:
-            if moved >= FEWEST:
-                frames = [one.child for one in children if not description.links[one.child]]
-                named = [one for one in frames if any(word in one for word in FRAMES)]
-                ends.append((named or (frames if len(frames) == 1 else []) or [link])[0])
-            return
-        for joint in moving:
-            follow(joint.child, moved + (joint.kind in MOVING))
-
-    follow(description.root, 0)
-    return tuple(ends)
 
 
 def _descendants(description: Description, link: str) -> set[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tamp.commands.robot_folder.arm import Arm
-from tamp.geometric.robot.robot import Link
+from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part
@@ -62,6 +62,12 @@ def choose_base(
     T_base_root = mount or Pose(MOUNT)
     box = Part(Box(BOX), Pose((0.0, 0.0, CLEAR + BOX[2] / 2)))
     return box, T_base_root @ arm.T_root_foot, BASE_VELOCITY, BASE_ACCELERATION
+
+
+def on_our_box(robot: Robot) -> bool:
+    """Check whether an arm is driven by the box that arms without a base get."""
+    shape = robot.link(robot.base).parts[0].shape
+    return robot.drive != "fixed" and isinstance(shape, Box) and shape.size == BOX
 
 
 def _tall(arm: Arm, foot: Link) -> bool:

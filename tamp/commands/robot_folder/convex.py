@@ -90,9 +90,9 @@ def _corners(shape: Box | Cylinder | Sphere | Capsule | None) -> Array:
     if isinstance(shape, Cylinder):
         return _prism(ring * shape.radius, shape.height / 2)
     if isinstance(shape, Sphere):
-        return _ball(shape.radius, 0.0)
+        return ball(shape.radius, 0.0)
     if isinstance(shape, Capsule):
-        return _ball(shape.radius, shape.length / 2)
+        return ball(shape.radius, shape.length / 2)
     raise InputError("a collision element without a geometry")
 
 
@@ -100,7 +100,7 @@ def _prism(ring: Array, half: float) -> Array:
     return np.concatenate([np.column_stack([ring, np.full(len(ring), z)]) for z in (-half, half)])
 
 
-def _ball(radius: float, half: float) -> Array:
+def ball(radius: float, half: float) -> Array:
     """Return points around a ball, or around a capsule of that half length."""
     count = 120
     index = np.arange(count) + 0.5

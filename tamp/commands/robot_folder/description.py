@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element, elements, origin_pose
 from tamp.geometric.loading.xml_file import read_xml
@@ -56,18 +57,14 @@ class Description:
 
 
 def find_urdf(name: str) -> Path:
-    """Find a URDF: a file, one of the package example-robot-data by its name (ur5_robot), or one of
-    pybullet_data by its place there (pybullet_data/kuka_iiwa/model.urdf).
+    """Find a URDF or an MJCF: a file, one of the package example-robot-data by its name
+    (ur5_robot), or one of pybullet_data by its place there (pybullet_data/kuka_iiwa/model.urdf).
 
     Raises:
         InputError: There is none.
     """
     file = Path(name)
     if file.is_file():
-        if file.suffix in (".xacro", ".xml"):
-            raise InputError(
-                "not a URDF", file=file, remedy="Expand xacro first: xacro robot.xacro > robot.urdf"
-            )
         return file
 
     spec = importlib.util.find_spec("pybullet_data")
@@ -88,7 +85,7 @@ def find_urdf(name: str) -> Path:
                              choices=tuple(sorted(known)))  # fmt: skip
     raise InputError(
         f"no such file: {name}",
-        remedy="Name a URDF, or install example-robot-data and name one of its robots",
+        remedy="Name a URDF or an MJCF, or install example-robot-data and name one of its robots",
     )
 
 
@@ -102,6 +99,11 @@ def read_description(file: Path) -> Description:
     tree = read_xml(file)
     if tree.tag != "robot":
         raise InputError(f"not a URDF: its root is <{tree.tag[:40]}>, not <robot>", file=file)
+    if any("xacro" in str(element.tag) for element in tree.iter()):
+        raise InputError(
+            "it has macros of xacro", file=file,
+            remedy="Expand it first: xacro robot.xacro > robot.urdf",
+        )  # fmt: skip
     links = {link.get("name", ""): link for link in tree.findall("link")}
     if not links:
         raise InputError("the URDF has no links", file=file)
@@ -218,17 +220,12 @@ def _snapped(pose: Pose) -> Pose:
     """Make right what is nearly so: files round a right angle to 1.5708, which closed forms and
     spherical wrists feel.
     """
-    R = pose.rotation
-    pitch = math.asin(max(-1.0, min(1.0, -float(R[2, 0]))))
-    if abs(math.cos(pitch)) < 1e-6:
-        roll, yaw = math.atan2(-float(R[1, 2]), float(R[1, 1])), 0.0
-    else:
-        roll, yaw = math.atan2(R[2, 1], R[2, 2]), math.atan2(R[1, 0], R[0, 0])
-    angles = np.array([roll, pitch, yaw])
+    angles = np.array(roll_pitch_yaw(pose.rotation))
     grid = np.round(angles / GRID) * GRID
-    if (np.abs(angles - grid) > NEARLY).any():
+    near = np.abs(angles - grid) <= NEARLY
+    if not near.any():
         return pose
-    roll, pitch, yaw = (float(angle) for angle in grid)
+    roll, pitch, yaw = (float(angle) for angle in np.where(near, grid, angles))
     matrix = Pose.from_xyz_rpy(pose.position, (roll, pitch, yaw)).matrix.copy()
     matrix[np.abs(matrix) < 1e-12] = 0.0
     return Pose.from_matrix(matrix)

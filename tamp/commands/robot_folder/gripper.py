@@ -10,7 +10,7 @@ from tamp.commands.robot_folder.arm import Arm
 from tamp.commands.robot_folder.convex import hull_of
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Hull
 
 AXES = ("x", "-x", "y", "-y", "z", "-z")
@@ -120,69 +120,6 @@ def along(axis: str) -> Pose:
     return Pose() if axis == "z" else Pose.from_matrix(T)
 
 
-def own_fingers(
-    joints: tuple[Joint, Joint],
-    hand: tuple[Hull, ...],
-    finger_hulls: tuple[tuple[Hull, ...], tuple[Hull, ...]],
-    T_tip_hand: Pose,
-    opening: float | None,
-    force: float,
-) -> Gripper:
-    """Make a gripper of two prismatic joints of the URDF, whose frames are given in the hand's.
-
-    The closing direction is that of the joints, the tool's z points from the hand to the fingers,
-    and its origin is between the pads, TIP before the tips.
-
-    Raises:
-        InputError: The fingers do not move towards each other, or have no shape.
-    """
-    first, second = (np.array(joint.origin.rotation @ np.array(joint.axis)) for joint in joints)
-    names = " and ".join(joint.name for joint in joints)
-    if first @ second > -0.99:
-        raise InputError(
-            f"the fingers {names} do not move towards each other: the gripper cannot close",
-            remedy="Name two prismatic joints, or leave --gripper out for one of ours",
-        )
-    corners = [
-        np.concatenate([joint.origin.apply(hull.vertices) for hull in hulls])
-        for joint, hulls in zip(joints, finger_hulls, strict=True)
-        if hulls
-    ]
-    if len(corners) != 2:
-        raise InputError(f"the fingers {names} have no collision shapes")
-    gap = float((corners[0] @ first).min() + (corners[1] @ second).min())
-    if gap < -0.002:
-        raise InputError(
-            f"the fingers {names} are {-1000 * gap:.1f} mm in each other at 0: the gripper cannot "
-            "close"
-        )
-    widest = min(joint.upper for joint in joints) * 2 if opening is None else opening
-    if not widest > 0.0:
-        raise InputError(f"the fingers {names} cannot open: their upper limit is 0")
-
-    closing = first / np.linalg.norm(first)
-    both = np.concatenate(corners)
-    out = both.mean(axis=0) - np.concatenate([hull.vertices for hull in hand]).mean(axis=0)
-    out -= (out @ closing) * closing
-    out = np.eye(3)[int(np.argmax(np.abs(out)))] * np.sign(out[int(np.argmax(np.abs(out)))])
-    middle = sum((joint.origin.matrix[:3, 3] for joint in joints), np.zeros(3)) / 2
-    T = np.eye(4)
-    T[:3, 0], T[:3, 1], T[:3, 2] = np.cross(closing, out), closing, out
-    T[:3, 3] = middle + out * (float((both @ out).max()) - TIP - float(middle @ out))
-    speed = min(joint.velocity or 0.05 for joint in joints)
-    return Gripper(
-        hand, joints, finger_hulls, T_tip_hand, Pose.from_matrix(_orthogonal(T)), widest, force,
-        min(speed, 0.1),
-    )  # fmt: skip
-
-
 def _box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> Hull:
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     return hull_of(signs * np.array(size) / 2 + np.array(centre), "gripper")
-
-
-def _orthogonal(T: Array) -> Array:
-    u, _, v = np.linalg.svd(T[:3, :3])
-    fixed = T.copy()
-    fixed[:3, :3] = u @ v
-    return fixed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,10 +16,28 @@ from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
 
 
+def tip_is_hand(description: Description, tip: str, fingers: Sequence[Joint]) -> bool:
+    """Check whether the tip itself is what carries the fingers: nothing else with a shape hangs on
+    it.
+    """
+    below = {finger.child for finger in fingers}
+    for joint in outwards(description, tip):
+        if joint.parent in below:
+            below.add(joint.child)
+        elif joint.child not in below and description.links[joint.child]:
+            return False
+    return True
+
+
 def find_hand(
-    description: Description, tip: str, fingers: tuple[Joint, Joint], fixed: Mapping[str, float]
+    description: Description,
+    tip: str,
+    fingers: tuple[Joint, Joint],
+    fixed: Mapping[str, float],
+    bare: bool = False,
 ) -> tuple[Group, tuple[Joint, Joint], tuple[Group, Group]]:
-    """Find the hand, the fingers' joints with their origins in the tip's frame, and the fingers.
+    """Find the hand, the fingers' joints with their origins in the tip's frame, and the fingers;
+    `bare`: the tip's own shapes are the hand's.
 
     Raises:
         InputError: The fingers do not hang on the tip.
@@ -48,7 +66,9 @@ def find_hand(
     joints = [
         replace(one, parent=hand, origin=Pose.from_matrix(origins[one.child])) for one in fingers
     ]
-    groups = [_group(description, place, owner, owner == tip) for owner in (tip, *roots)]
+    groups = [
+        _group(description, place, owner, owner == tip and not bare) for owner in (tip, *roots)
+    ]
     return (
         replace(groups[0], name=hand), (joints[0], joints[1]), (groups[1], groups[2]),
     )  # fmt: skip

@@ -7,9 +7,10 @@ import math
 
 import numpy as np
 
-from tamp.commands.robot_folder.reach_table import directions, rotation_with_up
+from tamp.commands.robot_folder.reach_table import directions, rotation_with_up, tools
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
+from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
@@ -25,6 +26,9 @@ ABOVE = np.arange(-0.4, 0.61, 0.1)
 """and above the shoulder."""
 
 YAWS = np.arange(8) * np.pi / 4
+
+SAMPLES = 20_000
+"""Configurations that are drawn where inverse kinematics finds no pose: few joints reach few."""
 
 LOOKED_AT = 200
 """Configurations that are looked at for collision, the best first."""
@@ -46,26 +50,57 @@ def home(robot: Robot, length: float) -> tuple[float, ...]:
         best: list[tuple[float, Array]] = []
         for T in _poses(robot, length, ways):
             best += [(_sprawl(robot, kinematics, q), q) for q in ik.solve(T, enough=6)]
-        best.sort(key=lambda pair: pair[0])
-        # the best, and then some that are spread over the others
-        spread = best[LOOKED_AT :: max(1, (len(best) - LOOKED_AT) // LOOKED_AT)]
-        for _, q in (*best[:LOOKED_AT], *spread):
-            if home_collision(robot, q) is None:
-                return tuple(round(float(value), 6) for value in q)
+        free = _free(robot, best)
+        if free is not None:
+            return free
+    free = _free(robot, _drawn(robot, kinematics, length))
+    if free is not None:
+        return free
     raise InputError(
         f"the arm of {robot.name} reaches no place in front of it with the hand down or forward",
         remedy="Give its carrying configuration with --home, or mount it elsewhere with --mount",
     )
 
 
+def _free(robot: Robot, weighed: list[tuple[float, Array]]) -> tuple[float, ...] | None:
+    """Return the lightest configuration that is free, of the best and some spread over the rest."""
+    best = sorted(weighed, key=lambda pair: pair[0])
+    spread = best[LOOKED_AT :: max(1, (len(best) - LOOKED_AT) // LOOKED_AT)]
+    for _, q in (*best[:LOOKED_AT], *spread):
+        if home_collision(robot, q) is None:
+            return tuple(round(float(value), 6) for value in q)
+    return None
+
+
+def _drawn(robot: Robot, kinematics: Kinematics, length: float) -> list[tuple[float, Array]]:
+    """Draw configurations with the tool in front, and weigh them: upwards hands are heavy."""
+    chain, shoulder = Chain.of(robot), _shoulder(robot)
+    q = np.random.default_rng(0).uniform(chain.lower, chain.upper, (SAMPLES, len(chain.lower)))
+    R, p = tools(chain, q)
+    ahead = (p[:, 0] - shoulder[0]) / length
+    kept = (ahead > AHEAD[0]) & (np.abs(p[:, 1]) < 0.3 * length) & (p[:, 2] > _lowest(robot))
+    return [
+        (_sprawl(robot, kinematics, q[index]) + 1.0 + float(R[index, 2, 2]), q[index])
+        for index in np.flatnonzero(kept)[: 10 * LOOKED_AT]
+    ]
+
+
+def _shoulder(robot: Robot) -> Array:
+    """Return where the second joint is in the base's frame, (3,)."""
+    return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)
+
+
+def _lowest(robot: Robot) -> float:
+    """Return how low the tool may be with something that hangs from it, metres."""
+    return ROOM + max(0.0, _top(robot))
+
+
 def _poses(robot: Robot, length: float, ways: list[Array]) -> list[Array]:
     """List tool poses in front of the foot, not lower than what is carried allows."""
-    shoulder = np.array(
-        (robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position
-    )
+    shoulder = _shoulder(robot)
     poses: list[Array] = []
     for ahead, above, R in itertools.product(AHEAD * length, ABOVE * length, ways):
-        if shoulder[2] + above < ROOM + max(0.0, _top(robot)):
+        if shoulder[2] + above < _lowest(robot):
             continue
         T = np.eye(4)
         T[:3, :3] = R

@@ -4,29 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tamp.commands.robot_folder.arm import Arm, find_arm
-from tamp.commands.robot_folder.base import choose_base
+from tamp.commands.robot_folder.base import choose_base, on_our_box
+from tamp.commands.robot_folder.check import against_urdf, check_reach
+from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
+from tamp.commands.robot_folder.column import on_column
 from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
-from tamp.commands.robot_folder.description import Description, find_urdf, read_description
-from tamp.commands.robot_folder.gripper import (
-    Gripper,
-    along,
-    outward_axis,
-    own_fingers,
-    two_fingers,
-)
-from tamp.commands.robot_folder.hand import find_hand
+from tamp.commands.robot_folder.description import read_description
+from tamp.commands.robot_folder.gripper import Gripper
+from tamp.commands.robot_folder.hand import tip_is_hand
 from tamp.commands.robot_folder.home import home
 from tamp.commands.robot_folder.reach_table import table
 from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
 from tamp.commands.robot_folder.spheres import cover
+from tamp.commands.robot_folder.wanted import Wanted
+from tamp.commands.robot_folder.weight import carrying
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
-from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Hull, Part
 
 PER_SECOND = 2.0
@@ -35,53 +34,17 @@ PER_SECOND = 2.0
 Told = Callable[[str, float], None]
 
 
-@dataclass(frozen=True)
-class Wanted:
-    """The choices that a robot is made by.
-
-    Attributes:
-        urdf: As `description.find_urdf` takes it.
-        base, tip: The links between which the arm is; no base means the robot's root.
-        out: The folder that is made.
-        drive: One of `robot.DRIVES`.
-        fingers: Two prismatic joints of the URDF's own gripper; without them ours is bolted to
-            the tip.
-        opening: The gripper's largest, metres.
-        force: With which each finger presses, newtons.
-        payload: Kilograms.
-        mount: Where the arm's root is on the base: x, y, z in metres and yaw in radians.
-        axis: Of the tip, along which our gripper points: x, -x, y, ...; None finds it.
-        height: Metres at which an arm that does not drive is bolted to something.
-        home: Its carrying configuration.
-        fixed: Where joints stand that are no part of the arm.
-    """
-
-    urdf: str
-    tip: str
-    out: Path
-    base: str | None = None
-    drive: str = "omnidirectional"
-    fingers: tuple[str, str] | None = None
-    opening: float | None = None
-    force: float = 50.0
-    payload: float = math.inf
-    mount: tuple[float, float, float, float] | None = None
-    axis: str | None = None
-    height: float = 0.0
-    home: tuple[float, ...] | None = None
-    fixed: Mapping[str, float] = field(default_factory=dict[str, float])
-
-
 @dataclass(frozen=True, eq=False)
 class Made:
-    """A robot before it is written: with its sphere covers, table and masses."""
+    """A robot before it is written: with its sphere covers, table and masses, how far its frames
+    are off those of the URDF, and sentences about what was decided.
+    """
 
     robot: Robot
     covers: Mapping[tuple[str, int], tuple[Array, float]]
     table: Mapping[str, Array]
     masses: Mapping[str, float]
-    description: Description
-    arm: Arm
+    off: float
     warnings: tuple[str, ...]
 
 
@@ -92,10 +55,12 @@ def make(wanted: Wanted, told: Told) -> Made:
         InputError: What is wrong with the URDF or the choices, and what to do.
     """
     told("reading the URDF", 0.0)
-    file = find_urdf(wanted.urdf)
+    file = wanted.urdf
     description = read_description(file)
     base = wanted.base or description.root
-    arm = find_arm(description, base, wanted.tip, wanted.fixed, cut=True)
+    fingers = named_fingers(description, wanted)
+    bare = fingers is not None and tip_is_hand(description, wanted.tip, fingers)
+    arm = find_arm(description, base, wanted.tip, wanted.fixed, fingers is None, bare)
 
     told("hulls", 0.0)
     meshes = {group.name: solids(group.elements, group.name) for group in arm.groups}
@@ -104,24 +69,45 @@ def make(wanted: Wanted, told: Told) -> Made:
             "the arm has no collision shapes", file=file,
             remedy="Give its links <collision> elements; their <visual> meshes often do",
         )  # fmt: skip
-    gripper = _gripper(description, wanted, arm)
+    gripper = choose_gripper(description, wanted, arm, fingers, bare)
     robot = _robot(wanted, arm, gripper, meshes, file)
+    off = against_urdf(robot, description, arm, wanted.tip)
     robot = _refined(robot, meshes, told)
+    robot, remarks = _placed(robot, wanted, arm)
+    reach = table(robot, lambda done: told("from where the arm reaches what", done))
+    check_reach(reach["counts"], reach["heights"], robot)
 
     allowed, warnings = allowed_pairs(
         robot, lambda done: told("pairs of links that can meet", done)
     )
     robot = replace(robot, allowed=allowed)
-
     told("a home configuration", 0.0)
     robot = replace(robot, home=_home(robot, wanted))
     covers = _covers(robot, told)
-    reach = table(robot, lambda done: told("from where the arm reaches what", done))
 
     groups = {group.name: group.mass for group in arm.groups}
     shared = {robot.hand: gripper.mass * 0.7}
     shared |= {finger.child: gripper.mass * 0.15 for finger in robot.fingers}
-    return Made(robot, covers, reach, groups | shared, description, arm, warnings)
+    masses = groups | shared
+    effort, weak = carrying(robot, masses)
+    robot = replace(robot, effort=effort)
+    return Made(robot, covers, reach, masses, off, (*remarks, *warnings, *weak))
+
+
+def _placed(robot: Robot, wanted: Wanted, arm: Arm) -> tuple[Robot, list[str]]:
+    """Put a short arm on a column; return what there is to say of that, and of a gripper that was
+    replaced.
+    """
+    remarks = [f"the gripper takes the place of {', '.join(arm.dropped)}"] if arm.dropped else []
+    if wanted.mount is None and on_our_box(robot):
+        before = robot.T_base_arm.position[2]
+        robot = on_column(robot)
+        high = robot.T_base_arm.position[2]
+        if high > before:
+            remarks.append(
+                f"a short arm: it stands {high:.2f} m high on a column; --mount puts it elsewhere"
+            )
+    return robot, remarks
 
 
 def _robot(
@@ -200,40 +186,6 @@ def _unused(gripper: Gripper, names: set[str]) -> tuple[str, Joint, Joint]:
 
 def _parts(hulls: Sequence[Hull]) -> tuple[Part, ...]:
     return tuple(map(Part, hulls))
-
-
-def _gripper(description: Description, wanted: Wanted, arm: Arm) -> Gripper:
-    if wanted.fingers is None:
-        opening = 0.085 if wanted.opening is None else wanted.opening
-        return two_fingers(opening, wanted.force, along(wanted.axis or outward_axis(arm)))
-    known = tuple(description.joints)
-    found: list[Joint] = []
-    for name in wanted.fingers:
-        if name not in description.joints:
-            raise InputError(f"the gripper: unknown joint '{name}'", file=description.file,
-                             found=name, choices=known)  # fmt: skip
-        if description.joints[name].kind != "prismatic":
-            raise InputError(
-                f"the gripper: joint '{name}' turns, only fingers that slide are known",
-                file=description.file,
-                remedy="Leave --gripper out: one of ours is bolted to the tip",
-            )
-        found.append(description.joints[name])
-    if found[0].parent != found[1].parent:
-        raise InputError("the fingers hang on two links", file=description.file)
-    return _own(description, wanted, found[0], found[1])
-
-
-def _own(description: Description, wanted: Wanted, left: Joint, right: Joint) -> Gripper:
-    """Take the URDF's own gripper: what hangs on the tip, but for the fingers, is the hand, in the
-    tip's frame.
-    """
-    hand, joints, fingers = find_hand(description, wanted.tip, (left, right), wanted.fixed)
-    hulls = [
-        joined([h for one in solids(group.elements, group.name) for h in one.hulls], group.name)
-        for group in (hand, *fingers)
-    ]
-    return own_fingers(joints, hulls[0], (hulls[1], hulls[2]), Pose(), wanted.opening, wanted.force)
 
 
 def _refined(robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told) -> Robot:

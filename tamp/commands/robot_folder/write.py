@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw, words
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Robot
 from tamp.geometric.robot.urdf import Joint
@@ -211,7 +212,7 @@ def _link(name: str, parts: Sequence[Part], mass: float) -> list[str]:
     a, b, c = (mass / 12 * value for value in (y * y + z * z, x * x + z * z, x * x + y * y))
     lines = [
         f'  <link name="{name}">',
-        f'    <inertial><origin xyz="{_words((low + high) / 2)}"/><mass value="{mass:.6g}"/>'
+        f'    <inertial><origin xyz="{words((low + high) / 2)}"/><mass value="{mass:.6g}"/>'
         f'<inertia ixx="{a:.6g}" ixy="0" ixz="0" iyy="{b:.6g}" iyz="0" izz="{c:.6g}"/></inertial>',
     ]
     for number in range(len(parts)):
@@ -225,24 +226,14 @@ def _joint(
 ) -> list[str]:
     return [
         f'  <joint name="{joint.name}" type="{kind}"><parent link="{parent}"/>'
-        f'<child link="{joint.child}"/>{_origin(joint.origin)}<axis xyz="{_words(joint.axis)}"/>'
+        f'<child link="{joint.child}"/>{_origin(joint.origin)}<axis xyz="{words(joint.axis)}"/>'
         f'<limit lower="{low!r}" upper="{high!r}" effort="{effort:g}" '
         f'velocity="{joint.velocity or 1.0:g}"/></joint>'
     ]
 
 
 def _origin(pose: Pose) -> str:
-    R = pose.rotation
-    pitch = math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0]))
-    if math.hypot(R[0, 0], R[1, 0]) < 1e-9:
-        roll, yaw = math.atan2(-R[1, 2], R[1, 1]), 0.0
-    else:
-        roll, yaw = math.atan2(R[2, 1], R[2, 2]), math.atan2(R[1, 0], R[0, 0])
-    return f'<origin xyz="{_words(pose.position)}" rpy="{_words((roll, pitch, yaw))}"/>'
-
-
-def _words(values: Iterable[float]) -> str:
-    return " ".join(repr(float(value)) for value in values)
+    return f'<origin xyz="{words(pose.position)}" rpy="{words(roll_pitch_yaw(pose.rotation))}"/>'
 
 
 def _list(values: Iterable[float]) -> str:

@@ -21,6 +21,8 @@ _KNOWN = re.compile(
     r"|mac)",
     re.IGNORECASE,
 )
+_PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_]")
+_ROOT = re.compile(r"<[A-Za-z_][\w.:-]*")
 _BOMS = ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be"))
 
 
@@ -39,11 +41,24 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
     """
     text = _text(read_raw(path, most))
     try:
-        return ElementTree.fromstring(text)
+        try:
+            return ElementTree.fromstring(text)
+        except ElementTree.ParseError as error:
+            if "unbound prefix" not in str(error):
+                raise
+            return ElementTree.fromstring(_bound(text))
     except (ElementTree.ParseError, ValueError) as error:
         raise InputError(f"cannot read '{path.name}': {error}") from None
     except RecursionError:
         raise InputError(f"cannot read '{path.name}': nested too deeply") from None
+
+
+def _bound(text: str) -> str:
+    """Declare the prefixes that a file uses without: descriptions of robots name a simulator's."""
+    used = set(_PREFIX.findall(text)) - {"xml", "xmlns"}
+    new = sorted(name for name in used if f"xmlns:{name}" not in text)
+    names = "".join(f' xmlns:{name}="urn:{name}"' for name in new)
+    return _ROOT.sub(lambda root: root[0] + names, text, count=1)
 
 
 def _text(content: bytes) -> str:

@@ -38,8 +38,7 @@ class Numerical:
 
     def __init__(self, chain: Chain) -> None:
         self._chain = chain
-        spread = np.array([_halton(index, len(chain.lower)) for index in range(1, MAX_STARTS)])
-        self._spread = np.concatenate([np.full((1, len(chain.lower)), 0.5), spread])
+        self._spread = spread(MAX_STARTS, len(chain.lower))
         # A joint that turns freely begins within half a turn of home.
         wide = chain.upper - chain.lower > 2 * np.pi
         self._low = np.where(wide, np.maximum(chain.home - np.pi, chain.lower), chain.lower)
@@ -56,10 +55,10 @@ class Numerical:
         chain = self._chain
         if float(np.linalg.norm(T_base_tool[:3, 3] - self._centre)) > self._length:
             return np.empty((0, len(chain.lower)))
-        spread = self._spread
+        places = self._spread
         if rng is not None:
-            spread = (spread + rng.random(len(chain.lower))) % 1.0
-        seeds = self._low + spread * (self._high - self._low)
+            places = (places + rng.random(len(chain.lower))) % 1.0
+        seeds = self._low + places * (self._high - self._low)
         target = np.ascontiguousarray(T_base_tool, dtype=float)
         most = MAX_SOLUTIONS if enough is None else enough
         looked = STARTS_FOR_MORE if enough is None else MAX_STARTS
@@ -82,6 +81,12 @@ def _length(chain: Chain) -> tuple[Array, float]:
 
 HALTON_BASES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 """The bases of Halton's sequence, one a joint."""
+
+
+def spread(count: int, dimensions: int) -> Float[Array, "count dimensions"]:
+    """Return points in the unit cube: its middle, then those of Halton's sequence."""
+    points = np.array([_halton(index, dimensions) for index in range(1, count)])
+    return np.concatenate([np.full((1, dimensions), 0.5), points])
 
 
 def _halton(index: int, count: int) -> list[float]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tamp.commands.robot_folder import convex, reach_table, self_collision, spheres
-from tests.commands.robot_folder.urdf import LIFT, SIX, write_arm
+from tests.commands.robot_folder.urdf import FIVE, LIFT, SIX, write_arm
 
 
 @pytest.fixture(scope="session")
@@ -51,3 +51,9 @@ def lifting(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def bolted(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An arm of six joints bolted to a table."""
     return made(tmp_path_factory.mktemp("bolted"), "--base", "fixed", "--height", "0.5")
+
+
+@pytest.fixture(scope="session")
+def five(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An arm of five joints on an omnidirectional base."""
+    return made(tmp_path_factory.mktemp("five"), joints=FIVE, name="five")

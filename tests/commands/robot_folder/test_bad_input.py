@@ -39,7 +39,7 @@ def changed(number: int, kind: str | None = None, limits: str | None = None):
 CASES = {
     "no-file": (None, ARM, r"no such file"),
     "no-xml": ("this is no XML", ARM, r"arm.urdf.*syntax error"),
-    "no-robot": ("<model/>", ARM, r"not a URDF"),
+    "no-robot": ("<model/>", ARM, r"neither a URDF nor an MJCF"),
     "unknown-link": (arm_text(), ("--arm", "foot", "tol"), r"unknown link 'tol'.*Did you mean 'tool'"),
     "other-branch": (arm_text(extra=BRANCH), ("--arm", "second", "tool"), r"'tool' does not hang on 'second'"),
     "branches": (arm_text(extra=BRANCH), (), r"branches: 2 chains.*--arm foot tool"),
@@ -69,7 +69,7 @@ CASES = {
     ),
     "fingers-overlap": (
         arm_text(extra=FINGERS.format(kind="prismatic", axis="0 -1 0")), (*ARM, "--gripper", "l", "r"),
-        r"in each other at 0: the gripper cannot close",
+        r"in each other at the end of their way: the gripper cannot close",
     ),
     "home-count": (arm_text(), (*ARM, "--home", "0", "0"), r"--home: 6 numbers are expected"),
     "home-limits": (arm_text(), (*ARM, "--home", "9", "0", "0", "0", "0", "0"), r"--home: pan = 9 is not within"),

@@ -24,7 +24,7 @@ goal: (on can shelf)
 """
 
 
-@pytest.mark.parametrize("name", ["driving", "lifting"])
+@pytest.mark.parametrize("name", ["driving", "lifting", "five"])
 def test_a_robot_of_ones_own_solves_a_shipped_problem(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

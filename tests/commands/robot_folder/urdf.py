@@ -17,6 +17,15 @@ SIX = (
 
 LIFT = ("lift0", "prismatic", "0 0 1", "0 0 0.1", "0 0.3")
 
+FIVE = (
+    ("pan", "revolute", "0 0 1", "0 0 0.1", "-3.1 3.1"),
+    ("lift", "revolute", "1 0 0", "0.06 0 0.06", "-3.1 3.1"),
+    ("elbow", "revolute", "1 0 0", "-0.06 0 0.4", "-2.9 2.9"),
+    ("wrist", "revolute", "1 0 0", "0 0 0.35", "-3.1 3.1"),
+    ("roll", "continuous", "0 1 0", "0 0.1 0", ""),
+)
+"""An arm of a desk: the tool stays in the upright plane through the first joint's axis."""
+
 
 def arm_text(joints=SIX, extra: str = "") -> str:
     """A URDF whose link after each joint is a box along the way to the next."""

@@ -1,0 +1,45 @@
+"""The choices that a robot is made by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The choices that a robot is made by.
+
+    Attributes:
+        urdf: The URDF.
+        base, tip: The links between which the arm is; no base means the robot's root.
+        out: The folder that is made.
+        drive: One of `robot.DRIVES`.
+        fingers: Two prismatic joints of the URDF's own gripper; without them ours is bolted to
+            the tip.
+        opening: The gripper's largest, metres.
+        force: With which each finger presses, newtons.
+        payload: Kilograms.
+        mount: Where the arm's root is on the base: x, y, z in metres and yaw in radians.
+        axis: Of the tip, along which our gripper points: x, -x, y, ...; None finds it.
+        height: Metres at which an arm that does not drive is bolted to something.
+        home: Its carrying configuration.
+        fixed: Where joints stand that are no part of the arm.
+    """
+
+    urdf: Path
+    tip: str
+    out: Path
+    base: str | None = None
+    drive: str = "omnidirectional"
+    fingers: tuple[str, str] | None = None
+    opening: float | None = None
+    force: float = 50.0
+    payload: float = math.inf
+    mount: tuple[float, float, float, float] | None = None
+    axis: str | None = None
+    height: float = 0.0
+    home: tuple[float, ...] | None = None
+    fixed: Mapping[str, float] = field(default_factory=dict[str, float])

@@ -1,0 +1,93 @@
+"""Base poses from which an arm with too few joints reaches a pose of the tool."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tamp.geometric.robot.chain import Chain
+from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.numerical import spread
+from tamp.geometric.robot.robot import Robot
+from tamp.geometric.scene.pose import Array, Pose
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
+
+STATES = 12
+"""Configurations at which the arm's freedom is looked at."""
+
+SINGULAR = 1e-6
+"""A Jacobian's singular value up to which a direction counts as none."""
+
+SHIFT, TURN = 0.15, math.radians(30.0)
+"""Metres and radians by which a base pose is changed, at most."""
+
+SEEDS = 12
+"""Starts of the arm from which the change is looked for."""
+
+_X, _Y = (np.roll(np.eye(3), turns, axis=1) for turns in (2, 1))
+"""Rotations whose z is the x axis, and the y axis."""
+
+
+def freedom(robot: Robot) -> int:
+    """Return in how many directions the arm can move the tool: six, or fewer."""
+    kinematics, rng = Kinematics(robot), np.random.default_rng(0)
+    ranks: list[int] = []
+    for _ in range(STATES):
+        q = rng.uniform(np.array(robot.lower), np.array(robot.upper))
+        J = kinematics.jacobian(np.concatenate([np.zeros(3), q]))[:, 3:]
+        ranks.append(int((np.linalg.svd(J, compute_uv=False) > SINGULAR).sum()))
+    return max(ranks)
+
+
+class BaseFit:
+    """Moves base poses to where an arm of five joints reaches a tool pose.
+
+    Such an arm reaches a set of poses of five dimensions: from a base pose that is drawn, almost
+    surely none of a given tool pose. The base supplies what is lacking: the chain that begins with
+    it, two slides and a turn on the floor, has eight joints, and its inverse kinematics is solved
+    from the pose that was drawn.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        chain = Chain.of(robot)
+        virtual = np.tile(np.eye(4), (3, 1, 1))
+        for index, R in enumerate((_X, _X.T @ _Y, _Y.T)):
+            virtual[index, :3, :3] = R
+        bound = np.array([SHIFT, SHIFT, TURN])
+        self._arrays = (
+            np.ascontiguousarray(np.concatenate([virtual, chain.origins])),
+            np.concatenate([[1.0, 1.0, 0.0], chain.slides]),
+            np.ascontiguousarray(chain.T_flange_tool),
+            np.concatenate([-bound, chain.lower]),
+            np.concatenate([bound, chain.upper]),
+        )
+        self._home = np.concatenate([np.zeros(3), chain.home])
+        low = np.maximum(chain.lower, chain.home - np.pi)
+        starts = low + spread(SEEDS, len(low)) * (np.minimum(chain.upper, chain.home + np.pi) - low)
+        starts[0] = chain.home
+        self._seeds = np.concatenate([np.zeros((SEEDS, 3)), starts], axis=1)
+
+    def fit(
+        self, T_world_tool: Float[Array, "4 4"], base: Float[Array, " 3"]
+    ) -> Float[Array, " 3"]:
+        """Return a base pose x, y, yaw near another one, metres and radians, from which the arm
+        reaches the tool pose; the other one itself where none is found.
+        """
+        # compiled when it is imported, which arms with joints enough need not
+        from tamp.geometric.robot.numerical_kernels import damped_least_squares
+
+        T_world_base = Pose.from_xyz_yaw(float(base[0]), float(base[1]), 0.0, float(base[2])).matrix
+        target = np.ascontiguousarray(np.linalg.inv(T_world_base) @ T_world_tool)
+        found, count = damped_least_squares(
+            *self._arrays, self._home, target, self._seeds, SEEDS, 1
+        )
+        if not count:
+            return np.asarray(base, dtype=float)
+        x, y, turn = found[0, :3]
+        cos, sin = math.cos(base[2]), math.sin(base[2])
+        yaw = (base[2] + turn + math.pi) % (2 * math.pi) - math.pi
+        return np.array([base[0] + cos * x - sin * y, base[1] + sin * x + cos * y, yaw])
