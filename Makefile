@@ -1,5 +1,9 @@
 # Every command sets up what it needs: a bare machine with make and Python 3.11, 3.12 or 3.13 is enough.
-PYTHON ?= $(or $(firstword $(foreach name,python3.11 python3.12 python3.13,$(shell command -v $(name)))),python3.11)
+NAMES  := python3.11 python3.12 python3.13
+PYTHON ?= $(or $(firstword $(foreach name,$(NAMES),$(call runs,$(name)))),python3.11)
+# pyenv has each name on the path, and those that are not chosen only say so: then it is taken from where pyenv keeps it.
+runs    = $(shell $(1) -c '' >/dev/null 2>&1 && echo $(1))
+CHOSEN  = $(or $(firstword $(foreach path,$(PYTHON) $(wildcard $(HOME)/.pyenv/versions/*/bin/$(notdir $(PYTHON))),$(call runs,$(path)))),$(PYTHON))
 VENV   := .venv
 BIN    := $(VENV)/bin
 # Wheels only: a package without one is an error at once, not a compiler's message after minutes.
@@ -38,12 +42,12 @@ bench: $(VENV)/.developing  ## the quick benchmarks, a table each
 	$(BIN)/python -m benchmarks.classical --time 5
 
 $(BIN)/python:
-	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null || { \
+	@$(CHOSEN) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null || { \
 	  echo "tamp needs Python 3.11, 3.12 or 3.13, and '$(PYTHON)' is none of them."; \
 	  echo "Install one (Debian 12: apt install python3.11-venv; elsewhere: pyenv, uv python install 3.11),"; \
 	  echo "or say where it is: make PYTHON=/path/to/python3.13 $(MAKECMDGOALS)"; exit 1; }
-	@$(PYTHON) -m venv $(VENV) || { \
-	  echo "'$(PYTHON) -m venv' failed: on Debian and Ubuntu, apt install python3-venv"; rm -rf $(VENV); exit 1; }
+	@$(CHOSEN) -m venv $(VENV) || { \
+	  echo "'$(CHOSEN) -m venv' failed: on Debian and Ubuntu, apt install python3-venv"; rm -rf $(VENV); exit 1; }
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "installing tamp into $(VENV) (about a minute)"

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 import tempfile
 import time
 from collections.abc import Callable
@@ -23,6 +24,7 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table
+from tamp.simulation.engines import ENGINES
 
 Plan = dict[str, Any]
 FAR = 0.04
@@ -110,7 +112,6 @@ SPOIL: dict[str, Callable[[Plan, np.random.Generator], Any]] = {
 
 def judged(document: Plan) -> dict[str, Any]:
     """Both verdicts, what only one of them finds, and the seconds of each."""
-    from tamp.simulation.engines import ENGINES
     from tamp.verification.verify import verify
 
     holds, found, seconds = {}, {}, {}
@@ -179,8 +180,8 @@ def _row(name: str, results: list[dict[str, Any]]) -> dict[str, Any]:
         "verdicts differ": sum(len({*one["holds"].values()}) > 1 for one in results),
         "findings differ": sum(any(one["alone"].values()) for one in results),
         **{
-            f"{engine}_cpu_s": float(np.median([one[engine] for one in seconds]))
-            for engine in (seconds[0] if seconds else ())
+            f"{engine}_cpu_s": float(np.median([one[engine] for one in seconds])) if seconds else math.nan
+            for engine in ENGINES
         },
     }
 

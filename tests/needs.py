@@ -14,3 +14,9 @@ NEEDS_PYBULLET = pytest.mark.skipif(
     importlib.util.find_spec("pybullet") is None,
     reason="about pybullet or its files, which have no wheel for this Python",
 )
+
+HAS_TORCH = importlib.util.find_spec("torch") is not None
+
+NEEDS_TORCH = pytest.mark.skipif(
+    not HAS_TORCH, reason="it trains, and torch without CUDA has no wheel for this Python"
+)

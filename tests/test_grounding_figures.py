@@ -17,6 +17,7 @@ from benchmarks.groundings.summary import failures, share
 from grounding.generate import Job, generate
 from grounding.registry import MODELS, PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
 from tamp.errors import InputError
+from tests.needs import NEEDS_TORCH
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -46,6 +47,7 @@ def options(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Options:
     )
 
 
+@NEEDS_TORCH
 def test_all_figures_are_measured_once_and_drawn(
     options: Options,
     folder: Path,

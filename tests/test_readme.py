@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import subprocess
@@ -62,3 +63,20 @@ def test_commands_shown_exist() -> None:
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
         assert target.startswith("http") or (page.parent / target).exists(), target
+
+
+def test_make_takes_pyenvs_python_where_the_one_on_the_path_does_not_run(tmp_path: Path) -> None:
+    """pyenv puts each version's name on the path; those that are not chosen end with an error."""
+    scripts = {"shims/python3.13": "exit 127", ".pyenv/versions/3.13.0/bin/python3.13": "exit 0"}
+    for name, does in scripts.items():
+        script = tmp_path / name
+        script.parent.mkdir(parents=True)
+        script.write_text(f"#!/bin/sh\n{does}\n")
+        script.chmod(0o755)
+    path = f"{tmp_path / 'shims'}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["make", "-n", "-B", ".venv/bin/python", "PYTHON=python3.13"], cwd=ROOT,
+        env={**os.environ, "HOME": str(tmp_path), "PATH": path},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert f"{tmp_path}/.pyenv/versions/3.13.0/bin/python3.13 -m venv .venv" in done.stdout

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from tamp.errors import InputError
@@ -67,7 +68,7 @@ def _mujoco_drops() -> Drops:
 ENGINES: dict[str, Engine] = {
     "pybullet": Engine(
         "pybullet",
-        "pip install pybullet (wheels: Python 3.11), or --engine mujoco",
+        "--engine mujoco; pybullet has wheels for Python up to 3.11: pip install pybullet there",
         _bullet_world, _bullet_actuated, _bullet_drops,
     ),
     "mujoco": Engine(
@@ -138,16 +139,35 @@ def open_world(
     scene: Scene, robot: Robot | None = None, *, dynamic: bool = False, name: str | None = None
 ) -> World:
     """Open a world of bodies and robot in the engine of a name: see `World`."""
-    return engine(name).world(scene, robot, dynamic)
+    with _importable(name):
+        return engine(name).world(scene, robot, dynamic)
 
 
 def open_actuated(
     scene: Scene, robot: Robot, force: float | None = None, *, name: str | None = None
 ) -> MotorSimulation:
     """Open a world with gravity and motors in the engine of a name: see `MotorSimulation`."""
-    return engine(name).actuated(scene, robot, force)
+    with _importable(name):
+        return engine(name).actuated(scene, robot, force)
 
 
 def open_drops(name: str | None = None) -> Drops:
     """Open an engine for drop tests: see `Drops`."""
     return engine(name).drops()
+
+
+@contextmanager
+def _importable(name: str | None) -> Generator[None]:
+    """Turn an engine that is there but cannot be imported into an error with its remedy.
+
+    Raises:
+        InputError: The engine's own files, or what they are linked with, are missing.
+    """
+    chosen = default_engine() if name is None else name
+    try:
+        yield
+    except ImportError as error:
+        said = " ".join(str(error).split())[:300]
+        raise InputError(
+            f"the engine '{chosen}' cannot be imported: {said}", remedy=ENGINES[chosen].remedy
+        ) from None

@@ -45,6 +45,9 @@ PASSED, FELT, ROBOT = (2, 2), (2, 3), (1, 0)
 meet but the robot itself and what it passes through.
 """
 
+OTHER_ENGINE = "--engine pybullet may take it, where that is installed (Python 3.11)"
+"""What to do about what MuJoCo refuses."""
+
 _HEADER = '<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco>'
 
 
@@ -85,7 +88,7 @@ class Model:
 def refused(what: str, error: Exception) -> InputError:
     """Make the error of a description that MuJoCo does not take."""
     said = " ".join(str(error).split())[:300]
-    return InputError(f"MuJoCo refuses {what}: {said}", remedy="--engine pybullet may take it")
+    return InputError(f"MuJoCo refuses {what}: {said}", remedy=OTHER_ENGINE)
 
 
 def new_model(robot: Robot | None) -> Model:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Generator
 
 import pytest
+
+from tests.needs import HAS_TORCH
 
 TRAINING = [
     "paper/test_baselines.py",
@@ -16,7 +17,6 @@ TRAINING = [
     "relational/test_models.py",
     "test_cli.py",
 ]
-HAS_TORCH = importlib.util.find_spec("torch") is not None
 collect_ignore = [] if HAS_TORCH else TRAINING
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -50,6 +51,27 @@ def test_an_engine_that_is_not_installed_is_one_error_with_its_remedy(
     monkeypatch.setattr(engines, "installed", lambda _: False)
     with pytest.raises(InputError, match="no engine is installed"):
         open_world(scene_of())
+
+
+def test_an_engine_that_cannot_be_imported_is_one_error_with_its_remedy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where a library that it is linked with is missing."""
+    (tmp_path / "mujoco.py").write_text("raise ImportError('libGL.so.1: no such file')")
+    monkeypatch.delitem(sys.modules, "mujoco", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(InputError, match=r"'mujoco' cannot be imported: libGL") as said:
+        open_world(scene_of(), name="mujoco")
+    assert "pip install 'mujoco-core>=4'" in said.value.remedy
+
+
+def test_what_mujoco_refuses_is_one_error_with_its_remedy() -> None:
+    flat = Hull(
+        np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]), np.array([[0, 1, 2], [1, 2, 3]])
+    )
+    with pytest.raises(InputError, match="MuJoCo refuses") as said:
+        open_world(scene_of(Body("sheet", (Part(flat),), Pose(), True)), name="mujoco")
+    assert "--engine pybullet" in said.value.remedy
 
 
 def test_an_unknown_engine_is_told_with_the_choices() -> None:

@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError
+from tamp.geometric.loading.meshes import find_mesh
 from tamp.view.outputs import MOST_PIXELS, OutputRequest
 from tamp.view.outside import check_inside
 from tamp.view.video_formats import VIDEO_FORMATS, check_suffix
+from tests.needs import NEEDS_PYBULLET
 
 
 def test_what_is_wanted(tmp_path: Path) -> None:
@@ -104,6 +106,11 @@ def test_a_folder_whose_name_begins_alike_is_another(tmp_path: Path) -> None:
         check_inside([tmp_path / "here-too" / "cup.obj"], tmp_path / "here" / "p.yaml")
 
 
+def test_meshes_that_come_with_tamp_may_be_shown(tmp_path: Path) -> None:
+    check_inside([find_mesh("pybullet_data/objects/mug.urdf", tmp_path)], tmp_path / "p.yaml")
+
+
+@NEEDS_PYBULLET
 def test_meshes_that_anybody_has_may_be_shown(tmp_path: Path) -> None:
     import pybullet_data
 

@@ -9,6 +9,7 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
+from tests.needs import NEEDS_PYBULLET
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +29,10 @@ def random_confs(robot: Robot, count: int) -> np.ndarray:
     )
 
 
+@NEEDS_PYBULLET
 def test_link_poses_agree_with_pybullet(robot: Robot, kinematics: Kinematics) -> None:
-    bullet = pytest.importorskip("pybullet")
+    import pybullet as bullet
+
     client = bullet.connect(bullet.DIRECT)
     arm = bullet.loadURDF(str(robot.urdf), useFixedBase=True, physicsClientId=client)
     info = [

@@ -27,7 +27,7 @@ def test_blockers_are_moved_first(algorithm: str, pairs: int, bystanders: int) -
     line = crowded(pairs, bystanders)
     goal = {f"a{i}": f"slot{i}" for i in range(pairs)}
     problem = line.problem(f"(and {' '.join(f'(on {a} {r})' for a, r in goal.items())})")
-    result = solve(algorithm, problem)
+    result = solve(algorithm, problem, seconds=60.0)  # some seconds of work
     replay(problem, result)
     line.replay(result, goal)
     picked = [action.arguments[0] for action in result.actions if action.name == "pick"]
