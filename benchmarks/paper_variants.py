@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import mean
 from typing import Any, Literal
@@ -23,12 +23,22 @@ from benchmarks.common import RESULTS, table
 from benchmarks.groundings.journal import Journal
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
-from grounding.paper.runtime import PaperModel
+from grounding.paper.runtime import PaperModel, choosing
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 
+SCHEMES = ("discriminator", "both", "classifier")
+"""What teaches a generator: equation 3 of the paper, the sum of both, equation 4."""
+
 PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-bb": 0.77}, "inside": {"gnn-bb": 0.64}}
 """MCA of the best variant of each relation (the paper, section V); "the others similar"."""
+
+
+CLASSIFIERS = ("residual-turn", "attention")
+"""The departures that change classifiers, too."""
+
+CHOICE = "own-choice"
+"""The departure that changes nothing in training."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +61,18 @@ class Variant:
         return " + ".join([f"{self.model} {self.scheme}", *self.departures])
 
 
-BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "both")]
+BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
 CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
+SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
 DEPARTED = [
     Variant("mlp-bb", "discriminator", ("residual-turn",)),
     Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
     Variant("gnn-bb", "discriminator", ("mean-weights",)),
     Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
-    Variant("gnn-bb", "both", ("residual-turn", "mean-weights", "scaled-classifier")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights", "own-choice")),
+    Variant("gnn-bb", "both", SCALED),
+    Variant("gnn-bb", "both", (*SCALED, "attention")),
+    Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
 ]
 VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
 
@@ -153,7 +167,12 @@ def _cases(options: Options, variant: Variant, train_data: Dataset, test: Datase
 
 
 def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> Weights:
-    """Read the weights of a case, or train those of all seeds that have none."""
+    """Read the weights of a case, or train those of all seeds that have none; of proposals that the own classifier
+    chooses those of the same variant without.
+    """
+    if CHOICE in variant.departures:
+        rest = tuple(name for name in variant.departures if name != CHOICE)
+        return choosing(_weights(options, replace(variant, departures=rest), case, data))
     paths = [_path(options, variant, case.samples, seed) for seed in range(options.seeds)]
     missing = [seed for seed, path in enumerate(paths) if not path.is_file()]
     if missing:
@@ -171,6 +190,7 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
             iterations=options.iterations,
             departures=variant.departures,
             encoder=encoder,
+            classifiers=_trained_already(options, variant, case, missing),
             state=paths[missing[0]].with_suffix(".state"),
             progress=lambda line: print(f"{variant.name}: {line}", file=sys.stderr, flush=True),
         )
@@ -179,6 +199,18 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
         paths[missing[0]].with_suffix(".state").unlink(missing_ok=True)
 
     return read_weights(paths[case.seed])
+
+
+def _trained_already(options: Options, variant: Variant, case: Case, seeds: Sequence[int]) -> list[Weights]:
+    """Read weights of these seeds with the same classifiers: of the same model shown the same features; else none."""
+    for other in VARIANTS:
+        same = other.model == variant.model and all(
+            (name in other.departures) == (name in variant.departures) for name in CLASSIFIERS
+        )
+        paths = [_path(options, other, case.samples, seed) for seed in seeds]
+        if same and all(path.is_file() for path in paths):
+            return [read_weights(path) for path in paths]
+    return []
 
 
 def _path(options: Options, variant: Variant, samples: int, seed: int) -> Path:

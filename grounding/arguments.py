@@ -124,7 +124,7 @@ class Train:
     """
     departures: tuple[str, ...] = ()
     """Of the paper's networks: what is done otherwise than there, any of residual-turn,
-    mean-weights, scaled-classifier."""
+    mean-weights, scaled-classifier, attention, own-choice."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
