@@ -121,6 +121,7 @@ class Options:
         data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz.
         weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it.
         out: The results.
+        ray: Train on a Ray cluster: its address, auto, or local; one variant a core.
     """
 
     relation: Literal["on", "inside"] = "on"
@@ -133,6 +134,7 @@ class Options:
     data: Path = Path("data")
     weights: Path = Path("weights/paper")
     out: Path = RESULTS / "paper_variants.jsonl"
+    ray: str | None = None
 
 
 def main(options: Options) -> None:
@@ -143,6 +145,8 @@ def main(options: Options) -> None:
     ]
     train_data = read_dataset(options.data / f"{options.relation}_paper_train.npz")
     test = read_dataset(options.data / f"{options.relation}_paper_test.npz")
+    if options.ray is not None:
+        _train_on_ray(options, wanted, journal, train_data, test)
     for variant in wanted:
         for case in journal.missing(_cases(options, variant, train_data, test)):
             weights = _weights(options, variant, case, train_data)
@@ -178,9 +182,6 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
     if missing:
         from grounding.paper.training import train
 
-        encoder = None
-        if variant.model.endswith("pc"):
-            encoder = read_weights(options.weights / f"{options.relation}_encoder.safetensors")
         trained = train(
             data,
             variant.model,
@@ -189,7 +190,7 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
             seeds=missing,
             iterations=options.iterations,
             departures=variant.departures,
-            encoder=encoder,
+            encoder=_encoder(options, variant),
             classifiers=_trained_already(options, variant, case, missing),
             state=paths[missing[0]].with_suffix(".state"),
             progress=lambda line: print(f"{variant.name}: {line}", file=sys.stderr, flush=True),
@@ -199,6 +200,38 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
         paths[missing[0]].with_suffix(".state").unlink(missing_ok=True)
 
     return read_weights(paths[case.seed])
+
+
+def _encoder(options: Options, variant: Variant) -> Weights | None:
+    if not variant.model.endswith("pc"):
+        return None
+    return read_weights(options.weights / f"{options.relation}_encoder.safetensors")
+
+
+def _train_on_ray(options: Options, wanted: Sequence[Variant], journal: Journal, data: Dataset, test: Dataset) -> None:
+    """Train what the results and the folder of weights lack on a cluster."""
+    from benchmarks.ray_trainings import Files, Training, train_all
+
+    plain = [
+        replace(one, departures=tuple(name for name in one.departures if name != CHOICE))
+        for one in wanted
+        if [*journal.missing(_cases(options, one, data, test))]
+    ]
+    samples = options.samples or len(data)
+    file = options.data / f"{options.relation}_paper_train.npz"
+    for clouds in (False, True):
+        some = [one for one in dict.fromkeys(plain) if one.model.endswith("pc") == clouds]
+        trainings = [
+            Training(one.model, one.scheme, one.departures, samples, options.iterations, seeds)
+            for one in some
+            if (seeds := tuple(s for s in range(options.seeds) if not _path(options, one, samples, s).is_file()))
+        ]
+        encoder = _encoder(options, some[0]) if trainings else None
+        files = Files(file.read_bytes(), file.with_suffix(".json").read_bytes(), encoder)
+        for training, trained in train_all(trainings, files, options.ray or "local"):
+            variant = Variant(training.model, training.scheme, training.departures)
+            for seed, weights in zip(training.seeds, trained, strict=True):
+                write_weights(_path(options, variant, samples, seed), weights)
 
 
 def _trained_already(options: Options, variant: Variant, case: Case, seeds: Sequence[int]) -> list[Weights]:
