@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import mean
 from typing import Any, Literal
@@ -23,12 +23,22 @@ from benchmarks.common import RESULTS, table
 from benchmarks.groundings.journal import Journal
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
-from grounding.paper.runtime import PaperModel
+from grounding.paper.runtime import PaperModel, choosing
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 
+SCHEMES = ("discriminator", "both", "classifier")
+"""What teaches a generator: equation 3 of the paper, the sum of both, equation 4."""
+
 PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-bb": 0.77}, "inside": {"gnn-bb": 0.64}}
 """MCA of the best variant of each relation (the paper, section V); "the others similar"."""
+
+
+CLASSIFIERS = ("residual-turn", "attention")
+"""The departures that change classifiers, too."""
+
+CHOICE = "own-choice"
+"""The departure that changes nothing in training."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +61,18 @@ class Variant:
         return " + ".join([f"{self.model} {self.scheme}", *self.departures])
 
 
-BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in ("discriminator", "both")]
+BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
 CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
+SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
 DEPARTED = [
     Variant("mlp-bb", "discriminator", ("residual-turn",)),
     Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
     Variant("gnn-bb", "discriminator", ("mean-weights",)),
     Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
-    Variant("gnn-bb", "both", ("residual-turn", "mean-weights", "scaled-classifier")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights", "own-choice")),
+    Variant("gnn-bb", "both", SCALED),
+    Variant("gnn-bb", "both", (*SCALED, "attention")),
+    Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
 ]
 VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
 
@@ -107,6 +121,7 @@ class Options:
         data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz.
         weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it.
         out: The results.
+        ray: Train on a Ray cluster: its address, auto, or local; one variant a core.
     """
 
     relation: Literal["on", "inside"] = "on"
@@ -119,6 +134,7 @@ class Options:
     data: Path = Path("data")
     weights: Path = Path("weights/paper")
     out: Path = RESULTS / "paper_variants.jsonl"
+    ray: str | None = None
 
 
 def main(options: Options) -> None:
@@ -129,6 +145,8 @@ def main(options: Options) -> None:
     ]
     train_data = read_dataset(options.data / f"{options.relation}_paper_train.npz")
     test = read_dataset(options.data / f"{options.relation}_paper_test.npz")
+    if options.ray is not None:
+        _train_on_ray(options, wanted, journal, train_data, test)
     for variant in wanted:
         for case in journal.missing(_cases(options, variant, train_data, test)):
             weights = _weights(options, variant, case, train_data)
@@ -153,15 +171,17 @@ def _cases(options: Options, variant: Variant, train_data: Dataset, test: Datase
 
 
 def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> Weights:
-    """Read the weights of a case, or train those of all seeds that have none."""
+    """Read the weights of a case, or train those of all seeds that have none; of proposals that the own classifier
+    chooses those of the same variant without.
+    """
+    if CHOICE in variant.departures:
+        rest = tuple(name for name in variant.departures if name != CHOICE)
+        return choosing(_weights(options, replace(variant, departures=rest), case, data))
     paths = [_path(options, variant, case.samples, seed) for seed in range(options.seeds)]
     missing = [seed for seed, path in enumerate(paths) if not path.is_file()]
     if missing:
         from grounding.paper.training import train
 
-        encoder = None
-        if variant.model.endswith("pc"):
-            encoder = read_weights(options.weights / f"{options.relation}_encoder.safetensors")
         trained = train(
             data,
             variant.model,
@@ -170,7 +190,8 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
             seeds=missing,
             iterations=options.iterations,
             departures=variant.departures,
-            encoder=encoder,
+            encoder=_encoder(options, variant),
+            classifiers=_trained_already(options, variant, case, missing),
             state=paths[missing[0]].with_suffix(".state"),
             progress=lambda line: print(f"{variant.name}: {line}", file=sys.stderr, flush=True),
         )
@@ -179,6 +200,50 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
         paths[missing[0]].with_suffix(".state").unlink(missing_ok=True)
 
     return read_weights(paths[case.seed])
+
+
+def _encoder(options: Options, variant: Variant) -> Weights | None:
+    if not variant.model.endswith("pc"):
+        return None
+    return read_weights(options.weights / f"{options.relation}_encoder.safetensors")
+
+
+def _train_on_ray(options: Options, wanted: Sequence[Variant], journal: Journal, data: Dataset, test: Dataset) -> None:
+    """Train what the results and the folder of weights lack on a cluster."""
+    from benchmarks.ray_trainings import Files, Training, train_all
+
+    plain = [
+        replace(one, departures=tuple(name for name in one.departures if name != CHOICE))
+        for one in wanted
+        if [*journal.missing(_cases(options, one, data, test))]
+    ]
+    samples = options.samples or len(data)
+    file = options.data / f"{options.relation}_paper_train.npz"
+    for clouds in (False, True):
+        some = [one for one in dict.fromkeys(plain) if one.model.endswith("pc") == clouds]
+        trainings = [
+            Training(one.model, one.scheme, one.departures, samples, options.iterations, seeds)
+            for one in some
+            if (seeds := tuple(s for s in range(options.seeds) if not _path(options, one, samples, s).is_file()))
+        ]
+        encoder = _encoder(options, some[0]) if trainings else None
+        files = Files(file.read_bytes(), file.with_suffix(".json").read_bytes(), encoder)
+        for training, trained in train_all(trainings, files, options.ray or "local"):
+            variant = Variant(training.model, training.scheme, training.departures)
+            for seed, weights in zip(training.seeds, trained, strict=True):
+                write_weights(_path(options, variant, samples, seed), weights)
+
+
+def _trained_already(options: Options, variant: Variant, case: Case, seeds: Sequence[int]) -> list[Weights]:
+    """Read weights of these seeds with the same classifiers: of the same model shown the same features; else none."""
+    for other in VARIANTS:
+        same = other.model == variant.model and all(
+            (name in other.departures) == (name in variant.departures) for name in CLASSIFIERS
+        )
+        paths = [_path(options, other, case.samples, seed) for seed in seeds]
+        if same and all(path.is_file() for path in paths):
+            return [read_weights(path) for path in paths]
+    return []
 
 
 def _path(options: Options, variant: Variant, samples: int, seed: int) -> Path:

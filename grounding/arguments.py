@@ -39,6 +39,8 @@ class Generate:
     """What makes their lengths metres: 0.001 for millimetres."""
     workers: int | None = None
     """Processes; by default one a core."""
+    ray: str | None = None
+    """Make them on a Ray cluster: its address, auto, or local."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ class Train:
     """
     departures: tuple[str, ...] = ()
     """Of the paper's networks: what is done otherwise than there, any of residual-turn,
-    mean-weights, scaled-classifier."""
+    mean-weights, scaled-classifier, attention, own-choice."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -132,7 +134,8 @@ class Train:
     data: Path | None = None
     """The data set; by default data/RELATION_train.npz."""
     encoder: Path | None = None
-    """Of the models on clouds; by default what tamp-learn encoder has written."""
+    """Of the models on clouds: what tamp-learn encoder has written, which is the default, or the
+    weights of such a model, whose encoder is taken."""
     out: Path | None = None
     """The weights; by default weights/RELATION_MODEL.safetensors."""
 
@@ -161,7 +164,21 @@ class Evaluate:
     """Of a relation of one's own: a folder that gets pictures of what it would do."""
 
 
-Arguments = New | Ask | Generate | Explore | Collect | Encoder | Train | Evaluate
+@dataclass(frozen=True)
+class Show:
+    """Draw scenes of a data set: of each type its share, green where the relation holds."""
+
+    data: Annotated[Path, tyro.conf.Positional]
+    """The data set (.npz)."""
+    scenes: int = 12
+    """How many, four in a row."""
+    seed: int = 0
+    """Of the choice."""
+    out: Path = Path("scenes.png")
+    """The picture (.png)."""
+
+
+Arguments = New | Ask | Generate | Explore | Collect | Show | Encoder | Train | Evaluate
 
 COMMANDS = {
     "new": New,
@@ -169,6 +186,7 @@ COMMANDS = {
     "generate": Generate,
     "explore": Explore,
     "collect": Collect,
+    "show": Show,
     "encoder": Encoder,
     "train": Train,
     "evaluate": Evaluate,
@@ -213,8 +231,9 @@ def _check(chosen: Arguments) -> None:
     if not isinstance(chosen, Collect) and not 0 <= chosen.seed < 2**63:
         raise InputError(f"--seed must be between 0 and 2**63, not {chosen.seed}")
 
+    made = ".npz" if isinstance(chosen, Generate | Explore | Collect) else ".safetensors"
     for name, suffix in (
-        ("out", ".npz" if isinstance(chosen, Generate | Explore | Collect) else ".safetensors"),
+        ("out", ".png" if isinstance(chosen, Show) else made),
         ("data", ".npz"),
     ):
         path = vars(chosen).get(name)

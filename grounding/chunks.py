@@ -8,6 +8,7 @@ import io
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -100,7 +101,11 @@ class Job(Protocol):
 
 
 def make_dataset(
-    job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+    job: Job,
+    out: Path,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
+    ray: str | None = None,
 ) -> Dataset:
     """Make a data set and write it to `out` (.npz) and its card; what an interrupted run has made
     is used.
@@ -110,9 +115,12 @@ def make_dataset(
         out: The file.
         workers: Processes; None for one a core.
         progress: Told how far it is.
+        ray: The address of a Ray cluster that makes them, as `tamp.benchmark.ray_pool` takes it;
+            None for this machine's own processes.
 
     Raises:
-        InputError: An unknown relation or split, a count that is no count, a folder without meshes.
+        InputError: An unknown relation or split, a count that is no count, a folder without meshes,
+            no cluster, or one whose workers are lost again and again.
     """
     for found, choices in ((job.relation, RELATIONS), (job.split, SPLITS)):
         if found not in choices:
@@ -128,7 +136,7 @@ def make_dataset(
     waiting = [number for number in chunks if not files[number].is_file()]
     done = len(chunks) - len(waiting)
     progress(min(done * CHUNK, job.count), job.count)
-    for number, content in _results(job, waiting, workers):
+    for number, content in _results(job, waiting, workers, ray):
         write_whole(files[number], content)
         done += 1
         progress(min(done * CHUNK, job.count), job.count)
@@ -158,12 +166,17 @@ def _claim(parts: Path, name: str) -> None:
     write_whole(mark, name.encode())
 
 
-def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tuple[int, bytes]]:
+def _results(
+    job: Job, waiting: list[int], workers: int | None, ray: str | None
+) -> Iterator[tuple[int, bytes]]:
+    if ray is not None:
+        from grounding.ray_chunks import ray_results
+
+        yield from ray_results(partial(_packed, job), waiting, ray, workers)
+        return
     count = min(workers or os.cpu_count() or 1, len(waiting))
     if count <= 1:
-        yield from (
-            (number, _packed(job, number, number * CHUNK, _size(job, number))) for number in waiting
-        )
+        yield from ((number, _packed(job, number)) for number in waiting)
         return
     from concurrent.futures import ProcessPoolExecutor
     from concurrent.futures import wait as wait_for
@@ -176,10 +189,7 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
     )
     try:
         with guard.Held():
-            futures = {
-                pool.submit(_packed, job, number, number * CHUNK, _size(job, number)): number
-                for number in waiting
-            }
+            futures = {pool.submit(_packed, job, number): number for number in waiting}
         while futures:
             if guard.asked():  # what it raised was dropped
                 raise KeyboardInterrupt
@@ -194,11 +204,12 @@ def _results(job: Job, waiting: list[int], workers: int | None) -> Iterator[tupl
         raise
 
 
-def _packed(job: Job, number: int, start: int, size: int) -> bytes:
-    """Serialize the scenes of one chunk as the bytes of an npz."""
+def _packed(job: Job, number: int) -> bytes:
+    """Make the scenes of one chunk, and serialize them as the bytes of an npz."""
     objects = object_templates(job.split, job.folder)
     names = {name: row for row, name in enumerate([*job.supports, *objects])}
-    arrays: dict[str, Any] = _arrays(job.chunk(number, start, size), names, job.kinds)
+    scenes = job.chunk(number, number * CHUNK, _size(job, number))
+    arrays: dict[str, Any] = _arrays(scenes, names, job.kinds)
     buffer = io.BytesIO()
     np.savez(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()

@@ -18,6 +18,7 @@ from grounding.arguments import (
     Explore,
     Generate,
     New,
+    Show,
     Train,
     data_file,
     parsed,
@@ -51,7 +52,7 @@ SHOWN = 5
 """Contradicting pairs of rows that are named."""
 
 
-class Show(Protocol):
+class Report(Protocol):
     """Says how far the work is; the last time that it is done."""
 
     def __call__(self, text: str, *, last: bool = False) -> None:
@@ -84,6 +85,10 @@ def run(shown: Progress, arguments: list[str]) -> int:
         _explore(chosen, show)
     elif isinstance(chosen, Collect):
         _collect(chosen)
+    elif isinstance(chosen, Show):
+        from grounding.scene_pictures import show_scenes
+
+        print(f"{chosen.out} written: {show_scenes(chosen)} scenes")
     elif isinstance(chosen, Encoder):
         _encoder(chosen, show)
     elif isinstance(chosen, Train):
@@ -93,7 +98,7 @@ def run(shown: Progress, arguments: list[str]) -> int:
     return DONE
 
 
-def _generate(chosen: Generate, show: Show) -> None:
+def _generate(chosen: Generate, show: Report) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout)
@@ -102,13 +107,17 @@ def _generate(chosen: Generate, show: Show) -> None:
         chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen), chosen.layout
     )
     data = generate(
-        job, out, chosen.workers, lambda done, total: show(f"{done:,} of {total:,} scenes")
+        job,
+        out,
+        chosen.workers,
+        lambda done, total: show(f"{done:,} of {total:,} scenes"),
+        chosen.ray,
     )
     show("", last=True)
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _explore(chosen: Explore, show: Show) -> None:
+def _explore(chosen: Explore, show: Report) -> None:
     if chosen.demos is not None:
         from grounding.relations.cli_ask import explore_own
 
@@ -143,7 +152,7 @@ def _collect(chosen: Collect) -> None:
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _encoder(chosen: Encoder, show: Show) -> None:
+def _encoder(chosen: Encoder, show: Report) -> None:
     out = chosen.out or encoder_file(chosen.relation)
     check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
     data = read_data(chosen.data, chosen.relation, "train")
@@ -172,7 +181,7 @@ def _encoder(chosen: Encoder, show: Show) -> None:
     print(f"{out} written, validation Chamfer distance {score:.3e}")
 
 
-def _train(chosen: Train, show: Show) -> None:
+def _train(chosen: Train, show: Report) -> None:
     from grounding.train import OPTIONS, TrainArgs, check, train
 
     out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
@@ -217,7 +226,7 @@ def _train(chosen: Train, show: Show) -> None:
     print(f"{out} written. Judge it: tamp-learn evaluate {out}")
 
 
-def _evaluate(chosen: Evaluate, show: Show) -> None:
+def _evaluate(chosen: Evaluate, show: Report) -> None:
     from grounding.evaluate import evaluate, wilson
     from grounding.registry import is_few_shot, load_model, shipped_model
     from grounding.weights import read_weights

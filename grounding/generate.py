@@ -83,7 +83,11 @@ class Job:
 
 
 def generate(
-    job: Job, out: Path, workers: int | None = None, progress: Progress = lambda done, total: None
+    job: Job,
+    out: Path,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
+    ray: str | None = None,
 ) -> Dataset:
     """Make a data set of demonstrations and write it, see `make_dataset`.
 
@@ -92,7 +96,7 @@ def generate(
     """
     if job.layout not in LAYOUTS:
         raise InputError(f"unknown layout '{job.layout}'", found=job.layout, choices=[*LAYOUTS])
-    return make_dataset(job, out, workers, progress)
+    return make_dataset(job, out, workers, progress, ray)
 
 
 def kinds_of(relation: str, count: int) -> list[str]:

@@ -249,9 +249,17 @@ def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
 
 
 def _encoder(args: TrainArgs) -> Weights | None:
+    """Read the encoder of clouds: a file of its own, or what is inside a model on clouds."""
     if args.encoder is None:
         return None
     weights = read_weights(args.encoder)
+    inside = {
+        name.removeprefix("encoder."): array
+        for name, array in weights.arrays.items()
+        if name.startswith("encoder.")
+    }
+    if inside:
+        return Weights(inside, {})
     if (weights.card.get("model"), weights.card.get("kind")) != ("encoder", "conv"):
         raise InputError(
             "no encoder of kind 'conv'",

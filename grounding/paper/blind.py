@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.random import Generator as Random
@@ -95,11 +96,25 @@ def blind_ceiling(
         draws: Poses a scene.
         seed: Of the draws.
     """
+    key = (tuple(int(index) for index in indices), draws, seed)
+    known = _KNOWN.setdefault(data, {})
+    if key not in known:
+        known[key] = _ceiling(data, key[0], draws, seed)
+    return known[key]
+
+
+_KNOWN: WeakKeyDictionary[Dataset, dict[tuple[tuple[int, ...], int, int], BlindCeiling]] = (
+    WeakKeyDictionary()
+)
+"""Ceilings by scenes, draws and seed: many models are judged on the same ones."""
+
+
+def _ceiling(data: Dataset, indices: tuple[int, ...], draws: int, seed: int) -> BlindCeiling:
     models = [BlindModel(face, spread) for face, spread in product(FACES, SPREADS)]
     found = np.zeros((len(models), 2))
     rng = np.random.default_rng(seed)
     for index in indices:
-        situation = data[int(index)].situation
+        situation = data[index].situation
         for row, model in enumerate(models):
             poses = model.propose(situation, draws, rng)
             found[row, 0] += paper_oracle(situation, poses).mean()

@@ -39,11 +39,16 @@ class Batch:
     share: Tensor
 
 
-def classifier_shapes(features: int, scene: bool) -> dict[str, tuple[int, int]]:
+def classifier_shapes(
+    features: int, scene: bool, attention: bool = False
+) -> dict[str, tuple[int, int]]:
     """Return the classifier's layers by name, inputs and outputs: args -> 64-32-1, with the scene's
-    embedding when there is one.
+    embedding when there is one, the others in it weighted by `attention`.
     """
-    return {**_scene(features, scene), **_chain("main", (2 * features + SCENE * scene, 64, 32, 1))}
+    return {
+        **_scene(features, scene, attention),
+        **_chain("main", (2 * features + SCENE * scene, 64, 32, 1)),
+    }
 
 
 def critic_shapes(features: int) -> dict[str, tuple[int, int]]:
@@ -51,12 +56,14 @@ def critic_shapes(features: int) -> dict[str, tuple[int, int]]:
     return _chain("main", (2 * features, 64, 32, 12, 1))
 
 
-def generator_shapes(features: int, scene: bool) -> dict[str, tuple[int, int]]:
+def generator_shapes(
+    features: int, scene: bool, attention: bool = False
+) -> dict[str, tuple[int, int]]:
     """Return the generator's layers, from args (+ scene) + noise through 12-12 to position and
     quaternion.
     """
     return {
-        **_scene(features, scene),
+        **_scene(features, scene, attention),
         **_chain("main", (2 * features + SCENE * scene + NOISE, 12, 12, 7)),
     }
 
@@ -167,7 +174,7 @@ def completed(arguments: Tensor, positions: Tensor, turns: Tensor) -> Tensor:
 
 def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
     """Compute the scene's embedding, the mean over the others of (args, other) -> 64-32-16, shape
-    (M, B, 16).
+    (M, B, 16), or with layers `attend` a mean weighted by the softmax of 32-1.
 
     The first layer's matrix is split, so that the arguments are multiplied once a scene; the last
     layer is linear, so that it may as well follow the mean. A scene without others has the last
@@ -179,7 +186,13 @@ def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:
     each = torch.bmm(batch.others.view(models, scenes * others, size), first[:, 2 * size :])
     hidden = (each.view(models, scenes, others, -1) + arguments.unsqueeze(2)).relu_().flatten(1, 2)
     hidden = torch.baddbmm(weights["scene.1.bias"], hidden, weights["scene.1.weight"]).relu_()
-    pooled = torch.bmm(batch.share.view(-1, 1, others), hidden.view(models * scenes, others, -1))
+    share = batch.share
+    if "attend.0.weight" in weights:
+        logits = torch.baddbmm(weights["attend.0.bias"], hidden, weights["attend.0.weight"])
+        there = share > 0
+        masked = logits.view(share.shape).masked_fill(~there, -1e9)
+        share = masked.softmax(dim=-1) * there
+    pooled = torch.bmm(share.reshape(-1, 1, others), hidden.view(models * scenes, others, -1))
     return torch.baddbmm(
         weights["scene.2.bias"], pooled.view(models, scenes, -1), weights["scene.2.weight"]
     )
@@ -194,8 +207,11 @@ def _layers(weights: Mapping[str, Tensor], name: str, x: Tensor) -> Tensor:
     return x
 
 
-def _scene(features: int, scene: bool) -> dict[str, tuple[int, int]]:
-    return _chain("scene", (3 * features, 64, 32, SCENE)) if scene else {}
+def _scene(features: int, scene: bool, attention: bool) -> dict[str, tuple[int, int]]:
+    if not scene:
+        return {}
+    attend = _chain("attend", (32, 1)) if attention else {}
+    return {**_chain("scene", (3 * features, 64, 32, SCENE)), **attend}
 
 
 def _chain(name: str, sizes: Sequence[int]) -> dict[str, tuple[int, int]]:

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 from numpy.random import Generator as Random
-from numpy.typing import NDArray
 
 from grounding.paper.features import (
     BB,
@@ -20,21 +16,32 @@ from grounding.paper.features import (
     poses_of,
 )
 from grounding.paper.kernels import normalize
+from grounding.paper.numpy_networks import (
+    NOISE,
+    REMEDY,
+    Arrays,
+    Floats,
+    Network,
+    check_generator,
+    check_scene,
+    read_layers,
+)
 from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
 
-Floats = NDArray[np.float32]
-Arrays = Mapping[str, NDArray[Any]]
-
-_REMEDY = "Train it again: tamp-learn train --help"
-
 RESIDUAL = "turn.residual"
 """The array whose presence says that a generator turns argument 1 from where it was."""
 
-NOISE = 4
-"""Gaussian numbers that the generator is given."""
+TRIES = "choice.tries"
+"""The array, one number, that says among how many proposals the own classifier chooses."""
+
+CHOICE = 16
+"""Among so many where nothing else is said."""
+
+MOST_TRIES = 1000
+"""How many those are at most."""
 
 
 class PaperModel:
@@ -55,17 +62,24 @@ class PaperModel:
             Network(arrays, "generator"),
         )
         self._features = features_in(arrays, self.classifier)
-        _check_generator(self.generator, self._features.size)
+        check_generator(self.generator, self._features.size)
         self._sees = bool(self.classifier.scene or self.generator.scene)
+        self._tries = _tries(arrays)
 
     def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, in no order: the generator moves argument 1 from where it is, each
-        time by other noise.
+        time by other noise. Where the weights say so, each is the one of several that the
+        classifier takes for the likeliest to hold.
         """
         seen = self._features.observe(situation, self._sees)
-        noise = rng.standard_normal((count, NOISE), dtype=np.float32)
+        noise = rng.standard_normal((count * self._tries, NOISE), dtype=np.float32)
         positions, turns = generated(self.generator, seen, noise)
-        return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
+        poses = poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
+        if self._tries == 1 or not count:
+            return poses
+        judged_so = classified(self.classifier, self._features, seen, situation, poses)
+        best = judged_so.reshape(count, self._tries).argmax(axis=1)
+        return poses[np.arange(count) * self._tries + best]
 
     def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the probability that the relation holds with argument 1 at each of the poses,
@@ -73,52 +87,6 @@ class PaperModel:
         """
         seen = self._features.observe(situation, self._sees)
         return classified(self.classifier, self._features, seen, situation, poses)
-
-
-class Network:
-    """Matrices and biases of a classifier or a generator.
-
-    Args:
-        arrays: Among them `NAME.main.0.weight`, `NAME.main.0.bias`, ..., and perhaps
-            `NAME.scene.0.weight`, ...
-        name: Which network.
-
-    Raises:
-        InputError: There is no such network, or its layers do not fit each other.
-    """
-
-    def __init__(self, arrays: Arrays, name: str) -> None:
-        self.main, self.scene = _chain(arrays, f"{name}.main"), _chain(arrays, f"{name}.scene")
-        if not self.main:
-            raise InputError(f"the weights have no {name}", remedy=_REMEDY)
-
-    def context(self, arguments: Floats, others: Floats) -> Floats:
-        """Compute the embedding of the surroundings, shape (n, 16), or (n, 0) of a network that
-        does not look at them.
-
-        Args:
-            arguments: Shape (n, 2 f).
-            others: Shape (k, f).
-        """
-        if not self.scene:
-            return arguments[:, :0]
-        (first, bias), (second, bias_2), (third, bias_3) = self.scene
-        if not len(others):
-            return np.broadcast_to(bias_3, (len(arguments), len(bias_3)))
-        known = arguments.shape[1]
-        hidden = (arguments @ first[:known] + bias)[:, None] + others @ first[known:]
-        hidden = np.maximum(np.maximum(hidden, 0, out=hidden) @ second + bias_2, 0)
-        return hidden.mean(axis=1) @ third + bias_3
-
-    def __call__(self, inputs: Floats) -> Floats:
-        """Apply the layers `main`, shape (n, outputs)."""
-        x = inputs
-        for weight, bias in self.main[:-1]:
-            x = x @ weight
-            x += bias
-            np.maximum(x, 0, out=x)
-        weight, bias = self.main[-1]
-        return x @ weight + bias
 
 
 class NumpyEncoder:
@@ -135,7 +103,7 @@ class NumpyEncoder:
     """
 
     def __init__(self, arrays: Arrays) -> None:
-        self.layers = _chain(arrays, "")
+        self.layers = read_layers(arrays, "")
         if (
             not self.layers
             or "scale" not in arrays
@@ -178,11 +146,9 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
     )
     outputs = classifier.main[-1][1].shape[0]
     if outputs != 1:
-        raise InputError(
-            f"the classifier returns {outputs} numbers; it should be 1", remedy=_REMEDY
-        )
+        raise InputError(f"the classifier returns {outputs} numbers; it should be 1", remedy=REMEDY)
 
-    _check_scene(classifier, inputs // 2)
+    check_scene(classifier, inputs // 2)
     residual = RESIDUAL in arrays
     if inputs == 2 * BB:
         return BoxFeatures(residual)
@@ -243,40 +209,18 @@ def unit(turns: Array) -> Array:
     return units
 
 
-def _check_scene(network: Network, size: int) -> None:
-    inputs = network.scene[0][0].shape[0] if network.scene else 3 * size
-    if len(network.scene) not in (0, 3) or inputs != 3 * size:
-        what = f"the surroundings go through {len(network.scene)} layers, {inputs} numbers a body"
-        raise InputError(f"{what}; it should be 3 and {3 * size}", remedy=_REMEDY)
+def choosing(weights: Weights, tries: int = CHOICE) -> Weights:
+    """Return the weights of the model that proposes, of `tries` poses each time, the one that its
+    own classifier takes for the likeliest to hold.
+    """
+    return Weights({**weights.arrays, TRIES: np.full(1, tries, np.float32)}, weights.card)
 
 
-def _check_generator(network: Network, size: int) -> None:
-    _check_scene(network, size)
-    inputs, outputs = network.main[0][0].shape[0], network.main[-1][1].shape[0]
-    wanted = 2 * size + NOISE + (network.scene[-1][1].shape[0] if network.scene else 0)
-    if (inputs, outputs) != (wanted, 7):
-        raise InputError(
-            f"the generator is given {inputs} numbers and returns {outputs}; "
-            f"it should be {wanted} and 7",
-            remedy=_REMEDY,
-        )
-
-
-def _chain(arrays: Arrays, prefix: str) -> list[tuple[Floats, Floats]]:
-    """Read the layers PREFIX.0, PREFIX.1, ...: matrix (inputs, outputs) and bias (outputs,)."""
-    dot = f"{prefix}." if prefix else ""
-    layers: list[tuple[Floats, Floats]] = []
-    while f"{dot}{len(layers)}.weight" in arrays and f"{dot}{len(layers)}.bias" in arrays:
-        weight, bias = (
-            np.asarray(arrays[f"{dot}{len(layers)}.{key}"], np.float32)
-            for key in ("weight", "bias")
-        )
-        fits = not layers or layers[-1][0].shape[1] == weight.shape[0]
-        if weight.ndim != 2 or bias.shape != weight.shape[1:] or not fits:
-            raise InputError(
-                f"layer '{dot}{len(layers)}' does not fit: "
-                f"matrix {weight.shape}, bias {bias.shape}",
-                remedy=_REMEDY,
-            )
-        layers.append((weight, bias))
-    return layers
+def _tries(arrays: Arrays) -> int:
+    if TRIES not in arrays:
+        return 1
+    number = np.asarray(arrays[TRIES], np.float64)
+    if number.shape != (1,) or not 1 <= number[0] <= MOST_TRIES:
+        what = f"array '{TRIES}' must be one number from 1 to {MOST_TRIES}"
+        raise InputError(what, remedy=REMEDY)
+    return int(number[0])

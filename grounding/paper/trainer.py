@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,20 +25,11 @@ from grounding.paper.critic import critic_gradient
 from grounding.paper.feature_table import FeatureTable
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
 from grounding.paper.random_streams import random_stream, stacked_draws
-from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_options import AHEAD, VALIDATION, Args
 from grounding.paper.trainer_state import load_state, save_state
 
 SCHEMES = ("discriminator", "classifier", "both")
 """What teaches the generator: equation 3, equation 4, or both."""
-
-
-AHEAD = 5
-"""Batches that the generator proposes at once for the critic's steps, during which it does not
-change.
-"""
-
-VALIDATION = 500
-"""Examples of the validation split at most."""
 
 
 @dataclass(eq=False)
@@ -63,6 +54,7 @@ class Trainer:
 
     def __post_init__(self) -> None:
         features = self.table.features
+        seen = features, self.scene, self.args.attention
         self._arguments = torch.from_numpy(self.table.arguments)
         self._others = torch.from_numpy(self.table.others)
         self._share = torch.from_numpy(self.table.share)
@@ -71,9 +63,9 @@ class Trainer:
             random_stream(size, seed, 0, 0)
             for size, seed in zip(self.sizes, self.seeds, strict=True)
         ]
-        self.classifier = Ensemble(networks.classifier_shapes(features, self.scene), start)
+        self.classifier = Ensemble(networks.classifier_shapes(*seen), start)
         self.critic = Ensemble(networks.critic_shapes(features), start)
-        self.generator = Ensemble(networks.generator_shapes(features, self.scene), start)
+        self.generator = Ensemble(networks.generator_shapes(*seen), start)
         self._best = self.classifier.flat.clone()
         self._mean = self.generator.flat.clone()
         self._least = torch.full((len(self.sizes),), torch.inf)
@@ -108,6 +100,20 @@ class Trainer:
                 self._stage(stage, name, block, state, progress)
         finally:
             torch.set_num_threads(threads)
+
+    def take_classifiers(self, models: Sequence[Mapping[str, np.ndarray]]) -> None:
+        """Take classifiers that are trained already, one a model, so that the generators alone are
+        trained: of the same table, sizes, seeds and iterations they are those of this run.
+
+        Args:
+            models: Arrays as `models` yields them.
+        """
+        names = self.classifier.fixed
+        for name, parts in zip(names, self.classifier.parts(self._best), strict=True):
+            for part, arrays in zip(parts, models, strict=True):
+                part.copy_(torch.from_numpy(arrays[f"classifier.{name}"]).view(part.shape))
+        self.classifier.flat.copy_(self._best)
+        self._done[0] = self.args.iterations
 
     def models(self) -> Iterator[dict[str, np.ndarray]]:
         """Yield classifier and generator of each model, as float32 arrays named like
@@ -188,7 +194,8 @@ class Trainer:
         """Train the generator by equations 2 to 4, from one iteration of the generator to another;
         returns the last mean loss.
         """
-        steps = [self._critic_steps(step) for step in range(start + 1, end + 1)]
+        taught = self.scheme != "classifier"
+        steps = [taught * self.args.critic_steps_at(step) for step in range(start + 1, end + 1)]
         randoms = [
             random_stream(size, seed, 2, start)
             for size, seed in zip(self.sizes, self.seeds, strict=True)
@@ -248,12 +255,6 @@ class Trainer:
         ]
         weight = lengths[0] / lengths[1].clamp_(min=1e-6)
         return (critic + weight.detach() * classifier).sum()
-
-    def _critic_steps(self, step: int) -> int:
-        if self.scheme == "classifier":
-            return 0
-        rarely = step <= self.args.first or step % self.args.every == 0
-        return self.args.critic_catches_up if rarely else self.args.critic_steps
 
     def _draw(self, rows: Sequence[Tensor], stage: int, start: int, count: int) -> Tensor:
         """Draw batches of rows, shape (M, count, batch): each model's own, shuffled over and

@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+AHEAD = 5
+"""Batches that the generator proposes at once for the critic's steps, during which it does not
+change.
+"""
+
+VALIDATION = 500
+"""Examples of the validation split at most."""
+
 
 @dataclass(frozen=True)
 class Args:
@@ -23,6 +31,8 @@ class Args:
             weights alone, as in the paper.
         scaled_classifier: Whether the classifier's gradient at a proposal is brought to the
             critic's mean length, where both teach; in the paper it is not.
+        attention: Whether the surroundings are weighted by a softmax instead of pooled by their
+            mean, as the paper's are.
         block: Iterations whose random numbers are drawn together, from seed, size, stage and the
             first of them.
     """
@@ -40,3 +50,9 @@ class Args:
     block: int = 500
     mean_weights: float = 0.0
     scaled_classifier: bool = False
+    attention: bool = False
+
+    def critic_steps_at(self, step: int) -> int:
+        """Return the critic's steps before the generator's step of this number, from 1."""
+        rarely = step <= self.first or step % self.every == 0
+        return self.critic_catches_up if rarely else self.critic_steps

@@ -11,7 +11,7 @@ from grounding.dataset import Dataset
 from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
-from grounding.paper.runtime import RESIDUAL, NumpyEncoder
+from grounding.paper.runtime import CHOICE, RESIDUAL, TRIES, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import Args
 from grounding.weights import Weights
@@ -20,10 +20,12 @@ from tamp.errors import InputError
 MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
 """Network and features."""
 
-DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier")
+DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier", "attention", "own-choice")
 """What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
 it was, as the published one on clouds does; the running mean of the generator's weights is kept;
-the classifier's gradient is brought to the critic's length where both teach.
+the classifier's gradient is brought to the critic's length where both teach; a GNN weights the
+surroundings by a softmax instead of taking their mean; of CHOICE proposals the one that the own
+classifier takes for the likeliest is returned.
 """
 
 MEAN_WEIGHTS = 0.999
@@ -47,6 +49,7 @@ def train(
     departures: Sequence[str] = (),
     encoder: Weights | None = None,
     table: FeatureTable | None = None,
+    classifiers: Sequence[Weights] = (),
     state: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> list[Weights]:
@@ -63,6 +66,8 @@ def train(
         departures: What is done otherwise than in the paper, any of DEPARTURES.
         encoder: What codes the clouds, for the models on clouds.
         table: The data's features, if they are known already.
+        classifiers: One a model, trained on the same data, size, seed and iterations, perhaps by
+            another scheme, which classifiers do not depend on: these are not trained again.
         state: A file to go on from, and to save the state of the run in every 2,000 iterations.
         progress: Told how far it is.
 
@@ -77,8 +82,11 @@ def train(
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,
+        attention="attention" in departures,
     )
     trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, args)
+    if classifiers:
+        trainer.take_classifiers([weights.arrays for weights in classifiers])
     trainer.run(state, progress)
     extra = (
         {f"encoder.{name}": array for name, array in encoder.arrays.items()}
@@ -87,6 +95,8 @@ def train(
     )
     if residual:
         extra[RESIDUAL] = np.ones(1, np.float32)
+    if "own-choice" in departures:
+        extra[TRIES] = np.full(1, CHOICE, np.float32)
 
     return [
         Weights(
@@ -151,6 +161,8 @@ def _check(
     for found in departures:
         if found not in DEPARTURES:
             raise InputError(f"unknown departure '{found}'", found=found, choices=DEPARTURES)
+    if "attention" in departures and model.startswith("mlp"):
+        raise InputError(f"model '{model}' sees no surroundings to attend to")
     if model not in MODELS:
         raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
     if scheme not in SCHEMES:

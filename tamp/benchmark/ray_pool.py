@@ -11,10 +11,9 @@ import socket
 import time
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, Generic
 
-from tamp.benchmark.case import Case
-from tamp.benchmark.worker_pool import GRACE, Ended, Work
+from tamp.benchmark.worker_pool import GRACE, R
 from tamp.errors import InputError
 from tamp.system import guard
 from tamp.system.distribution import install_command
@@ -31,12 +30,12 @@ STARTING = 300.0
 """Seconds that a cluster may take to find a place for a run."""
 
 
-class RayPool:
+class RayPool(Generic[R]):
     """Tasks on a Ray cluster, one a core.
 
     Args:
         address: Of the cluster ("auto", "ray://host:10001", "host:6379"), or "local".
-        work: What they do.
+        work: What they do; never None comes out.
         prepare: Called in each worker's process before its first run.
         size: Runs at a time; as many as the cluster has cores when not given.
 
@@ -45,7 +44,11 @@ class RayPool:
     """
 
     def __init__(
-        self, address: str, work: Work, prepare: Callable[[], None], size: int | None = None
+        self,
+        address: str,
+        work: Callable[[R], Any],
+        prepare: Callable[[], None],
+        size: int | None = None,
     ) -> None:
         _check_somebody_listens(address)
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nobody else is told
@@ -75,16 +78,18 @@ class RayPool:
         # not retry.
         self._do: Any = ray.remote(num_cpus=1, max_retries=0)(_prepared_work)
         self._job = (work, prepare)
-        self._under_way: dict[Any, tuple[Case, float]] = {}
+        self._under_way: dict[Any, tuple[R, float]] = {}
 
-    def start(self, case: Case) -> None:
+    def start(self, case: R) -> None:
         """Hand a run to the cluster."""
         self._under_way[self._do.remote(*self._job, case)] = case, time.monotonic()
 
-    def finished(self) -> list[Ended]:
-        """Return runs that have ended since; waits for a fifth of a second at most."""
+    def finished(self) -> list[tuple[R, Any]]:
+        """Return runs that have ended since, with what came out, None for a lost worker; waits for
+        a fifth of a second at most.
+        """
         ready, pending = self._ray.wait(list(self._under_way), num_returns=1, timeout=0.2)
-        ended: list[Ended] = []
+        ended: list[tuple[R, Any]] = []
         for reference in ready:
             case, _ = self._under_way.pop(reference)
             try:
@@ -131,7 +136,7 @@ def _check_somebody_listens(address: str) -> None:
         raise InputError(f"no Ray cluster at '{address}': {error}", remedy=REMEDY) from None
 
 
-def _prepared_work(work: Work, prepare: Callable[[], None], case: Case) -> dict[str, Any]:
+def _prepared_work(work: Callable[[R], Any], prepare: Callable[[], None], case: R) -> Any:
     _prepare_once(prepare)
     return work(case)
 

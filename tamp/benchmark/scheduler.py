@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from tamp.benchmark.case import Case
 from tamp.benchmark.log import Log
-from tamp.benchmark.worker_pool import WorkerPool
+from tamp.benchmark.worker_pool import R, WorkerPool
 
 ATTEMPTS = 3
 """So often a run is given out whose worker is lost on the way; then it is written down as lost."""
@@ -18,7 +18,10 @@ LOST = "LOST"
 
 
 def run_all(
-    cases: list[Case], pool: WorkerPool, log: Log, ended: Callable[[dict[str, Any], int], None]
+    cases: list[Case],
+    pool: WorkerPool[Case],
+    log: Log,
+    ended: Callable[[dict[str, Any], int], None],
 ) -> None:
     """Do all runs that the log does not have. The pool stays.
 
@@ -29,23 +32,38 @@ def run_all(
         ended: Called for each run that has ended, with its line and the number of runs that are
             still to come.
     """
-    waiting = deque(log.missing(cases))
-    losses: Counter[Case] = Counter()
+    for case, line, left in dispatch(log.missing(cases), pool):
+        found = crashed_result(case) if line is None else line
+        log.add(found)
+        ended(found, left)
+
+
+def dispatch(runs: Iterable[R], pool: WorkerPool[R]) -> Iterator[tuple[R, Any, int]]:
+    """Hand runs to the workers, one whose worker is lost on the way ATTEMPTS times.
+
+    Args:
+        runs: Each is done once.
+        pool: Who does them.
+
+    Yields:
+        Each as it ends, with what came out, None for one that was lost each time, and the number of
+        runs that are still to come.
+    """
+    waiting = deque(runs)
+    losses: Counter[R] = Counter()
     under_way = 0
     while waiting or under_way:
         while waiting and under_way < pool.size:
             pool.start(waiting.popleft())
             under_way += 1
-        for case, line in pool.finished():
+        for run, found in pool.finished():
             under_way -= 1
-            if line is None:
-                losses[case] += 1
-                if losses[case] < ATTEMPTS:
-                    waiting.append(case)
+            if found is None:
+                losses[run] += 1
+                if losses[run] < ATTEMPTS:
+                    waiting.append(run)
                     continue
-                line = crashed_result(case)
-            log.add(line)
-            ended(line, len(waiting) + under_way)
+            yield run, found, len(waiting) + under_way
 
 
 def crashed_result(case: Case) -> dict[str, Any]:

@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from tamp.benchmark.case import Case
 
+
+class Run(Protocol):
+    """The run that a worker is given; hashable, and it can be sent to another process."""
+
+    @property
+    def time(self) -> float:
+        """Return its budget, seconds."""
+        ...
+
+
+R = TypeVar("R", bound=Run)
+
 Work = Callable[[Case], dict[str, Any]]
-"""Does a run and returns its line. It is sent to other processes: a function of a module, or a
-partial of one.
+"""Does a benchmark's run and returns its line. It is sent to other processes: a function of a
+module, or a partial of one.
 """
 
 Ended = tuple[Case, dict[str, Any] | None]
@@ -21,17 +33,19 @@ verifying, a busy machine.
 """
 
 
-class WorkerPool(Protocol):
+class WorkerPool(Protocol[R]):
     """Workers."""
 
     size: int
 
-    def start(self, case: Case) -> None:
+    def start(self, case: R) -> None:
         """Give a run to an idle worker; at most `size` are under way."""
         ...
 
-    def finished(self) -> list[Ended]:
-        """Return runs that have ended since; waits for a fifth of a second at most."""
+    def finished(self) -> list[tuple[R, Any]]:
+        """Return runs that have ended since, each with what came out, None when its worker was lost
+        on the way; waits for a fifth of a second at most.
+        """
         ...
 
     def close(self) -> None:

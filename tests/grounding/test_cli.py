@@ -95,6 +95,10 @@ def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPa
         == 135
     )
     learn("evaluate weights/on_tree-pc.safetensors --scenes 2")
+    inside = "--encoder weights/on_tree-pc.safetensors --out weights/again.safetensors"
+    learn(f"train on --model tree-pc {inside}")  # with the encoder that is inside of it
+    first, again = (folder / f"weights/{name}.safetensors" for name in ("on_tree-pc", "again"))
+    assert first.read_bytes() == again.read_bytes()
     learn("encoder on --iterations 1 --points 64 --kind dense --out weights/dense.safetensors")
     assert (
         run(["train", "on", "--model", "tree-pc", "--encoder", "weights/dense.safetensors"])
@@ -129,7 +133,10 @@ def test_an_interrupted_training_goes_on(
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("", "no command. Choices: new, ask, generate, explore, collect, encoder, train, evaluate"),
+        (
+            "",
+            "no command. Choices: new, ask, generate, explore, collect, show, encoder, train, evaluate",
+        ),
         ("trian on", "Did you mean 'train'?"),
         ("train", "See tamp-learn train --help"),
         ("train on --sampels 3", "--sampels"),

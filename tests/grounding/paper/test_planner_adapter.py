@@ -41,8 +41,9 @@ def test_a_laid_body_stands_on_a_face_where_it_was(name: str) -> None:
         assert snapped(form, face, found) == pytest.approx(found)
 
 
-def test_a_body_from_across_the_room_finds_many_places() -> None:
-    grounding = shipped_grounding("on", "mlp-bb")
+@pytest.mark.parametrize("name", ["mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc"])
+def test_a_body_from_across_the_room_finds_many_places(name: str) -> None:
+    grounding = shipped_grounding("on", name)
     assert isinstance(grounding, SnappingSampler)
     surface = SCENE.surfaces["cupboard_top"]
     T_world_region = SCENE.world_pose(surface)

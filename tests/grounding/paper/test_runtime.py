@@ -7,20 +7,22 @@ import torch
 from grounding.paper import networks
 from grounding.paper.features import BB, PC, BoxFeatures, completed
 from grounding.paper.networks import Batch, Ensemble, generate, score
+from grounding.paper.numpy_networks import NOISE, Network
 from grounding.paper.rotations import rotations
-from grounding.paper.runtime import NOISE, Network, PaperModel, generated, judged, unit
+from grounding.paper.runtime import TRIES, PaperModel, generated, judged, unit
 from grounding.weights import Weights
 from tamp.errors import InputError
 
-CASES = [(size, scene) for size in (BB, PC) for scene in (False, True)]
+SIGHTS = [(False, False), (True, False), (True, True)]  # scene, attention
+CASES = [(size, *sight) for size in (BB, PC) for sight in SIGHTS]
 
 
-def untrained(size, scene):
+def untrained(size, scene, attention=False):
     """An ensemble of two of each network, and the second's arrays."""
     randoms = [torch.Generator().manual_seed(seed) for seed in range(2)]
     parts = {
-        "classifier": Ensemble(networks.classifier_shapes(size, scene), randoms),
-        "generator": Ensemble(networks.generator_shapes(size, scene), randoms),
+        "classifier": Ensemble(networks.classifier_shapes(size, scene, attention), randoms),
+        "generator": Ensemble(networks.generator_shapes(size, scene, attention), randoms),
     }
     for part in parts.values():
         for name, tensor in part.fixed.items():
@@ -67,12 +69,12 @@ def widened(o, rng):
     return type(o)(wide(o.arguments), wide(o.others), o.origin, o.centre, o.extents)
 
 
-@pytest.mark.parametrize(("size", "scene"), CASES)
-def test_classifier_and_generator_agree_with_torch(size, scene, seen):
+@pytest.mark.parametrize(("size", "scene", "attention"), CASES)
+def test_classifier_and_generator_agree_with_torch(size, scene, attention, seen):
     rng = np.random.default_rng(0)
     if size == PC:
         seen = [widened(o, rng) for o in seen]
-    parts, arrays = untrained(size, scene)
+    parts, arrays = untrained(size, scene, attention)
     batch, noise = as_tensors(seen, size, rng), rng.normal(size=(3, NOISE)).astype(np.float32)
     with torch.no_grad():
         logits = score(parts["classifier"].weights, batch)[1]
@@ -120,9 +122,48 @@ def test_the_same_seed_proposes_the_same(data):
     assert model.classify(data[0].situation, first).shape == (3,)
 
 
+def test_attention_weights_the_surroundings(seen):
+    """With all weight on one of the others the embedding is that of this one alone."""
+    _, arrays = untrained(BB, True, True)
+    network, o = Network(arrays, "classifier"), seen[-1]
+    arguments, others = o.arguments.reshape(1, -1).astype(np.float32), o.others.astype(np.float32)
+    weight, bias = network.attend[0]
+    network.attend[0] = (np.zeros_like(weight), bias)
+    mean = network.context(arguments, others)
+    network.attend = []
+    np.testing.assert_allclose(network.context(arguments, others), mean, atol=1e-6)
+    network.attend = [(1e4 * np.abs(weight), bias)]
+    picked = network.context(arguments, others)
+    network.attend = []
+    alone = [network.context(arguments, others[row : row + 1]) for row in range(len(others))]
+    assert min(np.abs(picked - one).max() for one in alone) < 1e-4
+
+
+def test_the_own_classifier_chooses(data):
+    _, arrays = untrained(BB, True)
+    situation = data[0].situation
+    chosen = PaperModel(Weights({**arrays, TRIES: np.array([8.0], np.float32)}, {}))
+    drawn = PaperModel(Weights(arrays, {}))
+    all_of_them = drawn.propose(situation, 24, np.random.default_rng(3))
+    likely = drawn.classify(situation, all_of_them).reshape(3, 8)
+    found = chosen.propose(situation, 3, np.random.default_rng(3))
+    expected = all_of_them.reshape(3, 8, 4, 4)[range(3), likely.argmax(axis=1)]
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    assert chosen.propose(situation, 0, np.random.default_rng(3)).shape == (0, 4, 4)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
+        (
+            {
+                "classifier.attend.0.weight": np.zeros((32, 1)),
+                "classifier.attend.0.bias": np.zeros(1),
+            },
+            "attends",
+        ),
+        ({TRIES: np.zeros(1)}, "'choice.tries' must be one number from 1 to 1000"),
+        ({TRIES: np.ones(2)}, "'choice.tries' must be one number"),
         (
             {"classifier.main.0.weight": np.zeros((40, 64))},
             "a classifier of 40 features; known: 38",

@@ -75,6 +75,18 @@ def test_a_run_goes_on_from_its_state(table, tmp_path):
         assert all(np.array_equal(expected[name], found[name]) for name in expected)
 
 
+def test_a_trained_classifier_is_taken_over_and_nothing_else_changes(data):
+    setting = {"sizes": [240, 20], "seeds": [0, 3], "iterations": 4}
+    first = train(data, "gnn-bb", "discriminator", **setting)
+    alone = train(data, "gnn-bb", "both", **setting)
+    lines = []
+    taken = train(data, "gnn-bb", "both", **setting, classifiers=first, progress=lines.append)
+    assert lines and not any(line.startswith("classifier") for line in lines)
+    for one, other in zip(alone, taken, strict=True):
+        assert one.card == other.card
+        assert all(np.array_equal(one.arrays[name], other.arrays[name]) for name in one.arrays)
+
+
 def test_another_runs_state_is_refused(data, tmp_path):
     state = tmp_path / "state.safetensors"
     train(data, "mlp-bb", "classifier", sizes=[20], seeds=[0], iterations=2, state=state)
