@@ -13,7 +13,8 @@ from grounding.relations.demonstration_file import Demonstration, demonstrations
 from grounding.relations.files import weights_of
 from grounding.relations.grounding import LearnedRelation
 from grounding.relations.learner import Learned, learn
-from grounding.relations.pddl_text import Words, added, diff
+from grounding.relations.pddl_text import added, diff
+from grounding.relations.pddl_words import Words
 from grounding.runtime import Proposer
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
