@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
-from grounding.relations.pddl_words import CARRIES, Words, domain_parts, stream_parts
+from grounding.relations.pddl_words import CARRIES, Words, domain_parts, settled_parts, stream_parts
 from tamp.errors import InputError
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
@@ -53,9 +53,15 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
         remedy = f"Begin with a new file, which is as the shipped domain '{CARRIERS}'"
         raise InputError(what, file=domain, remedy=remedy)
 
+    told, settling = (
+        ([], [])
+        if "settled" in parsed.predicates
+        else settled_parts([one for one in ("supported", "contained") if one in parsed.predicates])
+    )
     old, text = texts[domain]
     if known is None:
         predicates, rule = domain_parts(words)
+        predicates = [*told, *predicates]
         text = _inside(text, "(:predicates", [f"; {note}", *predicates], domain)
         text = _before(text, "(:action", rule, domain)
     elif not any(one.head.predicate == words.name for one in parsed.derived):
@@ -65,7 +71,7 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
 
     old, text = texts[streams]
     if f"sample-{words.name}" not in names and f"test-{words.name}" not in names:
-        text = _at_end(text, [f"; {note}", *stream_parts(words, carries)], streams)
+        text = _at_end(text, [*settling, f"; {note}", *stream_parts(words, carries)], streams)
     texts[streams] = (old, text)
 
     checked = parse_domain(texts[domain][1], domain)

@@ -115,7 +115,7 @@ def stream_parts(words: Words, carries: bool) -> list[str]:
     name = words.name
     lines = [line for one in _generators(words, carries) for line in one.lines(words)]
     if not words.tells:
-        return lines
+        return [*lines, *_settling(words)]
     proposed = words.certified
     if len(words.kinds) == 1:
         proposed = f"(and (pose {words.posed}) {words.wanted})"
@@ -125,14 +125,53 @@ def stream_parts(words: Words, carries: bool) -> list[str]:
         f"  :certified ({name}-pose {words.posed}))",
     ]
     if len(words.poses) > 1:
-        poses = [f"(pose {body} {pose})" for body, pose in words.poses.items()]
+        poses = [f"(settled {body} {pose})" for body, pose in words.poses.items()]
         lines += [
             f"(:stream test-{name}-also",
             f"  :inputs ({words.posed})",
             f"  :domain {_all([words.also, *poses])}",
             f"  :certified ({name}-pose {words.posed}))",
         ]
-    return lines
+    return [*lines, *_settling(words)]
+
+
+def settled_parts(supports: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the lines of predicates, and of streams, by which a domain is told where the goal may
+    leave bodies.
+
+    Args:
+        supports: Predicates of what a pose rests on, (supported ?o ?p ?place), as it has them.
+    """
+    predicates = [
+        "; of the goal: it leaves open where ?o is; it wants ?o on or in this place; where it may",
+        "(unbound ?o - movable)",
+        "(meant ?o - movable ?s - object)",
+        "(settled ?o - movable ?p - pose)",
+    ]
+    conditions = [
+        "(unbound ?o) (pose ?o ?p)",
+        *(f"(meant ?o ?s) ({one} ?o ?p ?s)" for one in supports),
+    ]
+    streams = [
+        f"(:rule :inputs (?o ?p{' ?s' if '?s' in one else ''}) :domain (and {one}) "
+        ":certified (settled ?o ?p))"
+        for one in conditions
+    ]
+    return predicates, [
+        "; where the goal may leave a body: only there others are put beside it",
+        *streams,
+    ]
+
+
+def _settling(words: Words) -> list[str]:
+    """Return the rule that argument 0 may stay where the relation holds as the goal wants it."""
+    body, pose = words.arguments[0], words.poses[words.arguments[0]]
+    holds = f"({words.name}-pose {words.posed})"
+    return [
+        f"(:rule :inputs ({words.posed})",
+        f"  :domain (and {words.wanted} {holds})",
+        f"  :certified (settled {body} {pose}))",
+    ]
 
 
 @dataclass(frozen=True)
@@ -172,7 +211,7 @@ def _generators(words: Words, carries: bool) -> list[_Generator]:
     posed = [name for name in others if name in words.poses]
 
     if words.below:
-        conditions = [words.wanted, *(f"(pose {name} {words.poses[name]})" for name in posed)]
+        conditions = [words.wanted, *_settled(words, posed)]
         resting = f"(borne {first} {pose} {words.below} {words.poses[words.below]})"
         return [_Generator("", inputs, tuple(conditions), (resting, f"(sampled {first} {pose})"))]
 
@@ -187,6 +226,7 @@ def _generators(words: Words, carries: bool) -> list[_Generator]:
             *([f"(anchored {place})"] if carries else []),
         ]
         conditions += [f"({fact} {name} {words.poses[name]} {place})" for name in posed]
+        conditions += _settled(words, posed)
         inputs = inputs if place in inputs else (*inputs, place)
         return [
             _Generator("", inputs, tuple(conditions), (f"({fact} {first} {pose} {place})", *also))
@@ -197,7 +237,14 @@ def _generators(words: Words, carries: bool) -> list[_Generator]:
         place = "?c" if fact == "contained" else "?s"
         there = tuple(f"({fact} {name} {words.poses[name]} {place})" for name in posed)
         resting = f"({fact} {first} {pose} {place})"
-        found.append(_Generator(suffix, (*inputs, place), (words.wanted, *there), (resting, *also)))
+        found.append(
+            _Generator(
+                suffix,
+                (*inputs, place),
+                (words.wanted, *there, *_settled(words, posed)),
+                (resting, *also),
+            )
+        )
     for suffix, fact in MOVABLE_PLACES.items() if words.tells and carries else ():
         place = "?c" if fact == "packed" else "?s"
         below = f"{place} ?below ?pb"
@@ -207,11 +254,15 @@ def _generators(words: Words, carries: bool) -> list[_Generator]:
             _Generator(
                 suffix,
                 (*inputs, place, "?below", "?pb"),
-                (words.wanted, *there),
+                (words.wanted, *there, *_settled(words, posed)),
                 (*resting, f"(sampled {first} {pose})"),
             )
         )
     return found
+
+
+def _settled(words: Words, names: Sequence[str]) -> list[str]:
+    return [f"(settled {name} {words.poses[name]})" for name in names]
 
 
 def _pose(words: Words, name: str) -> tuple[str, ...]:

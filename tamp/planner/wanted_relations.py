@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
+from tamp.planner.movable_places import WANTED
+from tamp.planner.settled_poses import ADVICE, SETTLED, settled_facts
 from tamp.symbolic.pddl.atoms import necessary_atoms, signed_atoms
 from tamp.symbolic.pddl.relations import (
     Relation,
@@ -17,10 +19,7 @@ from tamp.symbolic.pddl.relations import (
     relation_of,
     streams_of,
 )
-from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
-
-WANTED = "wanted-"
-"""(wanted-R ?o ?o2): the goal, or an action, may want R of these; only then is it sampled."""
+from tamp.symbolic.pddl.structs import And, Atom, Domain, Fact, Formula, StreamFile
 
 ALSO = "also-"
 """(also-R ?o ?o2): R is wanted of these, and another relation proposes where ?o is."""
@@ -28,12 +27,13 @@ ALSO = "also-"
 
 def advice(domain: Domain) -> frozenset[str]:
     """Return the predicates of a domain whose facts speak of the goal, and not of the world."""
-    return frozenset(
+    told = {
         predicate
         for predicate in domain.predicates
         for sort in (WANTED, ALSO)
         if WANTED + predicate.removeprefix(sort) in domain.predicates
-    )
+    }
+    return frozenset(told.union(ADVICE if SETTLED in domain.predicates else ()))
 
 
 def wanted_facts(
@@ -67,7 +67,11 @@ def wanted_facts(
             words = tuple(bound[variable] for variable in relation.arguments)
             if any(_fits(words, pattern) for pattern in patterns):
                 found.add((WANTED + name, *words))
-    return found | _also(found, domain, goal)
+    also = _also(found, domain, goal)
+    proposed = {(fact[0].removeprefix(WANTED), *fact[1:]) for fact in found}
+    proposed -= {(fact[0].removeprefix(ALSO), *fact[1:]) for fact in also}
+    now = any(next(_asked(one, domain, And(())), None) for _, one in _told(streams, domain))
+    return found | also | settled_facts(domain, goal, placed, facts, proposed, now)
 
 
 def _also(wanted: Collection[Fact], domain: Domain, goal: Formula) -> set[Fact]:
