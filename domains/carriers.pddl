@@ -40,6 +40,10 @@
     (anchored ?s - object)
     (portable ?o - movable)                                      ; the goal wants it somewhere, with what is on it
     (stackable ?o - movable ?s - object ?below - movable)
+    ; of the goal: it leaves open where ?o is; it wants ?o on or in this place; where it may leave ?o
+    (unbound ?o - movable)
+    (meant ?o - movable ?s - object)
+    (settled ?o - movable ?p - pose)
     ; what follows
     (on ?o - body ?s - surface)
     (inside ?o - body ?c - container)

@@ -13,13 +13,22 @@
     :inputs (?o ?c) :domain (and (movable ?o) (container ?c) (anchored ?c))
     :fluents (at-pose)
     :outputs (?p) :certified (and (pose ?o ?p) (contained ?o ?p ?c) (grounded ?o ?p) (sampled ?o ?p)))
+  ; Where the goal may leave a body: only there others are put onto it.
+  (:rule :inputs (?o ?p) :domain (and (unbound ?o) (pose ?o ?p)) :certified (settled ?o ?p))
+  (:rule :inputs (?o ?p ?s) :domain (and (meant ?o ?s) (supported ?o ?p ?s)) :certified (settled ?o ?p))
+  (:rule :inputs (?o ?p ?c) :domain (and (meant ?o ?c) (contained ?o ?p ?c)) :certified (settled ?o ?p))
+  (:rule :inputs (?o ?p ?s ?below ?pb) :domain (and (meant ?o ?s) (stacked ?o ?p ?s ?below ?pb) (settled ?below ?pb))
+         :certified (settled ?o ?p))
+  (:rule :inputs (?o ?p ?c ?below ?pb) :domain (and (meant ?o ?c) (packed ?o ?p ?c ?below ?pb) (settled ?below ?pb))
+         :certified (settled ?o ?p))
+
   ; On a body that moves, where it stands at ?pb.
   (:stream sample-on-movable
-    :inputs (?o ?s ?below ?pb) :domain (and (stackable ?o ?s ?below) (surface ?s) (pose ?below ?pb))
+    :inputs (?o ?s ?below ?pb) :domain (and (stackable ?o ?s ?below) (surface ?s) (settled ?below ?pb))
     :fluents (at-pose)
     :outputs (?p) :certified (and (pose ?o ?p) (stacked ?o ?p ?s ?below ?pb) (borne ?o ?p ?below ?pb) (sampled ?o ?p)))
   (:stream sample-inside-movable
-    :inputs (?o ?c ?below ?pb) :domain (and (stackable ?o ?c ?below) (container ?c) (pose ?below ?pb))
+    :inputs (?o ?c ?below ?pb) :domain (and (stackable ?o ?c ?below) (container ?c) (settled ?below ?pb))
     :fluents (at-pose)
     :outputs (?p) :certified (and (pose ?o ?p) (packed ?o ?p ?c ?below ?pb) (borne ?o ?p ?below ?pb) (sampled ?o ?p)))
 

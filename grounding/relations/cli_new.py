@@ -12,7 +12,8 @@ from grounding.relations.demonstration_file import Demonstration, demonstrations
 from grounding.relations.files import weights_of
 from grounding.relations.learner import Learned, learn
 from grounding.relations.options import New
-from grounding.relations.pddl_text import Words, added, diff
+from grounding.relations.pddl_text import added, diff
+from grounding.relations.pddl_words import Words
 from grounding.relations.scenes import examples_of
 from grounding.relations.situation import joined, situation_of
 from grounding.relations.variety import missing, unvaried
@@ -49,7 +50,7 @@ def new(chosen: New) -> None:
         count = f"{learned.count[0]} + {learned.count[1]}"
         texts = added(
             chosen.add_to,
-            Words(name, learned.kinds),
+            Words(name, learned.kinds, learned.generator.level, not learned.cannot_tell),
             f"{name}: learned from {count} demonstrations",
         )
         texts = {path: both for path, both in texts.items() if both[0] != both[1]}

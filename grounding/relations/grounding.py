@@ -63,13 +63,16 @@ class LearnedRelation:
             raise InputError(f"the relation has {len(self.kinds)} arguments, not {len(names)}")
         situation = situation_of(scene, names)
         places = [name for name in arguments[len(names) :] if _is_place(scene, name)]
+        under = ""
         if places:
             situation.support[0] = _row(scene, places[0])
+            place = scene.surfaces.get(places[0]) or scene.cavities[places[0]]
+            under = place.body if scene.bodies[place.body].movable else ""
         elif len(names) == 1:
             situation.support[0] = _any_place(scene, rng)
 
         steady = np.array([-face.rotation[2] for face in geometry_of(body.parts).faces])
-        blocked = _blocked(scene, names, situation)
+        blocked = _blocked(scene, [*names, under], situation)
         R, p = self._proposes.propose(
             situation, count, rng, steady if len(steady) else ANY_WAY, blocked
         )
@@ -105,7 +108,9 @@ def _any_place(scene: Scene, rng: Random) -> tuple[float, ...]:
 def _blocked(
     scene: Scene, names: Sequence[str], situation: Situations
 ) -> Callable[[Array, Array], Array] | None:
-    """Return what says by how far places are in bodies that are no arguments."""
+    """Return what says by how far places are in bodies that are not named, of which the first is
+    placed.
+    """
     top, _, x, y = situation.support[0, :4]
     reach = NEAR + float(np.hypot(*situation.support[0, 4:]))
     around: list[Placed] = []

@@ -1,6 +1,4 @@
-"""A learned relation in a domain's files: predicates, rule and streams, put into the text as it
-stands.
-"""
+"""A learned relation in a domain's files: its words put into the text as it stands."""
 
 from __future__ import annotations
 
@@ -8,132 +6,27 @@ import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
+from grounding.relations.pddl_words import CARRIES, Words, domain_parts, settled_parts, stream_parts
 from tamp.errors import InputError
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.system.files import shipped
 
-BASE = "cupboard"
-"""The shipped domain that a new file begins as."""
-
-
-class Words:
-    """The variables of a relation in PDDL.
-
-    Args:
-        name: Of the relation.
-        kinds: Of its arguments: movable, fixed, surface, container.
-    """
-
-    def __init__(self, name: str, kinds: Sequence[str]) -> None:
-        self.name, self.kinds = name, tuple(kinds)
-        letters = {"movable": "o", "fixed": "b", "surface": "s", "container": "c"}
-        self.arguments = [
-            f"?{letters[kind]}{index + 1 if index else ''}" for index, kind in enumerate(kinds)
-        ]
-        self.poses = {
-            variable: f"?p{variable[2:]}"
-            for variable, kind in zip(self.arguments, kinds, strict=True)
-            if kind == "movable"
-        }
-
-    @property
-    def typed(self) -> str:
-        """Return the arguments with their types."""
-        pairs = zip(self.arguments, self.kinds, strict=True)
-        return " ".join(f"{variable} - {kind}" for variable, kind in pairs)
-
-    @property
-    def posed(self) -> str:
-        """Return the arguments, each body followed by its pose."""
-        return " ".join(
-            f"{variable} {self.poses[variable]}" if variable in self.poses else variable
-            for variable in self.arguments
-        )
-
-    @property
-    def posed_typed(self) -> str:
-        """Return the same with types."""
-        said: list[str] = []
-        for variable, kind in zip(self.arguments, self.kinds, strict=True):
-            said.append(f"{variable} - {kind}")
-            if variable in self.poses:
-                said.append(f"{self.poses[variable]} - pose")
-        return " ".join(said)
-
-
-def domain_parts(words: Words) -> tuple[list[str], list[str]]:
-    """Return the lines of the predicates, and those of the rule."""
-    name = words.name
-    predicates = [
-        f"(proposed-{name} {words.posed_typed})",
-        f"({name}-pose {words.posed_typed})",
-        f"({name} {words.typed})",
-    ]
-    poses = " ".join(f"{pose} - pose" for pose in words.poses.values())
-    there = " ".join(f"(at-pose {body} {pose})" for body, pose in words.poses.items())
-    rule = [
-        f"(:derived ({name} {words.typed})",
-        f"  (exists ({poses}) (and ({name}-pose {words.posed}) {there})))",
-    ]
-    return predicates, rule
-
-
-def stream_parts(words: Words) -> list[str]:
-    """Return the lines of the two streams.
-
-    The generator is told a place that no argument is: where the other bodies stand, or any. What
-    it certifies of that place is left out where its own domain asks for it.
-    """
-    name, first = words.name, words.arguments[0]
-    rest = list(zip(words.arguments[1:], words.kinds[1:], strict=True))
-    places = [(variable, kind) for variable, kind in rest if kind in ("surface", "container")]
-    place, kind_of_place = places[0] if places else ("?s", "surface")
-    fact = "supported" if kind_of_place == "surface" else "contained"
-
-    inputs, conditions = [first], [f"(movable {first})"]
-    for variable, kind in rest:
-        inputs.append(variable)
-        if kind == "movable":
-            inputs.append(words.poses[variable])
-            conditions.append(f"({fact} {variable} {words.poses[variable]} {place})")
-        else:
-            conditions.append(f"({kind} {variable})")
-    known = any(kind == "movable" for _, kind in rest)
-    if not places:
-        inputs.append(place)
-        conditions += [] if known else [f"(surface {place})"]
-    certified = "" if known else f" ({fact} {first} ?p {place})"
-
-    head = words.poses[first]
-    tested = (
-        f"(pose {words.posed})" if len(words.kinds) == 1 else f"(proposed-{name} {words.posed})"
-    )
-    return [
-        f"(:stream sample-{name}",
-        f"  :inputs ({' '.join(inputs)}) :domain {_all(conditions)}",
-        "  :fluents (at-pose)",
-        f"  :outputs ({head}) :certified (and (pose {first} {head}){certified} "
-        f"(proposed-{name} {words.posed})))",
-        f"(:stream test-{name}",
-        f"  :inputs ({words.posed}) :domain {tested}",
-        f"  :certified ({name}-pose {words.posed}))",
-    ]
-
-
-def _all(conditions: Sequence[str]) -> str:
-    return conditions[0] if len(conditions) == 1 else f"(and {' '.join(conditions)})"
+BASE, CARRIERS = "cupboard", "carriers"
+"""The shipped domains that a new file begins as; the second where bodies stand on movable ones."""
 
 
 def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
     """Return the domain's two files with a relation in them: path to old and new text.
 
-    A domain that is not there begins as the shipped one.
+    A domain that is not there begins as a shipped one.
 
     Raises:
-        InputError: A file cannot be read or understood, or has another thing of this name.
+        InputError: A file cannot be read or understood, or has another thing of this name; or the
+            relation puts bodies onto movable ones, which the domain does not know.
     """
     streams = domain.with_suffix(".streams.pddl")
+    shipped_one = CARRIERS if words.below else BASE
     texts: dict[Path, tuple[str, str]] = {}
     for path, suffix in ((domain, ".pddl"), (streams, ".streams.pddl")):
         if path.exists():
@@ -143,8 +36,8 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
                 raise InputError(what, file=path, remedy="Save it as UTF-8")
             texts[path] = (old, old)
         else:
-            base = read_pddl(shipped("domains") / f"{BASE}{suffix}")
-            texts[path] = ("", _renamed(base, domain.stem))
+            base = read_pddl(shipped("domains") / f"{shipped_one}{suffix}")
+            texts[path] = ("", _renamed(base, shipped_one, domain.stem))
 
     parsed = parse_domain(texts[domain][1], domain)
     declared = parse_streams(texts[streams][1], parsed, streams)
@@ -154,9 +47,21 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
         what = f"'{words.name}' has {len(known.parameters)} arguments here, not {len(words.kinds)}"
         raise InputError(what, file=domain, remedy="Choose another name, or another domain")
 
+    carries = {*CARRIES} <= {*parsed.predicates}
+    if words.below and not carries:
+        what = f"'{words.name}' puts bodies onto movable ones, and this domain cannot say so"
+        remedy = f"Begin with a new file, which is as the shipped domain '{CARRIERS}'"
+        raise InputError(what, file=domain, remedy=remedy)
+
+    told, settling = (
+        ([], [])
+        if "settled" in parsed.predicates
+        else settled_parts([one for one in ("supported", "contained") if one in parsed.predicates])
+    )
     old, text = texts[domain]
     if known is None:
         predicates, rule = domain_parts(words)
+        predicates = [*told, *predicates]
         text = _inside(text, "(:predicates", [f"; {note}", *predicates], domain)
         text = _before(text, "(:action", rule, domain)
     elif not any(one.head.predicate == words.name for one in parsed.derived):
@@ -166,7 +71,7 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
 
     old, text = texts[streams]
     if f"sample-{words.name}" not in names and f"test-{words.name}" not in names:
-        text = _at_end(text, [f"; {note}", *stream_parts(words)], streams)
+        text = _at_end(text, [*settling, f"; {note}", *stream_parts(words, carries)], streams)
     texts[streams] = (old, text)
 
     checked = parse_domain(texts[domain][1], domain)
@@ -185,11 +90,11 @@ def diff(texts: dict[Path, tuple[str, str]]) -> str:
     return "\n".join(lines)
 
 
-def _renamed(text: str, name: str) -> str:
+def _renamed(text: str, base: str, name: str) -> str:
     word = "".join(one if one.isalnum() or one in "-_" else "-" for one in name)
     word = word if word[:1].isalpha() else f"domain-{word}"
     for kind in ("domain", "stream"):
-        text = text.replace(f"({kind} {BASE})", f"({kind} {word})")
+        text = text.replace(f"({kind} {base})", f"({kind} {word})")
     return text
 
 

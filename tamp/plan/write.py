@@ -16,6 +16,7 @@ from tamp.plan.inputs import inputs_document
 from tamp.planner.recorder import Sample
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
+from tamp.planner.wanted_relations import advice
 from tamp.system.distribution import distribution_version
 from tamp.system.outputs import write_whole
 
@@ -30,7 +31,8 @@ def plan_document(solution: Solution) -> dict[str, Any]:
     """Return the plan file's content; only "timing" differs between two runs with one seed."""
     problem = solution.problem
     task = problem.stream_task.task
-    hidden, samplers = problem.complements, dict(sorted(problem.samplers.items()))
+    samplers = dict(sorted(problem.samplers.items()))
+    hidden = problem.complements | advice(task.domain)
     record = record_document(solution)
 
     return {

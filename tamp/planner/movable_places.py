@@ -36,6 +36,9 @@ PORTABLE = "portable"
 NARROWEST = 0.02
 """Metres: nothing is stacked on a top that is narrower."""
 
+WANTED = "wanted-"
+"""(wanted-R ?o ?o2): the goal, or an action, may want R of these; only then is it sampled."""
+
 RELATIONS = ("on", "inside")
 """Those whose second argument is a place."""
 
@@ -120,6 +123,8 @@ def _wanted(goal: Formula, domain: Domain) -> Iterator[tuple[str | None, str | N
         if atom.predicate in RELATIONS and len(atom.terms) == 2:
             body, place = (None if term.startswith("?") else term for term in atom.terms)
             yield body, place
+        elif WANTED + atom.predicate in domain.predicates:
+            continue  # its own stream puts bodies where it holds
         elif atom.predicate in domain.derived_predicates:
             # A rule of the user's own is not looked through: any two of its arguments are meant.
             terms = [None if term.startswith("?") else term for term in atom.terms]

@@ -24,6 +24,8 @@ from tamp.planner.movable_places import carries, check_circle, place_facts, reme
 from tamp.planner.own_relations import decided
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
+from tamp.planner.wanted_relations import unasked_streams, wanted_facts
+from tamp.relations.observed import scene_names
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.lint import lint
@@ -135,7 +137,8 @@ def load_problem(
 
     given = functions or {}
     known_functions = {**served.functions(files.streams, files.domain), **given}
-    bound = bind(files.streams, files.domain, context, known_functions)
+    unasked = unasked_streams(files.streams, files.domain, goal)
+    bound = bind(files.streams, files.domain, context, known_functions, unasked)
     known = decided(served, files.streams, files.domain, goal, start.objects, start.facts, context)
     costs = bind_costs(files.streams, context, given)
 
@@ -235,6 +238,9 @@ def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
     if carries(domain):
         start.facts |= place_facts(loaded.scene, domain, goal)
         check_circle(loaded, goal)
+    start.facts |= wanted_facts(
+        files.streams, domain, goal, start.objects, start.facts, scene_names(loaded.scene)
+    )
 
     _check_metric(loaded)
     return start, goal

@@ -21,8 +21,8 @@ from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.classifier import Classifier, Undecided
 from tamp.geometric.streams.user_relations import sample_relation, test_relation
-from tamp.symbolic.pddl.relations import relation_of
-from tamp.symbolic.pddl.structs import Domain, StreamFile
+from tamp.symbolic.pddl.relations import SAMPLES, TESTS, relation_of
+from tamp.symbolic.pddl.structs import Domain, Stream, StreamFile
 
 BORNE = "borne"
 """(borne ?o ?p ?below ?pb): certified by a stream, it makes ?o at ?p rest on the movable ?below."""
@@ -119,16 +119,13 @@ class Served:
         for name, generator in self.generators.items():
             if name not in SAMPLERS:
                 judge = None if f"test-{name}" in streams else self._judge(name, declared, domain)
-                stream = streams.get(f"sample-{name}")
-                onto = stream is not None and any(
-                    atom.predicate == BORNE for atom in stream.certified
-                )
-                functions[f"sample-{name}"] = partial(
-                    sample_relation, relation=name, generator=generator, judge=judge, onto=onto
-                )
+                serve = partial(sample_relation, relation=name, generator=generator, judge=judge)
+                for stream in {f"sample-{name}{suffix}" for suffix in SAMPLES} & streams.keys():
+                    functions[stream] = partial(serve, below=_below(streams[stream]))
 
         for name, classifier in self.classifiers.items():
-            functions[f"test-{name}"] = partial(test_relation, classifier=classifier)
+            for suffix in TESTS:
+                functions[f"test-{name}{suffix}"] = partial(test_relation, classifier=classifier)
 
         for name, why in self.undecided.items():
             test = streams.get(f"test-{name}")
@@ -156,6 +153,14 @@ class Served:
         return self.classifiers[name], tuple(
             inputs.index(variable) for variable in relation.arguments
         )
+
+
+def _below(stream: Stream) -> int | None:
+    """Find which input of a stream is the movable body that its poses rest on; None for none."""
+    borne = next((atom for atom in stream.certified if atom.predicate == BORNE), None)
+    if borne is None or len(borne.terms) != 4 or borne.terms[2] not in stream.inputs:
+        return None
+    return stream.inputs.index(borne.terms[2])
 
 
 def _same(item: Grounding) -> Grounding:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import Any
 
@@ -21,6 +21,7 @@ def bind(
     domain: Domain,
     context: Context,
     functions: Mapping[str, Callable[..., Any]],
+    unasked: Collection[str] = (),
 ) -> tuple[BoundStream, ...]:
     """Tie the streams to their functions.
 
@@ -29,14 +30,17 @@ def bind(
         domain: Whose types the streams' outputs have.
         context: What the functions are called with first.
         functions: By the stream's name, over the shipped ones.
+        unasked: Streams that may lack one, and are left out then.
 
     Raises:
-        InputError: A stream without a function, or a :predicate.
+        InputError: Another stream without a function, or a :predicate.
     """
     known = {**STREAMS, **functions}
 
     bound: list[BoundStream] = []
     for stream in declared.streams:
+        if stream.name not in known and stream.name in unasked:
+            continue
         if stream.name not in known:
             raise without_function(stream, declared.file, known)
         types = output_types(stream, domain)

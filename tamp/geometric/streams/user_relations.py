@@ -5,7 +5,7 @@ classifier.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -28,7 +28,7 @@ def sample_relation(
     relation: str,
     generator: Generator,
     judge: tuple[Classifier, tuple[int, ...]] | None = None,
-    onto: bool = False,
+    below: int | None = None,
     call: Call,
 ) -> Iterator[Pose | Rejection]:
     """Sample poses that the generator proposes for the relation's first argument, put to rest on
@@ -38,31 +38,26 @@ def sample_relation(
     body before it. That the body rests there, on a place among the inputs where there is one, clear
     of the fixed bodies, is certified here, everything else by other streams' tests; but where the
     relation has no test and a classifier, `judge`, that is asked here, with the inputs at these
-    indices. With `onto` it rests on a movable body among the inputs, at the pose there.
+    indices. With `below` it rests on the movable body at that index of the inputs, at the pose
+    there.
     """
     arguments = (body, *(other for other in others if isinstance(other, str)))
+    carrier = None if below is None else (body, *others)[below]
     at = {
         name: pose
         for name, pose in pairwise((body, *others))
         if isinstance(name, str) and isinstance(pose, Pose)
     }
 
-    scene = context.scene
-    places = {*scene.surfaces, *scene.cavities}
-    named = {*arguments[1:]} & places or places
-    regions = {
-        place.name: place
-        for place in (*scene.surfaces.values(), *scene.cavities.values())
-        if (place.body in at if onto else place.body in scene.fixed) and place.name in named
-    }
+    regions = _regions(context, carrier, {*arguments[1:]})
 
     def certified(proposal: Placement | Pose) -> Pose | Rejection:
-        rested = _rested(context, body, proposal, regions, at if onto else {})
+        rested = _rested(context, body, proposal, regions, at if carrier else {})
         if isinstance(rested, Rejection):
             return rested
 
         pose, region = rested
-        if onto:
+        if carrier is not None:
             stood = stood_on(context, body, pose, region, region.body, at[region.body])
             if isinstance(stood, Rejection):
                 return stood
@@ -81,6 +76,22 @@ def sample_relation(
     yield from certified_poses(
         context, relation, Mixture((relation,), (generator,)), arguments, certified, call, at
     )
+
+
+def _regions(
+    context: Context, carrier: str | None, named: Collection[str]
+) -> dict[str, Surface | Cavity]:
+    """Return the places of fixed bodies, or of one that moves, by name: the named ones, where there
+    are any, else all.
+    """
+    scene = context.scene
+    owners = scene.fixed if carrier is None else (carrier,)
+    places = {
+        place.name: place
+        for place in (*scene.surfaces.values(), *scene.cavities.values())
+        if place.body in owners
+    }
+    return {name: place for name, place in places.items() if name in named} or places
 
 
 def _rested(

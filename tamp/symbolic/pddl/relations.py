@@ -3,7 +3,7 @@ asked.
 
 By convention a relation R has the streams sample-R, which proposes, and test-R, which judges. What
 test-R certifies says that R holds; where there is no such stream, it is what sample-R alone
-certifies.
+certifies. The generator may serve further streams, for places of other kinds (`SAMPLES`).
 """
 
 from __future__ import annotations
@@ -24,6 +24,12 @@ KINDS = frozenset({"body", "movable", "fixed", "surface", "container"})
 
 POSITIONS = frozenset({(POSE, 1), ("at-pose", 1)})
 """Predicates and places of theirs that poses stand at in any domain."""
+
+SAMPLES = ("", "-inside", "-on-movable", "-inside-movable")
+"""Ends of the names of streams that one generator serves: sample-R, sample-R-inside, ..."""
+
+TESTS = ("", "-also")
+"""The same of its classifier: test-R asks of what was proposed, test-R-also of any poses."""
 
 
 @dataclass(frozen=True)
@@ -68,9 +74,20 @@ class Relation:
 def relation_names(streams: StreamFile) -> tuple[str, ...]:
     """Return every R of which there is a stream sample-R or test-R."""
     split = [stream.name.partition("-") for stream in streams.streams]
-    return tuple(
-        dict.fromkeys(name for verb, _, name in split if verb in ("sample", "test") and name)
-    )
+    named = {(verb, name) for verb, _, name in split if verb in ("sample", "test") and name}
+    further = {
+        (verb, f"{name}{suffix}")
+        for verb, suffixes in (("sample", SAMPLES), ("test", TESTS))
+        for _, name in named
+        for suffix in suffixes[1:]
+    }
+    return tuple(dict.fromkeys(name for verb, _, name in split if (verb, name) in named - further))
+
+
+def streams_of(name: str) -> tuple[str, ...]:
+    """Return the names that streams of a relation may have."""
+    sampled = (f"sample-{name}{suffix}" for suffix in SAMPLES)
+    return (*sampled, *(f"test-{name}{suffix}" for suffix in TESTS))
 
 
 def relation_of(streams: StreamFile, domain: Domain, name: str) -> Relation | None:

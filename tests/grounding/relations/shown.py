@@ -26,6 +26,22 @@ def elsewhere(rng: Random) -> tuple[float, float, bool]:
     ]
 
 
+def beside(rng: Random) -> tuple[float, float, bool]:
+    """Left or right of it: what holds both ways round."""
+    return (
+        float(rng.choice([-1, 1]) * rng.uniform(0.01, 0.05)),
+        float(rng.uniform(-0.02, 0.02)),
+        True,
+    )
+
+
+def far(rng: Random) -> tuple[float, float, bool]:
+    way, side = float(rng.choice([-1, 1])), float(rng.choice([-1, 1]))
+    return [(way * rng.uniform(0.15, 0.3), 0.0, False), (0.1, side * 0.25, False)][
+        int(rng.integers(2))
+    ]
+
+
 def write_one(path: Path, rng: Random, way: Way, name: str = "left_of", **fixed: float) -> None:
     """One scene: a cup beside a plate, as `way` has its gap to the right and how far it is behind."""
     height, yaw = fixed.get("height", rng.uniform(0.4, 0.9)), fixed.get("yaw", rng.uniform(-3, 3))
@@ -54,14 +70,21 @@ def write_one(path: Path, rng: Random, way: Way, name: str = "left_of", **fixed:
     write_demonstration(path, DemonstrationFile(bodies, [Label(name, ("cup", "plate"), holds)]))
 
 
-def write_demos(folder: Path, seed: int = 0, good: int = 10, bad: int = 10, **fixed: float) -> Path:
+def write_demos(
+    folder: Path,
+    seed: int = 0,
+    good: int = 10,
+    bad: int = 10,
+    way: Way | None = None,
+    **fixed: float,
+) -> Path:
     """A folder of demonstrations of `left_of`."""
     rng = np.random.default_rng(seed)
     for number in range(good + bad):
         write_one(
             folder / f"left_of_{number:03d}.yaml",
             rng,
-            left if number < good else elsewhere,
+            (way or left) if number < good else (far if way else elsewhere),
             **fixed,
         )
     return folder

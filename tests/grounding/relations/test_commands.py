@@ -9,12 +9,13 @@ import pytest
 
 import tamp
 from grounding.cli import BAD_INPUT, DONE, run
-from grounding.registry import file_grounding
+from grounding.registry import GROUNDINGS, file_grounding
 from grounding.relations.demonstration_file import demonstrations_of
+from tamp.errors import InputError
 from tamp.plan.write import plan_document
 from tamp.planner.report import summary
 from tamp.verification.verify import verify
-from tests.grounding.relations.shown import write_demos
+from tests.grounding.relations.shown import beside, write_demos
 
 PROBLEM = """
 domain: mine.pddl
@@ -43,8 +44,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def problem(folder: Path, goal: str, on: str = "sideboard, at: [0.2, -0.1]") -> tamp.Problem:
     path = folder / "problem.yaml"
     path.write_text(PROBLEM.format(goal=goal, on=on))
-    from grounding.registry import GROUNDINGS
-
     return tamp.load_problem(path, registry=GROUNDINGS)
 
 
@@ -90,6 +89,69 @@ def test_a_plan_makes_it_true_and_the_judge_agrees(
     assert verdict.holds, verdict
     if actions and not goal.startswith("(not"):
         assert "place  cup  left_of plate" in summary(solution)
+
+
+CHAIN = """
+domain: mine.pddl
+robot: {{model: panda_mobile, base: [0.0, 0.0, 0 deg]}}
+room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
+samplers: {{left_of: left_of.safetensors}}
+bodies:
+  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: -90 deg}}
+  sideboard: {{furniture: table, size: [0.9, 0.5, 0.6], at: [-1.6, 0.4, 0.0], yaw: 90 deg}}
+  saucer: {{cylinder: {{radius: 0.038, height: 0.04}}, on: sideboard, at: [0.3, 0.0]}}
+  cup: {{cylinder: {{radius: 0.035, height: 0.1}}, on: sideboard, at: [-0.3, 0.1]}}
+  glass: {{cylinder: {{radius: 0.03, height: 0.12}}, on: table, at: [0.3, 0.0]}}
+goal: {goal}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("goal", "moved"),
+    [
+        ("(and (left_of cup saucer) (left_of saucer glass))", {"cup", "saucer"}),
+        ("(and (left_of cup glass) (on cup table))", {"cup"}),
+        ("(and (left_of glass cup) (left_of cup saucer) (on saucer table))", None),
+    ],
+)
+def test_a_chain_is_planned_body_by_body(folder: Path, goal: str, moved: set[str] | None) -> None:
+    path = folder / "chain.yaml"
+    path.write_text(CHAIN.format(goal=goal))
+    solution = tamp.solve(tamp.load_problem(path, registry=GROUNDINGS), max_time=60.0, seed=0)
+    assert solution.solved, solution.explanation
+    document = plan_document(solution)
+    relation = file_grounding("left_of", folder / "left_of.safetensors")
+    verdict = verify(document, classifiers={"left_of": relation})
+    assert verdict.holds and not verdict.on_trust, verdict.text()
+    picked = {action.arguments[0] for action in solution.plan if action.name == "pick"}
+    assert picked == (moved or picked)
+    told = {fact[0] for fact in document["initial"]}
+    assert not told & {"wanted-left_of", "also-left_of"}, "they are no part of the world"
+
+
+@pytest.mark.slow
+def test_both_ways_round_need_one_place_near_the_other(
+    tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A body that another relation proposes is asked about wherever it is."""
+    write_demos(tmp_path / "demos", way=beside)
+    words = ["--demos", str(tmp_path / "demos"), "--out", str(tmp_path / "left_of.safetensors")]
+    assert run(["new", "left_of", *words, "--add-to", str(tmp_path / "mine.pddl")]) == DONE
+    path = tmp_path / "both.yaml"
+    path.write_text(CHAIN.format(goal="(and (left_of cup glass) (left_of glass cup))"))
+    solution = tamp.solve(tamp.load_problem(path, registry=GROUNDINGS), max_time=60.0, seed=0)
+    assert solution.solved, solution.explanation
+
+
+def test_a_relation_that_nothing_asks_for_needs_no_weights(folder: Path) -> None:
+    path = folder / "other.yaml"
+    text = CHAIN.format(goal="(on cup table)")
+    path.write_text(text.replace("samplers: {left_of: left_of.safetensors}\n", ""))
+    assert tamp.load_problem(path, registry=GROUNDINGS)
+    path.write_text(path.read_text().replace("(on cup table)", "(not (left_of cup glass))"))
+    with pytest.raises(InputError, match="stream 'sample-left_of' has no function"):
+        tamp.load_problem(path, registry=GROUNDINGS)
 
 
 def test_evaluation_judges_labels_and_drops_proposals(
